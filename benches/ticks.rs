@@ -32,6 +32,7 @@ fn main() {
 }
 
 /// The times of all ticks, sorted (ns).
+#[allow(clippy::disallowed_methods)] // The library itself reads clocks only in `solver/stopwatch.rs`.
 fn times(arm: &Robot, limits: &Limits, noise: f64) -> Vec<u128> {
     let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };
     let mut session = Session::new(arm, &START, 0.001, &options).expect("a session");

@@ -1423,11 +1423,12 @@ def solve(
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
         prefer: which solution to return.
             "any": the first one found.
-            "nearest": the one with the smallest |q - start| (rad, m). Each solution found is moved along its self-motion
-            and by whole turns towards the start; the search ends when 24 in a row are no nearer.
+            "nearest": the one with the smallest |q - start| (rad, m), by whole turns as near as they can be. With a closed form, of all
+            branches, and of a redundant arm along their curves; else each solution found is moved along its self-motion
+            towards the start, and the search ends when 24 in a row are no nearer.
             "best": the best one for the goals. Each solution found is optimised along its self-motion; the search ends
             when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
-            traced once instead, including the parts beyond joint limits.
+            traced once instead, including the parts beyond joint limits; with a closed form, without a search.
         limits: position limits; None: the robot's.
         stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
         seed: seed of the random draws; the same seed gives the same bits.
@@ -1530,6 +1531,60 @@ def solve_all(
             configurations.
         LimitError: a start outside the limits.
     """
+
+def self_motion(
+    robot: Robot,
+    target: _Pose,
+    *,
+    start: ArrayLike | None = None,
+    spacing: float = 0.05,
+    limits: Limits | None = None,
+    seed: int = 0,
+) -> list[SelfMotion]:
+    """Returns the curves of the self-motion: all configurations, inside the limits, that keep the tip at a target.
+
+    The arm has one joint more than the target takes: seven joints and a pose, or four and a position. With a closed form
+    (`Robot.closed_form`), curves are looked for at 64 values of its parameter, on every branch; elsewhere by search. Each is followed in
+    short steps past the joint limits, which then cut it, so that short parts between two limits are found too.
+
+    Args:
+        robot: the arm.
+        target: pose (4, 4), or position (3,) (m).
+        start: (n,); curves are sorted by their distance from it. None: the longest curve comes first.
+        spacing: largest distance |q - q'| of consecutive configurations (rad, m), from 0.001 to 0.5.
+        limits: position limits; None: the robot's.
+        seed: seed of the random draws of a search; the same seed gives the same bits.
+
+    Returns:
+        A list of `SelfMotion`; empty if the target is not reached. Every configuration reaches the target to 2e-9 m and rad.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, or an arm without one joint more than the target takes.
+    """
+
+@final
+class SelfMotion:
+    """A curve of configurations that keep the tip at a target."""
+
+    @property
+    def q(self) -> _Array:
+        """The configurations (k, n) (rad, m) in order, inside the limits."""
+    @property
+    def closed(self) -> bool:
+        """Whether the last configuration is followed by the first, modulo whole turns of joints without limits."""
+    @property
+    def lower_cut(self) -> str | None:
+        """Name of the joint whose limit ends the curve at its first configuration; None if it is closed."""
+    @property
+    def upper_cut(self) -> str | None:
+        """Name of the joint whose limit ends the curve at its last configuration; None if it is closed."""
+    @property
+    def complete(self) -> bool:
+        """Whether the closed form proves that the call returned every curve: true for arms whose parameter is the arm angle."""
+    @property
+    def length(self) -> float:
+        """Length of the curve in joint space (rad, m)."""
+    def __len__(self) -> int: ...
 
 @final
 class SolutionSet:

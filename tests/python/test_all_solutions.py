@@ -81,7 +81,8 @@ def test_the_nearest_miss_is_computed_when_asked_for() -> None:
     found = bik.solve_all(UR, bik.pose([1.2, 0.0, 0.1], rpy=[0.0, -1.5, 0.0]))
     assert found.evaluations <= 16
     miss, again = found.miss, found.miss
-    assert miss is not None and again is not None
+    assert miss is not None
+    assert again is not None
     assert miss.status == bik.Status.OUT_OF_REACH
     assert 0.0 < miss.position_error < 1.0
     np.testing.assert_array_equal(miss.q, again.q)

@@ -100,6 +100,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
                 PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
             )
         ),
+        "self_motion": lambda: lambda: bik.self_motion(IIWA, IIWA.fk(START), spacing=1e-3),
         "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),

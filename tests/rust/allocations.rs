@@ -66,7 +66,7 @@ fn a_step_allocates_nothing() {
         // Jumps, targets out of reach, and pauses that end in a stop.
         origin[1] += [0.0, 0.2, 3.0, -0.1][(tick / 500) % 4];
         let target = Target::Pose(Frame { origin, ..tip });
-        let arrives = tick % 5 == 0 && (tick / 2500) % 3 != 2;
+        let arrives = tick.is_multiple_of(5) && (tick / 2500) % 3 != 2;
         let stamp = Some((session.time() - 0.02).max(0.0));
         let arrival = arrives.then_some(Arrival { target, velocity: None, stamp });
         session.advance(arrival, &mut Unattended).unwrap();

@@ -337,7 +337,7 @@ fn calibrated_arms_are_only_nearly_decomposable() {
         ];
         let robot = arm("calibrated", rows);
         let says = if nearly {
-            "axes 2 to 4 nearly parallel; solutions not proven complete"
+            "axes 2 to 4 nearly parallel; at most 16 solutions"
         } else {
             "axes 2 to 4 parallel; at most 8 solutions"
         };
@@ -345,10 +345,10 @@ fn calibrated_arms_are_only_nearly_decomposable() {
         let mut lost = 0;
         for q in configurations(&robot, 300) {
             let found = all(&robot, &pose_at(&robot, &q), &from(&q));
-            assert_eq!(found.complete, !nearly);
+            assert!(found.complete || nearly);
             lost += usize::from(!found.solutions.iter().any(|solution| apart(solution.q, &q) < 1e-4));
         }
-        assert!(lost <= 6, "{lost} lost");
+        assert_eq!(lost, 0);
     }
 }
 

@@ -1,9 +1,11 @@
 //! Redundant arms in closed form: samples of the self-motion.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::common::{configurations, pose_at, robot};
-use ikcore::ik::{AllOptions, SolutionSet, SolutionView, SolveOptions, solve_all};
+use crate::common::{configurations, message, pose_at, position_at, robot};
+use ikcore::ik::{
+    AllOptions, SelfMotion, SelfMotionOptions, SolutionSet, SolutionView, SolveOptions, self_motion, solve_all,
+};
 use ikcore::load::{Dh, DhTable};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
@@ -100,4 +102,97 @@ fn arms_of_five_joints_have_all_solutions_of_what_they_reach() {
         let nearest = found.solutions.get(0).unwrap().q;
         assert!(q.iter().zip(nearest).all(|(a, b)| (a - b).abs() < 1e-4), "{q:?} {nearest:?}");
     }
+}
+
+/// The distance of two configurations, whole turns aside.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let turn = |(a, b): (&f64, &f64)| ((a - b + PI).rem_euclid(TAU) - PI).powi(2);
+    a.iter().zip(b).map(turn).sum::<f64>().sqrt()
+}
+
+#[track_caller]
+fn curves(robot: &Robot, target: &Target, spacing: f64) -> Vec<SelfMotion> {
+    let options = SelfMotionOptions { spacing, ..SelfMotionOptions::default() };
+    let found = self_motion(robot, target, &options, &mut Unattended).unwrap();
+    for curve in &found {
+        let qs: Vec<&[f64]> = curve.iter().collect();
+        for q in &qs {
+            let tip = robot.tip(q);
+            let (wanted, axes) = match target {
+                Target::Position(position) => (*position, tip.axes),
+                Target::Pose(pose) => (pose.origin, pose.axes),
+                _ => panic!("a pose or a position"),
+            };
+            let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let miss = off(&tip.origin, &wanted).max(off(tip.axes.as_flattened(), axes.as_flattened()));
+            assert!(miss < 3e-9, "off by {miss:e} at {q:?}");
+            for (q, joint) in q.iter().zip(robot.joints()) {
+                assert!(joint.lower <= *q && *q <= joint.upper, "{q:?}");
+            }
+        }
+        for pair in qs.windows(2) {
+            let length = pair[0].iter().zip(pair[1]).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            assert!(length <= spacing, "{length}");
+        }
+        let ends = [(qs[0], curve.lower_cut), (qs[qs.len() - 1], curve.upper_cut)];
+        if curve.closed {
+            assert!(apart(ends[0].0, ends[1].0) <= spacing && ends.iter().all(|(_, cut)| cut.is_none()));
+        } else {
+            for (q, cut) in ends {
+                let joint = cut.expect("a limit ends it");
+                let (lower, upper) = (robot.joints()[joint].lower, robot.joints()[joint].upper);
+                assert!((q[joint] - lower).min(upper - q[joint]) < 1e-6, "joint {joint} at {q:?}");
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn curves_of_the_self_motion_pass_every_solution() {
+    for name in ["panda", "iiwa14", "gen3"] {
+        let robot = robot(name);
+        let mut count = 0;
+        for q in configurations(&robot, 6) {
+            let target = pose_at(&robot, &q);
+            let found = curves(&robot, &target, 0.05);
+            count += found.len();
+            let on_a_curve = |q: &[f64]| found.iter().any(|curve| curve.iter().any(|point| apart(point, q) <= 0.05));
+            assert!(on_a_curve(&q), "{name}: {q:?}");
+            let sampled = sampled(&robot, &target, 40);
+            let lost = sampled.solutions.iter().filter(|solution| !on_a_curve(solution.q)).count();
+            assert_eq!(lost, 0, "{name}: {lost} of {} at {q:?}", sampled.solutions.len());
+            assert!(found.iter().all(|curve| curve.complete == (name == "iiwa14")));
+        }
+        assert!(count >= 6, "{name}: {count} curves");
+    }
+}
+
+#[test]
+fn a_planar_arm_of_three_joints_moves_about_a_position() {
+    let arm = Robot::planar(&[0.5, 0.4, 0.3]).unwrap();
+    for q in configurations(&arm, 5) {
+        let found = curves(&arm, &position_at(&arm, &q), 0.05);
+        assert!(found.iter().any(|curve| curve.iter().any(|point| apart(point, &q) <= 0.05)), "{q:?}");
+    }
+    // Out of reach.
+    assert!(curves(&arm, &Target::Position([2.0, 0.0, 0.0]), 0.05).is_empty());
+}
+
+#[test]
+fn curves_are_sorted_and_asked_for_where_there_are_any() {
+    let iiwa = robot("iiwa14");
+    let q = configurations(&iiwa, 1).remove(0);
+    let target = pose_at(&iiwa, &q);
+    let options = SelfMotionOptions { start: Some(q.clone()), ..SelfMotionOptions::default() };
+    let found = self_motion(&iiwa, &target, &options, &mut Unattended).unwrap();
+    assert!(found[0].iter().any(|point| apart(point, &q) <= 0.05));
+    let ur10 = robot("ur10");
+    let says = message(self_motion(&ur10, &target, &SelfMotionOptions::default(), &mut Unattended));
+    let expected =
+        "self_motion needs one joint more than the target: robot 'ur10' has 6 joints, and this target takes 6";
+    assert_eq!(says, expected);
+    let wide = SelfMotionOptions { spacing: 1.0, ..SelfMotionOptions::default() };
+    let says = message(self_motion(&iiwa, &target, &wide, &mut Unattended));
+    assert_eq!(says, "spacing must be from 0.001 to 0.5, got 1");
 }

@@ -234,7 +234,7 @@ fn a_grasped_part_moves_with_its_link_and_may_touch_what_it_is_told_to() {
 fn attached_shapes_are_held_by_their_capsules() {
     let turn = Some(*pose::from_rpy([0.3, -0.5, 0.7], [0.0; 3]).rotation.matrix());
     let points: Vec<[f64; 3]> =
-        (0..40).map(|i| f64::from(i)).map(|i| [i.sin(), 0.4 * (2.0 * i).cos(), 0.3 * (3.0 * i).sin()]).collect();
+        (0..40).map(f64::from).map(|i| [i.sin(), 0.4 * (2.0 * i).cos(), 0.3 * (3.0 * i).sin()]).collect();
     let shapes = [
         Shape::cuboid([0.1, 0.2, 0.3], [0.3, 0.9, 0.2], turn).unwrap(),
         Shape::ellipsoid([0.1, 0.2, 0.3], [0.3, 0.9, 0.2], turn).unwrap(),

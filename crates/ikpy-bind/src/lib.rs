@@ -21,6 +21,7 @@ mod pose;
 mod posture;
 mod python_calls;
 mod robot;
+mod self_motion;
 mod solve_all;
 mod solve_arguments;
 mod solver;
@@ -46,6 +47,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
     module.add_class::<solve_all::PySolutionSet>()?;
     module.add_function(wrap_pyfunction!(solve_all::solve_all, module)?)?;
+    module.add_class::<self_motion::PySelfMotion>()?;
+    module.add_function(wrap_pyfunction!(self_motion::self_motion, module)?)?;
     task::register(module)?;
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;

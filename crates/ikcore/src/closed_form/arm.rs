@@ -77,7 +77,7 @@ pub(crate) struct ArmBranches {
 pub(crate) struct PoseFamily<'a> {
     redundant: &'a Redundant,
     drives: &'a Drives,
-    target: Frame,
+    displacement: Frame,
 }
 
 impl ClosedFormArm {
@@ -142,9 +142,10 @@ impl ClosedFormArm {
             Method::Scara(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Five(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Six(method) => {
-                let branches = ArmBranches::of(&method.solve(target), &self.drives);
+                let mut branches = ArmBranches::of(&method.solve(target), &self.drives);
                 // Only zeros of a polynomial near the real axis would tell.
-                ArmBranches { nearly: branches.nearly || method.structure() == Structure::General, ..branches }
+                branches.nearly |= method.structure() == Structure::General;
+                branches
             }
             Method::Seven(_) => return None,
         })
@@ -153,7 +154,9 @@ impl ClosedFormArm {
     /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
     pub fn family(&self, target: Frame) -> Option<PoseFamily<'_>> {
         match &self.method {
-            Method::Seven(redundant) => Some(PoseFamily { redundant, drives: &self.drives, target }),
+            Method::Seven(redundant) => {
+                Some(PoseFamily { redundant, drives: &self.drives, displacement: redundant.displacement(&target) })
+            }
             _ => None,
         }
     }
@@ -168,12 +171,17 @@ impl PoseFamily<'_> {
             let ends = [scale * lower[joint], scale * upper[joint]];
             [ends[0].min(ends[1]), ends[0].max(ends[1])]
         });
-        self.redundant.arcs(&self.target, &limits)
+        self.redundant.arcs(&self.displacement, &limits)
+    }
+
+    /// Whether the parameter is the arm angle: then every branch exists at every value.
+    pub fn is_by_arm_angle(&self) -> bool {
+        self.redundant.parameter() == Parameter::ArmAngle
     }
 
     /// All configurations with the parameter at `value`.
     pub fn branches_at(&self, value: f64) -> ArmBranches {
-        ArmBranches::of(&self.redundant.solve(&self.target, value), self.drives)
+        ArmBranches::of(&self.redundant.solve(&self.displacement, value), self.drives)
     }
 }
 

@@ -37,10 +37,17 @@ pub enum Structure {
     Unsolved,
 }
 
+impl Structure {
+    /// Whether it holds only nearly: its method gives starts.
+    pub fn is_nearly(self) -> bool {
+        matches!(self, Self::ThreeMeet { nearly: true, .. } | Self::ThreeParallel { nearly: true, .. })
+    }
+}
+
 impl fmt::Display for Structure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let nearly = |nearly: &bool| if *nearly { "nearly " } else { "" };
-        let proven = |nearly: &bool| if *nearly { "solutions not proven complete" } else { "at most 8 solutions" };
+        let proven = |nearly: &bool| if *nearly { "at most 16 solutions" } else { "at most 8 solutions" };
         match self {
             Self::ThreeMeet { first: 4, nearly: n } => write!(f, "{}spherical wrist; {}", nearly(n), proven(n)),
             Self::ThreeMeet { first: 1, nearly: n } => write!(f, "{}spherical shoulder; {}", nearly(n), proven(n)),
@@ -65,6 +72,8 @@ pub struct ClosedForm {
     verifier: Verifier<6>,
     back: Frame,
     size: f64,
+    /// The general method beside one that holds only nearly: beside folds of the elbow, that one loses solutions.
+    further: Option<Box<[General; 2]>>,
 }
 
 #[derive(Debug, Clone)]
@@ -85,22 +94,32 @@ enum Method {
 impl ClosedForm {
     /// Decides the method from the numbers of the chain.
     pub fn new(chain: &AxisChain<6>) -> Self {
+        let mut form = Self::structured(chain);
+        if form.structure.is_nearly() && chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns) {
+            let ways = general_ways(&chain.joints, form.size);
+            form.further = Some(form.ordered(ways));
+        }
+        form
+    }
+
+    /// The same, and where a structure holds only nearly, nothing beyond what that yields: quicker.
+    pub fn structured(chain: &AxisChain<6>) -> Self {
         let size = chain.size();
         let (structure, method) = decide(&chain.joints, size);
-        let nearly = matches!(
-            structure,
-            Structure::ThreeMeet { nearly: true, .. } | Structure::ThreeParallel { nearly: true, .. }
-        );
-        let worth_polishing = if nearly { 30.0 * NEARLY * size.max(1.0) } else { 1e-3 };
+        let worth_polishing = if structure.is_nearly() { 30.0 * NEARLY * size.max(1.0) } else { 1e-3 };
         let verifier = Verifier::new(chain, worth_polishing);
-        let mut form = Self { chain: *chain, structure, method, verifier, back: chain.tip.inverse(), size };
+        let back = chain.tip.inverse();
+        let mut form = Self { chain: *chain, structure, method, verifier, back, size, further: None };
         if !matches!(structure, Structure::General | Structure::Unsolved) && !form.finds_samples() {
             // Axes that coincide, say, defeat the method of a structure: it is checked before it is trusted.
             let turning = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
             (form.structure, form.method) =
                 if turning { general(&chain.joints, size) } else { (Structure::Unsolved, Method::None) };
         }
-        form.order_ways();
+        form.method = match std::mem::replace(&mut form.method, Method::None) {
+            Method::General(ways) => Method::General(form.ordered(ways)),
+            method => method,
+        };
         form
     }
 
@@ -113,16 +132,13 @@ impl ClosedForm {
         })
     }
 
-    /// Puts the better way of the general method first.
-    fn order_ways(&mut self) {
-        if let Method::General(ways) = &self.method {
-            let [first, second] = [0, 1].map(|way| self.trouble(&ways[way]));
-            if second < first
-                && let Method::General(ways) = &mut self.method
-            {
-                ways.swap(0, 1);
-            }
+    /// The better way of the general method first.
+    fn ordered(&self, mut ways: Box<[General; 2]>) -> Box<[General; 2]> {
+        let [first, second] = [0, 1].map(|way| self.trouble(&ways[way]));
+        if second < first {
+            ways.swap(0, 1);
         }
+        ways
     }
 
     /// How often one way of the general method leaves something open.
@@ -148,13 +164,18 @@ impl ClosedForm {
     /// All joint angles, in (-pi, pi], that bring the tip to `target`.
     #[inline]
     pub fn solve(&self, target: &Frame) -> Branches<6> {
+        self.solve_displacement(&target.then::<Baseline>(&self.back), target)
+    }
+
+    /// The same for a known displacement of the tip from where it is at zero to `target`.
+    #[inline]
+    pub fn solve_displacement(&self, goal: &Frame, target: &Frame) -> Branches<6> {
         let mut candidates = Candidates::new();
-        let goal = target.then::<Baseline>(&self.back);
         match &self.method {
-            Method::Spherical(method) => spherical_candidates(method, &goal, &mut candidates),
-            Method::Parallel(method) => parallel_candidates(method, &goal, &mut candidates),
-            Method::Opened { at, tolerance } => self.solve_opened(&goal, *at, *tolerance, &mut candidates),
-            Method::General(ways) => return self.solve_general(ways, &goal, target),
+            Method::Spherical(method) => spherical_candidates(method, goal, &mut candidates),
+            Method::Parallel(method) => parallel_candidates(method, goal, &mut candidates),
+            Method::Opened { at, tolerance } => self.solve_opened(goal, *at, *tolerance, &mut candidates),
+            Method::General(ways) => return self.solve_general(ways, goal, target, Branches::none()),
             Method::None => return Branches::none(),
         }
         let mut found = verified(&self.verifier, target, &candidates);
@@ -165,12 +186,14 @@ impl ClosedForm {
             // Decided above.
             Structure::General | Structure::Unsolved => found.complete,
         };
-        found
+        match &self.further {
+            Some(ways) => self.solve_general(ways, goal, target, found),
+            None => found,
+        }
     }
 
     /// One way, and the other too where the first does not prove that nothing is missing.
-    fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame) -> Branches<6> {
-        let mut found = Branches::none();
+    fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
         for way in ways {
             let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
             // No more branches than zeros: as many of both leave none to be found.
@@ -257,7 +280,11 @@ fn decide(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
 }
 
 fn general(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
-    (Structure::General, Method::General(Box::new([General::new(joints, size), General::reversed(joints, size)])))
+    (Structure::General, Method::General(general_ways(joints, size)))
+}
+
+fn general_ways(joints: &[JointAxis; 6], size: f64) -> Box<[General; 2]> {
+    Box::new([General::new(joints, size), General::reversed(joints, size)])
 }
 
 /// A few configurations spread evenly: multiples of irrational numbers, as turns.

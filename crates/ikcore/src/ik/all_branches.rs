@@ -167,15 +167,14 @@ impl Taker<'_, '_, '_> {
         let bounds = self.attempt.context.bounds();
         let mut near = [0.0; MOST_JOINTS];
         let near = &mut near[..q.len()];
-        near.copy_from_slice(q);
-        self.turns.bring_near(near);
-        for ((value, lower), upper) in near.iter_mut().zip(bounds.lower()).zip(bounds.upper()) {
-            let outside = (lower - *value).max(*value - upper);
+        for (j, placed) in near.iter_mut().enumerate() {
+            let (value, lower, upper) = (self.turns.nearest(j, q[j]), bounds.lower()[j], bounds.upper()[j]);
+            let outside = (lower - value).max(value - upper);
             if outside > AT_LIMIT {
                 self.nearly |= outside < NEAR_LIMIT;
                 return false;
             }
-            *value = value.clamp(*lower, *upper);
+            *placed = value.clamp(lower, upper);
         }
         if self.verified_is_solved {
             let BranchError { position, rotation } = error;
@@ -213,8 +212,9 @@ impl Taker<'_, '_, '_> {
         self.found.complete = false;
         let mut near = Point::from_slice(q);
         self.turns.bring_near(&mut near);
-        self.attempt.context.bounds().clip(&mut near);
-        let q = self.attempt.descend_beyond(&self.descent, near, VERIFIED);
+        let bounds = self.attempt.context.bounds();
+        bounds.clip(&mut near);
+        let q = self.attempt.descend_beyond(&self.descent, near, VERIFIED, bounds);
         let assessment = self.attempt.problem.assess(&q);
         let known = |other: &[f64]| other.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME);
         if assessment.score.solved && !self.found.solutions.iter().any(|other| known(other.q)) {

@@ -103,16 +103,16 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// Descends once from `q`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider; returns the best point.
-    pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64) -> Point {
+    /// Descends once from `q` within `bounds`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider; returns the
+    /// best point.
+    pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64, bounds: &Bounds) -> Point {
         let asked = *self.problem.criterion();
         let Tolerance { position, rotation } = asked.tolerance;
         let tighter = Tolerance { position: position.min(tolerance), rotation: rotation.min(tolerance) };
         let (robot, target) = (self.context.robot(), self.problem.target());
         let mut problem = Problem::new(robot, target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
         let objective: &mut dyn Differentiable = &mut problem;
-        let mut evaluator =
-            Evaluator::new(objective, self.context.bounds(), self.budget.rest(0), self.rng, self.monitor);
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
         run(descent, &mut evaluator, &q);
         self.budget.add(&evaluator);
         Point::from_slice(&evaluator.best().x)

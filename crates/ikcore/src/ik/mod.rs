@@ -3,8 +3,8 @@
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
 //! one target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form, with the
 //! `preference` for one of its branches. `nearest` and `best` choose among several solutions,
-//! `goal_descent` moves a solution along its self-motion, `solve_all` collects solutions (`all_branches` by the closed
-//! form). [`problem`](crate::problem) explains why a target was missed.
+//! `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects
+//! solutions (`all_branches` by the closed form). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;
 mod attempt;
@@ -15,6 +15,7 @@ mod first_branch;
 mod goal_descent;
 mod nearest;
 mod preference;
+mod self_motion;
 mod solution;
 mod solutions;
 mod solve;
@@ -23,6 +24,7 @@ mod solve_options;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
+pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
 pub use solution::Solution;
 pub use solutions::{SolutionView, Solutions};
 pub use solve::solve;

@@ -31,23 +31,26 @@ impl<'a> NearestTurns<'a> {
     }
 
     /// Shifts each joint by whole turns to be as near as possible to the reference within its limits.
-    #[inline]
     pub fn bring_near(&self, q: &mut [f64]) {
-        for (j, (value, period)) in q.iter_mut().zip(&self.periods).enumerate() {
-            let (lower, upper) = (self.bounds.lower()[j], self.bounds.upper()[j]);
-            let away = self.reference[j] - *value;
-            let is_near = 2.0 * away.abs() < *period && lower <= *value && *value <= upper;
-            if is_near || *period == 0.0 {
-                continue;
-            }
-            let turns = (away / period).round();
-            let (fewest, most) = (((lower - *value) / period).ceil(), ((upper - *value) / period).floor());
-            let turned = *value + turns.max(fewest).min(most) * period;
-            // Rounding may pass a limit.
-            if lower <= turned && turned <= upper {
-                *value = turned;
-            }
+        for (j, value) in q.iter_mut().enumerate() {
+            *value = self.nearest(j, *value);
         }
+    }
+
+    /// `value` of joint `j`, shifted by whole turns to be as near as possible to the reference within its limits.
+    #[inline]
+    pub fn nearest(&self, j: usize, value: f64) -> f64 {
+        let (lower, upper, period) = (self.bounds.lower()[j], self.bounds.upper()[j], self.periods[j]);
+        let away = self.reference[j] - value;
+        let is_near = 2.0 * away.abs() < period && lower <= value && value <= upper;
+        if is_near || period == 0.0 {
+            return value;
+        }
+        let turns = (away / period).round();
+        let (fewest, most) = (((lower - value) / period).ceil(), ((upper - value) / period).floor());
+        let turned = value + turns.max(fewest).min(most) * period;
+        // Rounding may pass a limit.
+        if lower <= turned && turned <= upper { turned } else { value }
     }
 }
 

@@ -79,7 +79,7 @@ impl Profile {
     }
 
     /// The smallest value from each time on, as a profile that never falls; between samples it may be a little lower.
-    pub(crate) fn from_now_on(&self) -> Self {
+    pub(crate) fn lowest_ahead(&self) -> Self {
         match self {
             Self::Constant(value) => Self::Constant(*value),
             Self::Sinusoid(sinusoid) => Self::Constant(sinusoid.mean - sinusoid.amplitude.abs()),

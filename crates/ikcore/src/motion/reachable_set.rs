@@ -42,7 +42,7 @@ impl ReachableSet {
         let from_now_on = fields.map(|field| {
             limits.field(field).map_or_else(
                 || vec![Profile::Constant(f64::INFINITY); joints],
-                |profiles| profiles.iter().map(Profile::from_now_on).collect(),
+                |profiles| profiles.iter().map(Profile::lowest_ahead).collect(),
             )
         });
         let vary = |profiles: &[Profile]| profiles.iter().any(|profile| !matches!(profile, Profile::Constant(_)));

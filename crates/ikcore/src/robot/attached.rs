@@ -51,8 +51,8 @@ impl Robot {
     /// The first of "attached", "attached_2" and so on that no link has.
     fn free_name(&self) -> String {
         let numbered = (2..).map(|i| format!("attached_{i}"));
-        let names = std::iter::once("attached".to_owned()).chain(numbered);
-        names.skip_while(|name| self.link_number(name).is_ok()).next().unwrap_or_default()
+        let mut names = std::iter::once("attached".to_owned()).chain(numbered);
+        names.find(|name| self.link_number(name).is_err()).unwrap_or_default()
     }
 }
 

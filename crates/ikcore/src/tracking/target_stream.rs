@@ -82,14 +82,15 @@ impl TargetStream {
             return Err(Error::out_of_range("stamp", &expected, measured));
         }
         self.arrived = time;
-        if measured <= self.measured {
+        // The target of a tick that was interrupted is replaced by the next one.
+        if measured < self.measured || stamp.is_some() && measured == self.measured {
             return Ok(None);
         }
         let interval = measured - self.measured;
         self.measured = measured;
         let target = match &mut self.filter {
-            Some(filter) => filter.filtered(&target, interval),
-            None => target,
+            Some(filter) if interval > 0.0 => filter.filtered(&target, interval),
+            _ => target,
         };
         self.last = Some((target, velocity));
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))

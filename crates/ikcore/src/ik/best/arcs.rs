@@ -5,8 +5,7 @@
 
 use smallvec::SmallVec;
 
-use super::curve_walk::CurvePoint;
-use super::wrapped_limits::WrappedLimits;
+use crate::ik::self_motion::{CurvePoint, WrappedLimits};
 use crate::math::MAX_DOF;
 use crate::math::hermite::Cubic;
 use crate::math::vector::dot;

@@ -5,9 +5,8 @@
 //! is walked once, and its [`Arcs`] report their candidate minima.
 
 use super::arcs::{Arcs, Candidate};
-use super::curve_walk::{LONGEST, StepKind, Walk};
-use super::wrapped_limits::WrappedLimits;
 use crate::ik::goal_descent::difference;
+use crate::ik::self_motion::{LONGEST, StepKind, Walk, WrappedLimits};
 use crate::math::vector::{dot, norm};
 use crate::objective::{Bounds, Point};
 use crate::problem::Problem;
@@ -61,7 +60,7 @@ impl<'a> CurveTracer<'a> {
         if knows(&self.limits, &self.passed, q) {
             return Visit::Known;
         }
-        let Some(mut walk) = Walk::enter(problem, q, most) else {
+        let Some(mut walk) = Walk::enter(problem, q, most, LONGEST) else {
             self.evaluations += most.min(1);
             return Visit::NoCurve;
         };

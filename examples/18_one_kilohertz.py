@@ -2,9 +2,9 @@
 A loop of 1 kHz with a noisy, slow camera
 =========================================
 
-A camera at 60 Hz sees the target 50 ms late and with 2 mm of noise; the arm wants a command every millisecond, inside limits up
-to jerk. The loop runs in a thread of its own: it waits for the next millisecond, asks the camera for a new target and
-steps the tracker. At the end it prints how late its ticks were.
+A camera at 60 Hz sees the target 50 ms late and with 2 mm of noise; the arm wants a command every millisecond, inside
+limits up to jerk. The loop runs in a thread of its own: it waits for the next millisecond, asks the camera for a new
+target and steps the tracker. At the end it prints how late its ticks were.
 """
 
 import threading

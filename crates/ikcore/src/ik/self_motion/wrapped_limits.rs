@@ -11,7 +11,7 @@ use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
 /// Joint limits up to whole turns.
-pub(super) struct WrappedLimits<'a> {
+pub(in crate::ik) struct WrappedLimits<'a> {
     bounds: &'a Bounds,
     middle: Point,
     /// Which joints repeat themselves after a turn.
@@ -19,7 +19,7 @@ pub(super) struct WrappedLimits<'a> {
 }
 
 /// Pieces of a way, from share to share of it.
-pub(super) type Pieces = SmallVec<[[f64; 2]; 4]>;
+pub(in crate::ik) type Pieces = SmallVec<[[f64; 2]; 4]>;
 
 impl<'a> WrappedLimits<'a> {
     pub fn new(robot: &Robot, bounds: &'a Bounds) -> Self {
@@ -29,6 +29,31 @@ impl<'a> WrappedLimits<'a> {
         };
         let repeats = (0..robot.dof()).map(|j| robot.repeats_every_turn(j)).collect();
         Self { bounds, middle: bounds.ranges().map(middle).collect(), repeats }
+    }
+
+    /// The same, with joints that turn without end near `reference` instead of zero.
+    pub fn around(mut self, reference: &[f64]) -> Self {
+        for ((middle, value), (lower, upper)) in self.middle.iter_mut().zip(reference).zip(self.bounds.ranges()) {
+            if !(lower.is_finite() && upper.is_finite()) {
+                *middle = *value;
+            }
+        }
+        self
+    }
+
+    /// How many joints there are.
+    pub fn joints(&self) -> usize {
+        self.repeats.len()
+    }
+
+    /// Whether joint `j` repeats itself after a turn.
+    pub fn repeats(&self, j: usize) -> bool {
+        self.repeats[j]
+    }
+
+    /// Whether a joint that does not repeat itself is outside its limits.
+    pub fn slid_out(&self, q: &[f64]) -> bool {
+        (0..q.len()).any(|j| !self.repeats[j] && !self.is_within(j, q[j]))
     }
 
     /// a - b, whole turns aside.

@@ -10,8 +10,8 @@ use crate::math::vector::{distance, dot, norm};
 use crate::objective::{LeastSquares, Linearization, Point};
 use crate::problem::Problem;
 
-/// Longest step (rad, m), and the first.
-pub(super) const LONGEST: f64 = 0.2;
+/// Longest step (rad, m), unless asked otherwise.
+pub(in crate::ik) const LONGEST: f64 = 0.2;
 /// Shortest step: below, the curve has a corner, which is a singular posture.
 const SHORTEST: f64 = 0.01;
 /// Cosine of the angle by which a step may turn the curve's direction; beyond, it is halved.
@@ -27,14 +27,14 @@ const MOST_CORRECTIONS: usize = 2;
 
 /// A place on a curve, and the curve's direction there.
 #[derive(Debug, Clone)]
-pub(super) struct CurvePoint {
+pub(in crate::ik) struct CurvePoint {
     pub q: Point,
     pub along: Point,
 }
 
 /// What a step led along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum StepKind {
+pub(in crate::ik) enum StepKind {
     /// A stretch of the curve, from the place before to here.
     Smooth,
     /// Past a corner: another curve may have been caught, what lies between is not known.
@@ -42,12 +42,13 @@ pub(super) enum StepKind {
 }
 
 /// A walk along a curve.
-pub(super) struct Walk<'w, 'p> {
+pub(in crate::ik) struct Walk<'w, 'p> {
     problem: &'w mut Problem<'p>,
     here: CurvePoint,
     /// How fast the direction changes along the curve.
     bend: Point,
     length: f64,
+    longest: f64,
     /// The task at the last place it was asked.
     at: Linearization,
     /// Evaluations of the forward kinematics so far, and the most there may be.
@@ -58,14 +59,14 @@ pub(super) struct Walk<'w, 'p> {
 impl<'w, 'p> Walk<'w, 'p> {
     /// At `q`, a solution, on the only curve through it; None where the task leaves no freedom, or more than that of a curve,
     /// or where no evaluation is left to tell.
-    pub fn enter(problem: &'w mut Problem<'p>, q: &[f64], max_evaluations: usize) -> Option<Self> {
+    pub fn enter(problem: &'w mut Problem<'p>, q: &[f64], max_evaluations: usize, longest: f64) -> Option<Self> {
         if max_evaluations == 0 {
             return None;
         }
         let mut at = Linearization::default();
         problem.linearize(q, &mut at);
         let mut along = Point::new();
-        let (mut freedom, mut longest) = (0.0, 0.0);
+        let (mut freedom, mut most_free) = (0.0, 0.0);
         for j in 0..q.len() {
             let mut unit = Point::from_elem(0.0, q.len());
             unit[j] = 1.0;
@@ -73,14 +74,14 @@ impl<'w, 'p> Walk<'w, 'p> {
             // The trace of the projection on what the task leaves free is the dimension of that.
             freedom += free[j];
             let length = norm(&free);
-            if length > longest {
-                (longest, along) = (length, free);
+            if length > most_free {
+                (most_free, along) = (length, free);
             }
         }
         let is_curve = (freedom - 1.0_f64).abs() < 0.5;
         let here = CurvePoint { q: q.into(), along: normalized(along) };
         let bend = Point::from_elem(0.0, q.len());
-        is_curve.then(|| Self { problem, here, bend, length: LONGEST, at, evaluations: 1, max_evaluations })
+        is_curve.then(|| Self { problem, here, bend, length: longest, longest, at, evaluations: 1, max_evaluations })
     }
 
     /// Where it has come to.
@@ -98,7 +99,7 @@ impl<'w, 'p> Walk<'w, 'p> {
         let along = place.along.iter().map(|slope| -slope).collect();
         self.here = CurvePoint { q: place.q.clone(), along };
         self.bend.fill(0.0);
-        self.length = LONGEST;
+        self.length = self.longest;
     }
 
     /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
@@ -119,7 +120,7 @@ impl<'w, 'p> Walk<'w, 'p> {
             let turn = difference(&self.here.along, &from.along);
             self.bend = turn.into_iter().map(|turn| turn / self.length).collect();
             if cosine > STRAIGHT {
-                self.length = (2.0 * self.length).min(LONGEST);
+                self.length = (2.0 * self.length).min(self.longest);
             }
             return Some((from, StepKind::Smooth));
         }

@@ -1,0 +1,182 @@
+//! `self_motion`: every curve of configurations that keep the tip at a target.
+
+use super::curve::SelfMotion;
+use super::cut::parts;
+use super::place::{EXACT, placed};
+use super::seeds::{Seeds, by_closed_form};
+use super::trace::{TracedCurve, traced};
+use super::wrapped_limits::WrappedLimits;
+use crate::error::{Error, Result};
+use crate::ik::attempt::Attempt;
+use crate::ik::context::SolveContext;
+use crate::ik::solve_options::SolveOptions;
+use crate::limits::Limits;
+use crate::math::vector::distance;
+use crate::objective::{Bounds, Point};
+use crate::rng;
+use crate::robot::Robot;
+use crate::solver::{LevenbergMarquardt, Monitor, Status};
+use crate::task::Target;
+
+/// Values of the parameter of a closed form at which curves are looked for.
+const VALUES: usize = 64;
+
+/// A configuration nearer to a curve than this (rad, m) is on it.
+const ON_CURVE: f64 = 0.01;
+
+/// Solutions in a row on known curves after which the search for others ends.
+const PATIENCE: usize = 40;
+
+/// Smallest and largest spacing (rad, m).
+const SPACINGS: [f64; 2] = [1e-3, 0.5];
+
+/// How to follow a self-motion.
+#[derive(Debug, Clone)]
+pub struct SelfMotionOptions {
+    /// Curves are sorted by their distance from this configuration (n,). None: by length, the longest first.
+    pub start: Option<Vec<f64>>,
+    /// Largest distance |q - q'| of consecutive points (rad, m).
+    pub spacing: f64,
+    /// Position limits to keep. None: the robot's.
+    pub limits: Option<Limits>,
+    /// Seed of the random draws of a search.
+    pub seed: u64,
+}
+
+impl Default for SelfMotionOptions {
+    fn default() -> Self {
+        Self { start: None, spacing: 0.05, limits: None, seed: 0 }
+    }
+}
+
+/// All curves of the self-motion of an arm with one joint more than the task needs: seven joints and a pose, four and a position.
+///
+/// Curves are found by the closed form, at 64 values of its parameter, or by a search from random starts; each is followed in short
+/// steps, past the joint limits, which then cut it.
+///
+/// # Errors
+/// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] for an arm without one joint more than the task needs.
+pub fn self_motion(
+    robot: &Robot,
+    target: &Target,
+    options: &SelfMotionOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Vec<SelfMotion>> {
+    let SelfMotionOptions { start, spacing, limits, seed } = options;
+    let [least, most] = SPACINGS;
+    if !(least..=most).contains(spacing) {
+        return Err(Error::out_of_range("spacing", &format!("from {least} to {most}"), *spacing));
+    }
+    let each = SolveOptions { limits: limits.clone(), seed: *seed, ..SolveOptions::default() };
+    let context = SolveContext::new(robot, &each)?;
+    let target = context.read(target)?;
+    require_curves(robot, &target)?;
+    start.as_ref().map_or(Ok(()), |q| robot.check("start", q))?;
+    let mut problem = context.problem(&target);
+    let mut rng = rng::stream(*seed, 0);
+    let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
+    let limits = WrappedLimits::new(robot, context.bounds());
+    let limits = match start {
+        Some(start) => limits.around(start),
+        None => limits,
+    };
+    let (mut curves, complete) = match by_closed_form(robot, &mut attempt, VALUES) {
+        Some(Seeds { seeds, complete }) => (through(&seeds, &mut attempt, &limits, *spacing), complete),
+        None => (searched(&mut attempt, &limits, *spacing), false),
+    };
+    let mut found = Vec::new();
+    for curve in &mut curves {
+        make_exact(curve, &mut attempt);
+        for part in parts(curve, &limits) {
+            found.extend(placed(part, &mut attempt, &limits, start.as_deref()));
+        }
+    }
+    found.iter_mut().for_each(|curve| curve.complete = complete);
+    sort(&mut found, start.as_deref());
+    Ok(found)
+}
+
+fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
+    let rank = robot.task_rank();
+    let needed = match target {
+        Target::Position(_) => rank.position,
+        _ => rank.pose,
+    };
+    if robot.dof() == needed + 1 {
+        return Ok(());
+    }
+    Err(Error::Contradiction {
+        problem: format!(
+            "self_motion needs one joint more than the target: robot '{}' has {} joints, and this target takes {needed}",
+            robot.name(),
+            robot.dof()
+        ),
+    })
+}
+
+/// The curves through these configurations.
+fn through(
+    seeds: &[Point],
+    attempt: &mut Attempt<'_, '_>,
+    limits: &WrappedLimits<'_>,
+    spacing: f64,
+) -> Vec<TracedCurve> {
+    let mut curves: Vec<TracedCurve> = Vec::new();
+    for seed in seeds {
+        if !attempt.monitor.keep_going() {
+            break;
+        }
+        if !curves.iter().any(|curve| curve.passes(limits, seed, ON_CURVE, spacing))
+            && let Some(curve) = traced(attempt.problem, limits, seed, spacing, attempt.monitor)
+        {
+            attempt.budget.evaluations += curve.evaluations;
+            curves.push(curve);
+        }
+    }
+    curves
+}
+
+/// The curves through solutions from random starts, until [`PATIENCE`] of them in a row are on known ones.
+fn searched(attempt: &mut Attempt<'_, '_>, limits: &WrappedLimits<'_>, spacing: f64) -> Vec<TracedCurve> {
+    let mut curves: Vec<TracedCurve> = Vec::new();
+    let mut x0 = attempt.first_start(None);
+    let mut known = 0;
+    while known < PATIENCE && !attempt.budget.is_spent() && attempt.monitor.keep_going() {
+        let solution = attempt.solve_from(&x0);
+        if solution.status != Status::Solved {
+            break;
+        }
+        let is_known = curves.iter().any(|curve| curve.passes(limits, &solution.q, ON_CURVE, spacing));
+        known = if is_known { known + 1 } else { 0 };
+        if !is_known {
+            match traced(attempt.problem, limits, &solution.q, spacing, attempt.monitor) {
+                Some(curve) => curves.push(curve),
+                None => known += 1,
+            }
+        }
+        attempt.next_start(&mut x0);
+    }
+    curves
+}
+
+/// Brings the points of a curve to the target.
+fn make_exact(curve: &mut TracedCurve, attempt: &mut Attempt<'_, '_>) {
+    let descent = LevenbergMarquardt::default();
+    let anywhere = Bounds::from_ranges(
+        curve.points.first().map_or(0..0, |point| 0..point.q.len()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)),
+    );
+    for point in &mut curve.points {
+        point.q = attempt.descend_beyond(&descent, point.q.clone(), EXACT, &anywhere);
+    }
+}
+
+/// By the distance from `start`, or by length.
+fn sort(curves: &mut [SelfMotion], start: Option<&[f64]>) {
+    match start {
+        Some(start) => {
+            let nearest = |curve: &SelfMotion| curve.iter().map(|q| distance(q, start)).fold(f64::INFINITY, f64::min);
+            curves.sort_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+        }
+        None => curves.sort_by(|a, b| b.length().total_cmp(&a.length())),
+    }
+}

@@ -1,0 +1,130 @@
+//! Parts of curves as configurations of the arm: at the right whole turns, at the target and at the limits that cut them.
+
+use std::f64::consts::TAU;
+
+use super::curve::SelfMotion;
+use super::cut::Part;
+use super::wrapped_limits::WrappedLimits;
+use crate::ik::attempt::Attempt;
+use crate::math::vector::norm;
+use crate::objective::{Bounds, Point};
+use crate::solver::LevenbergMarquardt;
+
+/// Every point is at least as near to the target as twice this (m, rad).
+pub(super) const EXACT: f64 = 1e-9;
+
+/// The curve of a part, at the whole turns that bring it within the limits; two or more where it takes several turns. A point that
+/// does not reach the target from within the limits is left out.
+pub(super) fn placed(
+    part: Part,
+    attempt: &mut Attempt<'_, '_>,
+    limits: &WrappedLimits<'_>,
+    start: Option<&[f64]>,
+) -> Vec<SelfMotion> {
+    let bounds = attempt.context.bounds();
+    let Part { mut points, closed, cut } = part;
+    follow(&mut points, limits);
+    let anchor = start.map_or(0, |start| nearest_to(&points, start, limits));
+    let Some(winding) = fitted(&mut points, anchor, closed, bounds, limits) else {
+        // A joint of several turns winds out of its limits.
+        let half = points.len() / 2;
+        if half < 2 {
+            return Vec::new();
+        }
+        let first = Part { points: points[..=half].to_vec(), closed: false, cut: [cut[0], false] };
+        let second = Part { points: points[half..].to_vec(), closed: false, cut: [false, cut[1]] };
+        return [first, second].into_iter().flat_map(|part| placed(part, attempt, limits, start)).collect();
+    };
+    let mut values = Vec::with_capacity(points.len() * limits.joints());
+    let (mut first, mut last) = (None, None);
+    let end = points.len() - 1;
+    for (k, point) in points.into_iter().enumerate() {
+        let is_cut = k == 0 && cut[0] || k == end && cut[1];
+        if let Some(q) = settled(point, is_cut, attempt) {
+            values.extend_from_slice(&q);
+            first.get_or_insert_with(|| q.clone());
+            last = Some(q);
+        }
+    }
+    let at_limit = |q: &Option<Point>| q.as_ref().and_then(|q| nearest_limit(q, bounds));
+    let is_closed = closed && !winding;
+    vec![SelfMotion {
+        joints: limits.joints(),
+        closed: is_closed,
+        lower_cut: if cut[0] { at_limit(&first) } else { None },
+        upper_cut: if cut[1] { at_limit(&last) } else { None },
+        complete: false,
+        values,
+    }]
+    .into_iter()
+    .filter(|curve| !curve.values.is_empty())
+    .collect()
+}
+
+/// The configuration near `q` that reaches the target from within the limits; where they cut the curve, with the joint nearest to a limit
+/// at it.
+fn settled(mut q: Point, is_cut: bool, attempt: &mut Attempt<'_, '_>) -> Option<Point> {
+    let mut bounds = attempt.context.bounds().clone();
+    if is_cut && let Some(joint) = nearest_limit(&q, &bounds) {
+        let (lower, upper) = bounds.parts_mut();
+        let limit = if q[joint] - lower[joint] < upper[joint] - q[joint] { lower[joint] } else { upper[joint] };
+        (lower[joint], upper[joint]) = (limit, limit);
+    }
+    let before = q.clone();
+    bounds.clip(&mut q);
+    if is_cut || q != before {
+        q = attempt.descend_beyond(&LevenbergMarquardt::default(), q, EXACT, &bounds);
+    }
+    let error = attempt.problem.assess(&q).error;
+    let missed = error.position.unwrap_or(0.0).max(error.rotation.unwrap_or(0.0));
+    (missed <= 4.0 * EXACT * EXACT).then_some(q)
+}
+
+/// Removes jumps by whole turns.
+fn follow(points: &mut [Point], limits: &WrappedLimits<'_>) {
+    for k in 1..points.len() {
+        let way = limits.apart(&points[k], &points[k - 1]);
+        for (j, way) in way.iter().enumerate() {
+            points[k][j] = points[k - 1][j] + way;
+        }
+    }
+}
+
+/// The index of the point nearest to `start`, whole turns aside.
+fn nearest_to(points: &[Point], start: &[f64], limits: &WrappedLimits<'_>) -> usize {
+    let away = |i: &usize| norm(&limits.apart(&points[*i], start));
+    (0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
+}
+
+/// Shifts the points by whole turns within the limits, point `anchor` near the middle. Returns whether a joint with limits ends another turn away than it began; None
+/// where the points do not fit.
+fn fitted(
+    points: &mut [Point],
+    anchor: usize,
+    closed: bool,
+    bounds: &Bounds,
+    limits: &WrappedLimits<'_>,
+) -> Option<bool> {
+    const ROUNDING: f64 = 1e-6;
+    let joints = limits.joints();
+    let mut winding = false;
+    for j in 0..joints {
+        let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
+        let range =
+            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q[j]), high.max(q[j])]);
+        let shift = limits.near_middle(j, points[anchor][j]) - points[anchor][j];
+        let fits = |shift: f64| lower - ROUNDING <= range[0] + shift && range[1] + shift <= upper + ROUNDING;
+        let turns = if limits.repeats(j) { [0.0, TAU, -TAU] } else { [0.0; 3] };
+        let shift = turns.into_iter().map(|turn| shift + turn).find(|shift| fits(*shift))?;
+        points.iter_mut().for_each(|q| q[j] += shift);
+        let back = points[0][j] - points[points.len() - 1][j];
+        winding |= closed && lower.is_finite() && upper.is_finite() && back.abs() > 1.0;
+    }
+    Some(winding)
+}
+
+/// The joint nearest to one of its limits.
+fn nearest_limit(q: &[f64], bounds: &Bounds) -> Option<usize> {
+    let room = |j: &usize| (q[*j] - bounds.lower()[*j]).min(bounds.upper()[*j] - q[*j]);
+    (0..q.len()).min_by(|a, b| room(a).total_cmp(&room(b)))
+}

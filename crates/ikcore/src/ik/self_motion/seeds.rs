@@ -1,0 +1,32 @@
+//! Configurations on the curves of a self-motion.
+
+use crate::ik::attempt::Attempt;
+use crate::objective::Point;
+use crate::robot::{JointKind, Robot};
+use crate::task::Target;
+
+/// Configurations, and whether each curve passes through one of them.
+pub(super) struct Seeds {
+    pub seeds: Vec<Point>,
+    pub complete: bool,
+}
+
+/// Configurations of every branch at `count` values of the parameter, limits aside; None without a closed form.
+pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count: usize) -> Option<Seeds> {
+    let Target::Pose(pose) = attempt.problem.target() else { return None };
+    let family = robot.family(pose)?;
+    let bounds = attempt.context.bounds();
+    // Curves are traced beyond the limits of joints that turn.
+    let slides = |j: &usize| robot.joints()[*j].kind == JointKind::Prismatic;
+    let limits = |values: &[f64], open: f64| -> Vec<f64> {
+        (0..robot.dof()).map(|j| if slides(&j) { values[j] } else { open }).collect()
+    };
+    let (lower, upper) = (limits(bounds.lower(), f64::NEG_INFINITY), limits(bounds.upper(), f64::INFINITY));
+    let mut seeds = Vec::new();
+    for value in family.arcs(&lower, &upper).spread(count) {
+        let branches = family.branches_at(value);
+        attempt.budget.evaluations += branches.evaluations;
+        seeds.extend(branches.iter().map(|(q, _)| Point::from_slice(q)));
+    }
+    Some(Seeds { seeds, complete: family.is_by_arm_angle() })
+}

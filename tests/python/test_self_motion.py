@@ -1,0 +1,84 @@
+"""`self_motion`: curves of configurations that keep the tip at a target."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+PANDA = bik.Robot.named("panda")
+Q = np.array([0.3, 0.2, -0.4, -1.7, 0.2, 1.9, 0.5])
+POSE = PANDA.fk(Q)
+
+
+def test_every_configuration_keeps_the_pose_within_limits_and_spacing() -> None:
+    curves = bik.self_motion(PANDA, POSE, start=Q, spacing=0.1)
+    for curve in curves:
+        np.testing.assert_allclose(PANDA.fk(curve.q), np.broadcast_to(POSE, (len(curve), 4, 4)), rtol=0, atol=1e-8)
+        assert ((PANDA.lower <= curve.q) & (curve.q <= PANDA.upper)).all()
+        assert (np.linalg.norm(np.diff(curve.q, axis=0), axis=1) <= 0.1).all()
+        assert curve.length == pytest.approx(np.linalg.norm(np.diff(curve.q, axis=0), axis=1).sum())
+    # The nearest curve comes first and passes the start.
+    assert np.linalg.norm(curves[0].q - Q, axis=1).min() <= 0.1
+
+
+def test_limits_cut_curves_at_the_joint_they_name() -> None:
+    cut = [curve for curve in bik.self_motion(PANDA, POSE) if not curve.closed]
+    assert cut
+    for curve in cut:
+        for q, name in ((curve.q[0], curve.lower_cut), (curve.q[-1], curve.upper_cut)):
+            j = PANDA.joint_names.index(name)
+            assert min(q[j] - PANDA.lower[j], PANDA.upper[j] - q[j]) < 1e-6
+        assert repr(curve).startswith(f"<SelfMotion: {len(curve)} configurations, from a limit of")
+
+
+def test_without_limits_curves_are_closed() -> None:
+    wide = bik.Limits(lower=-np.inf, upper=np.inf)
+    for curve in bik.self_motion(PANDA, POSE, limits=wide, spacing=0.1):
+        assert curve.closed
+        assert (curve.lower_cut, curve.upper_cut) == (None, None)
+        gap = (curve.q[0] - curve.q[-1] + np.pi) % (2 * np.pi) - np.pi
+        assert np.linalg.norm(gap) <= 0.1
+
+
+def test_the_arm_angle_proves_that_no_curve_is_missing() -> None:
+    iiwa = bik.Robot.named("iiwa14")
+    curves = bik.self_motion(iiwa, iiwa.fk(np.array([0.1, 0.6, -0.3, -1.2, 0.4, 0.9, -0.2])))
+    assert curves
+    assert all(curve.complete for curve in curves)
+    assert not any(curve.complete for curve in bik.self_motion(PANDA, POSE))
+
+
+def test_four_joints_and_a_position() -> None:
+    table = {"a": [0.0, 0.3, 0.3, 0.2], "alpha": [np.pi / 2, 0.0, 0.0, 0.0], "d": [0.2, 0.0, 0.0, 0.0]}
+    arm = bik.Robot.from_dh(**table, convention="standard")
+    q = np.array([0.4, 0.7, -0.9, 0.6])
+    position = arm.fk(q)[:3, 3]
+    curves = bik.self_motion(arm, position, start=q)
+    np.testing.assert_allclose(arm.fk(curves[0].q)[:, :3, 3], np.broadcast_to(position, (len(curves[0]), 3)), atol=1e-8)
+    assert np.linalg.norm(curves[0].q - q, axis=1).min() <= 0.05
+
+
+def test_a_target_out_of_reach_has_no_curve() -> None:
+    assert bik.self_motion(PANDA, bik.pose([2.0, 0.0, 0.5])) == []
+
+
+def test_curves_are_pickled() -> None:
+    curve = bik.self_motion(PANDA, POSE)[0]
+    copy = pickle.loads(pickle.dumps(curve))
+    np.testing.assert_array_equal(copy.q, curve.q)
+    assert (copy.closed, copy.lower_cut, copy.upper_cut, repr(copy)) == (
+        curve.closed,
+        curve.lower_cut,
+        curve.upper_cut,
+        repr(curve),
+    )
+
+
+def test_arms_without_one_joint_more_are_refused() -> None:
+    says = r"^self_motion needs one joint more than the target: robot 'ur10' has 6 joints, and this target takes 6$"
+    with pytest.raises(bik.InvalidInputError, match=says):
+        bik.self_motion(bik.Robot.named("ur10"), POSE)
+    with pytest.raises(bik.InvalidInputError, match=r"^spacing must be from 0.001 to 0.5, got 2$"):
+        bik.self_motion(PANDA, POSE, spacing=2.0)
