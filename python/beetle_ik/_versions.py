@@ -11,6 +11,7 @@ EXTRAS = {
     "interop": ["pandas"],
     "plot": ["matplotlib"],
     "report": ["jinja2"],
+    "robots": ["robot_descriptions", "xacro"],
     "sim": ["mujoco"],
     "vision": ["scikit-image"],
 }

@@ -34,7 +34,7 @@ def test_versions_know_every_extra() -> None:
     for extra, packages in EXTRAS.items():
         ours = {name.partition(">")[0] for name in declared[extra] if not name.startswith("beetle-ik")}
         assert set(packages) == ours
-    assert set(declared) - set(EXTRAS) == {"test", "oracles", "docs"}
+    assert set(declared) - set(EXTRAS) == {"test", "oracles", "docs", "zoo"}
 
 
 def test_the_doctor_solves_a_target() -> None:
