@@ -334,12 +334,19 @@ fn plans_among_obstacles_minimise_their_objective() {
     for plan in [&time, &joints, &tip] {
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
     }
-    assert!(joints.trajectory != time.trajectory || tip.trajectory != time.trajectory);
     let travel = |plan: &Plan| -> f64 {
         let all: Vec<Vec<f64>> = states(plan, 2000).collect();
         all.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1])).map(|(a, b)| (b - a).abs()).sum()
     };
-    assert!(joints.cost <= travel(&time) + 1e-3, "{} {}", joints.cost, travel(&time));
+    let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap();
+    let tip_travel = |plan: &Plan| -> f64 {
+        let tips: Vec<[f64; 3]> = states(plan, 2000).map(|q| robot.tip_position(&q)).collect();
+        tips.windows(2).map(|pair| (0..3).map(|k| (pair[1][k] - pair[0][k]).powi(2)).sum::<f64>().sqrt()).sum()
+    };
+    // One motion may be the best for all three; tests/python/test_obstacles.py has scenes where they differ.
+    assert!(time.cost <= joints.trajectory.duration() + 1e-9 && time.cost <= tip.trajectory.duration() + 1e-9);
+    assert!(joints.cost <= travel(&time) + 1e-3 && joints.cost <= travel(&tip) + 1e-3, "{}", joints.cost);
+    assert!(tip.cost <= tip_travel(&time) + 1e-3 && tip.cost <= tip_travel(&joints) + 1e-3, "{}", tip.cost);
 }
 
 #[test]
