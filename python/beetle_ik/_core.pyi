@@ -1423,12 +1423,11 @@ def solve(
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
         prefer: which solution to return.
             "any": the first one found.
-            "nearest": the one with the smallest |q - start| (rad, m), by whole turns as near as they can be. With a closed form, of all
-            branches, and of a redundant arm along their curves; else each solution found is moved along its self-motion
-            towards the start, and the search ends when 24 in a row are no nearer.
+            "nearest": the one with the smallest |q - start| (rad, m). Each solution found is moved along its self-motion
+            and by whole turns towards the start; the search ends when 24 in a row are no nearer.
             "best": the best one for the goals. Each solution found is optimised along its self-motion; the search ends
             when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
-            traced once instead, including the parts beyond joint limits; with a closed form, without a search.
+            traced once instead, including the parts beyond joint limits.
         limits: position limits; None: the robot's.
         stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
         seed: seed of the random draws; the same seed gives the same bits.
@@ -1574,10 +1573,10 @@ class SelfMotion:
         """Whether the last configuration is followed by the first, modulo whole turns of joints without limits."""
     @property
     def lower_cut(self) -> str | None:
-        """Name of the joint whose limit ends the curve at its first configuration; None if it is closed."""
+        """Name of the joint whose limit ends the curve at its first configuration; None if it is closed, or followed no farther."""
     @property
     def upper_cut(self) -> str | None:
-        """Name of the joint whose limit ends the curve at its last configuration; None if it is closed."""
+        """Name of the joint whose limit ends the curve at its last configuration; None if it is closed, or followed no farther."""
     @property
     def complete(self) -> bool:
         """Whether the closed form proves that the call returned every curve: true for arms whose parameter is the arm angle."""
