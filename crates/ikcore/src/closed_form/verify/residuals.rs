@@ -2,7 +2,7 @@
 
 use crate::closed_form::axis_chain::AxisChain;
 use crate::closed_form::branches::{BranchError, Candidates};
-use crate::closed_form::vector::{Vector, cross, dot, perpendicular};
+use crate::closed_form::vector::{Vector, cross, perpendicular};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::arithmetic::Baseline;
@@ -138,9 +138,13 @@ fn turned<A: Arithmetic>(frame: &Frame, v: &[Lanes; 3], origin: &[f64; 3]) -> [L
     out
 }
 
-/// Largest entry by which position and axes of two frames differ.
+/// Largest entry by which position and axes of two frames differ; infinite where `a` is not finite.
 pub fn difference(a: &Frame, b: &Frame) -> f64 {
     let entry = |p: &[f64; 3], q: &[f64; 3]| (0..3).fold(0.0, |most: f64, k| most.max((p[k] - q[k]).abs()));
-    debug_assert!(dot(&a.axes[0], &a.axes[0]) > 0.0);
+    let sum: f64 = a.axes.as_flattened().iter().chain(&a.origin).sum();
+    if !sum.is_finite() {
+        // NaN compares as not larger: it must not pass.
+        return f64::INFINITY;
+    }
     (0..3).fold(entry(&a.origin, &b.origin), |most, k| most.max(entry(&a.axes[k], &b.axes[k])))
 }
