@@ -126,9 +126,9 @@ def plot_over_noise(lines: list[list[str]], path: Path) -> None:
             )
     for axes, label in zip(panels, ("settling time [s]", "acceleration at rest, rms [rad/s²]"), strict=True):
         axes.set(xscale="log", ylabel=label, xlabel="standard deviation of the noise [m, rad] (leftmost: none)")
+        axes.set(ylim=(0.0, None))
         axes.grid(alpha=0.3)
-    panels[0].set(ylim=(0.0, None))
     panels[1].set_yscale("symlog", linthresh=1e-2)
-    panels[1].legend(fontsize="x-small")
+    panels[0].legend(fontsize="x-small", loc="upper left")
     figure.savefig(path, dpi=150)
     plt.close(figure)

@@ -17,7 +17,6 @@ DT = 0.01
 LIMITS = {"velocity": 1.0, "acceleration": 5.0, "jerk": 50.0}
 
 
-@pytest.mark.skipif(not hasattr(bik.Tracker, "stop"), reason="this version's Tracker cannot be told to stop")
 def test_no_tick_is_beyond_a_limit_and_every_stream_stops() -> None:
     outcomes = run(ticks=20_000, seed=1)
     assert {name: outcome.complaints for name, outcome in outcomes.items()} == {name: [] for name in TARGETS}
