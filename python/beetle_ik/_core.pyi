@@ -2775,7 +2775,7 @@ class Plan:
         """Largest distance of the tip from the path (m), at its points and between them; NaN for a point-to-point plan."""
     @property
     def redundancy(self) -> _Array:
-        """Absolute orientations of the redundant links of a planar arm along the path (points, links, 3): value, lowest and
+        """Absolute orientations of the redundant links of a planar arm along the path (points, links, 3), as value, lowest and
         highest possible (rad), from the tip's link down; (0, 0, 3) without redundancy.
         """
     @property

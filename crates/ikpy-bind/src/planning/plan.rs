@@ -29,7 +29,7 @@ pub struct PyPlan {
     /// plan has violations.
     #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
-    /// Absolute orientations of the redundant links of a planar arm along the path (points, links, 3): value, lowest and
+    /// Absolute orientations of the redundant links of a planar arm along the path (points, links, 3), as value, lowest and
     /// highest possible (rad), from the tip's link down; (0, 0, 3) without redundancy.
     #[pyo3(get)]
     redundancy: Py<PyArrayDyn<f64>>,
