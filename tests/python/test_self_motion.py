@@ -23,6 +23,14 @@ def test_every_configuration_keeps_the_pose_within_limits_and_spacing() -> None:
     assert np.linalg.norm(curves[0].q - Q, axis=1).min() <= 0.1
 
 
+def test_the_finest_spacing_keeps_the_pose_too() -> None:
+    curves = bik.self_motion(PANDA, POSE, spacing=1e-3)
+    assert sum(map(len, curves)) > 10_000
+    for curve in curves:
+        np.testing.assert_allclose(PANDA.fk(curve.q), np.broadcast_to(POSE, (len(curve), 4, 4)), rtol=0, atol=1e-8)
+        assert (np.linalg.norm(np.diff(curve.q, axis=0), axis=1) <= 1e-3).all()
+
+
 def test_limits_cut_curves_at_the_joint_they_name() -> None:
     cut = [curve for curve in bik.self_motion(PANDA, POSE) if not curve.closed]
     assert cut

@@ -7,11 +7,14 @@ use super::solution::Solution;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, run};
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, run};
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
 pub(super) const APPROACHES: usize = 8;
+
+/// Most evaluations of a descent beyond the tolerances.
+const REFINEMENT: usize = 200;
 
 /// The state of solving one target.
 pub(super) struct Attempt<'m, 'p> {
@@ -104,7 +107,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// Descends once from `q` within `bounds`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider; returns the
-    /// best point.
+    /// best point. It refines a solution already found, so it may go on where the budget is spent.
     pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64, bounds: &Bounds) -> Point {
         let asked = *self.problem.criterion();
         let Tolerance { position, rotation } = asked.tolerance;
@@ -112,7 +115,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         let (robot, target) = (self.context.robot(), self.problem.target());
         let mut problem = Problem::new(robot, target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
         let objective: &mut dyn Differentiable = &mut problem;
-        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        let stop = Stop { max_evaluations: REFINEMENT, ..Stop::default() };
+        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
         run(descent, &mut evaluator, &q);
         self.budget.add(&evaluator);
         Point::from_slice(&evaluator.best().x)

@@ -30,6 +30,9 @@ const PATIENCE: usize = 40;
 /// Smallest and largest spacing (rad, m).
 const SPACINGS: [f64; 2] = [1e-3, 0.5];
 
+/// Points brought to the target between two looks at the monitor.
+const POINTS_BETWEEN_LOOKS: usize = 64;
+
 /// How to follow a self-motion.
 #[derive(Debug, Clone)]
 pub struct SelfMotionOptions {
@@ -165,7 +168,10 @@ fn make_exact(curve: &mut TracedCurve, attempt: &mut Attempt<'_, '_>) {
     let anywhere = Bounds::from_ranges(
         curve.points.first().map_or(0..0, |point| 0..point.q.len()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)),
     );
-    for point in &mut curve.points {
+    for (k, point) in curve.points.iter_mut().enumerate() {
+        if k % POINTS_BETWEEN_LOOKS == 0 && !attempt.monitor.keep_going() {
+            break;
+        }
         point.q = attempt.descend_beyond(&descent, point.q.clone(), EXACT, &anywhere);
     }
 }
