@@ -282,6 +282,9 @@ class Robot:
         """
 
     @property
+    def bodies(self) -> list[Body]:
+        """x"""
+    @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
         """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
         segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
@@ -2478,6 +2481,20 @@ class Grid(Obstacle):
     @property
     def occupied(self) -> NDArray[np.bool_]:
         """Whether each voxel is occupied (nx, ny, nz)."""
+
+@final
+class Body:
+    """A body of a robot: a convex shape fixed to a link, from `Robot.bodies`."""
+
+    @property
+    def link(self) -> str:
+        """The link that carries it."""
+    @property
+    def shape(self) -> Obstacle:
+        """x"""
+    @property
+    def source(self) -> str:
+        """x"""
 
 @final
 class Nearest:
