@@ -12,13 +12,14 @@ const SECANTS: usize = 16;
 /// Values within this fraction of those at the ends count as zero.
 const ZERO: f64 = 1e-12;
 
-/// The largest x from `least` to `most` at which the increasing `function` is not positive, to rounding; `None` if it is
-/// positive at `least`.
-pub(super) fn largest_not_positive([least, most]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<f64> {
-    let mut at_high = function(most);
-    if at_high <= 0.0 {
-        return Some(most);
-    }
+/// The largest x from `least` on at which the increasing `function` is not positive, to rounding; `None` if it is positive
+/// at `least`. At `most` it has the positive value `at_most`.
+pub(super) fn largest_not_positive(
+    least: f64,
+    [most, at_most]: [f64; 2],
+    function: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    let mut at_high = at_most;
     let mut at_low = function(least);
     if !(at_low <= 0.0) {
         return None;
@@ -58,13 +59,15 @@ mod tests {
 
     #[test]
     fn zeros_are_approached_from_below() {
+        let largest = |function: fn(f64, f64) -> f64, zero: f64| {
+            largest_not_positive(0.0, [1.0, function(1.0, zero)], |x| function(x, zero))
+        };
         for zero in [0.1_f64, 0.5, 0.999] {
-            let found = largest_not_positive([0.0, 1.0], |x| x.powi(3) - zero.powi(3)).unwrap();
+            let found = largest(|x, zero| x.powi(3) - zero.powi(3), zero).unwrap();
             assert!(found <= zero && zero - found < 1e-10, "{found} {zero}");
         }
-        let jump = largest_not_positive([0.0, 1.0], |x| if x < 0.25 { -1.0 } else { 1e9 }).unwrap();
+        let jump = largest(|x, zero| if x < zero { -1.0 } else { 1e9 }, 0.25).unwrap();
         assert!(jump < 0.25 && jump > 0.25 - 1e-9, "{jump}");
-        assert_eq!(largest_not_positive([0.0, 1.0], |x| x - 2.0), Some(1.0));
-        assert_eq!(largest_not_positive([0.0, 1.0], |x| x + 2.0), None);
+        assert_eq!(largest(|x, zero| x - zero, -2.0), None);
     }
 }
