@@ -9,6 +9,9 @@ const BISECT_EVERY: usize = 4;
 /// A function that needs more iterations than this jumps at its zero; from then on all bisect.
 const SECANTS: usize = 16;
 
+/// A bracket of this fraction of its first width is narrow enough.
+const NARROW: f64 = 1e-11;
+
 /// Values within this fraction of those at the ends count as zero.
 const ZERO: f64 = 1e-12;
 
@@ -25,20 +28,26 @@ pub(super) fn largest_not_positive(
         return None;
     }
     let (mut low, mut high) = (least, most);
-    let zero = -ZERO * at_high.max(-at_low);
+    let (zero, narrow) = (-ZERO * at_high.max(-at_low), NARROW * (most - least));
+    if at_low >= zero {
+        return Some(low);
+    }
     let mut lower_side = None;
     for i in 0..ITERATIONS {
-        let secant = (low * at_high - high * at_low) / (at_high - at_low);
+        // From an end that is zero but for rounding, a secant would not move on: it then aims a little below.
+        let aim = if at_high <= -zero { 0.5 * zero } else { 0.0 };
+        let [above, below] = [at_high - aim, at_low - aim];
+        let secant = (low * above - high * below) / (above - below);
         let bisect = i > SECANTS || i % BISECT_EVERY == BISECT_EVERY - 1 || !(low < secant && secant < high);
         let middle = if bisect { 0.5 * (low + high) } else { secant };
-        if middle <= low || middle >= high {
+        if middle <= low || middle >= high || high - low <= narrow {
             break;
         }
         let there = function(middle);
-        let below = there <= 0.0;
+        let is_below = there <= 0.0;
         // An end that stays twice counts half (Illinois).
-        let again = lower_side == Some(below);
-        if below {
+        let again = lower_side == Some(is_below);
+        if is_below {
             (low, at_low) = (middle, there);
             at_high *= if again { 0.5 } else { 1.0 };
             if there >= zero {
@@ -48,7 +57,7 @@ pub(super) fn largest_not_positive(
             (high, at_high) = (middle, there);
             at_low *= if again { 0.5 } else { 1.0 };
         }
-        lower_side = Some(below);
+        lower_side = Some(is_below);
     }
     Some(low)
 }
