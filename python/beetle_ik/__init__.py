@@ -25,6 +25,7 @@ from ._core import (
     BeeColony,
     BeetleIkError,
     BeetleSwarm,
+    Body,
     BroydenBAS,
     CircleSwarm,
     ControlSession,
@@ -77,6 +78,7 @@ from ._core import (
     track,
     track_model_free,
 )
+from ._scene import Scene
 from ._versions import show_versions
 
 # Silent unless the application configures logging.
@@ -93,6 +95,7 @@ __all__ = [
     "BeeColony",
     "BeetleIkError",
     "BeetleSwarm",
+    "Body",
     "BroydenBAS",
     "CircleSwarm",
     "ControlSession",
@@ -114,6 +117,7 @@ __all__ = [
     "Plan",
     "PlanarPosture",
     "Robot",
+    "Scene",
     "SelfMotion",
     "Sinusoid",
     "Solution",

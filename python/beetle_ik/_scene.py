@@ -1,68 +1,126 @@
-"""Reads obstacles from JSON.
+"""Obstacles kept together: made once, saved, loaded, given to every call."""
 
-A scene is a list of shapes, or an object with the list as "obstacles":
+from __future__ import annotations
 
-    {"obstacles": [
-        {"type": "sphere", "center": [0.5, 0.0, 0.4], "radius": 0.1},
-        {"type": "box", "center": [0.5, 0.0, 0.1], "size": [0.4, 0.6, 0.2]}
-    ]}
-
-The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in metres and radians.
-"""
-
-import inspect
-import json
 import os
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
-from . import obstacles
-from ._core import BeetleIkError, InvalidInputError, Obstacle
-from ._files import path_of
+from ._core import InvalidInputError, Obstacle
 
-_SHAPES: dict[str, type[Obstacle]] = {
-    "sphere": obstacles.Sphere,
-    "box": obstacles.Box,
-    "capsule": obstacles.Capsule,
-    "cylinder": obstacles.Cylinder,
-    "half_space": obstacles.HalfSpace,
-    "ellipsoid": obstacles.Ellipsoid,
-    "ellipse": obstacles.Ellipse,
-    "convex_mesh": obstacles.ConvexMesh,
-    "mesh": obstacles.Mesh,
-    "point_cloud": obstacles.PointCloud,
-    "grid": obstacles.Grid,
-}
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+_WRITTEN_OUT = 8  # a longer scene is represented by its length
 
 
-def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
-    """Reads the obstacles of a scene.
+class Scene(Sequence[Obstacle]):
+    """Obstacles in the frame of the robot's base, in order. Every `obstacles=` takes a scene or a list.
+
+    A scene does not change; `scene + [obstacle]` and `scene[1:]` are new scenes. Scenes compare and hash by content.
+
+    Args:
+        obstacles: obstacles of `bik.obstacles`.
 
     Raises:
-        InvalidInputError: the file is not a scene. Names the file and the obstacle.
+        InvalidInputError: something else is among them. Names its place.
     """
-    where = os.fspath(file)
-    try:
-        scene = json.loads(path_of(file).read_text(encoding="utf-8"))
-    except UnicodeDecodeError as error:
-        raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise InvalidInputError(f"{where}: not JSON: {error}") from error
-    shapes = scene.get("obstacles") if isinstance(scene, dict) else scene
-    if not isinstance(shapes, list):
-        raise InvalidInputError(f'{where}: expected a list of shapes, or an object with such a list as "obstacles"')
-    return [_shape(f"{where}: obstacle {i}", shape) for i, shape in enumerate(shapes)]
+
+    def __init__(self, obstacles: Iterable[Obstacle] = ()) -> None:
+        if isinstance(obstacles, Obstacle):
+            raise InvalidInputError(f"obstacles must be a list, got a single one: [{obstacles!r:.60}]")
+        try:
+            given = tuple(obstacles)
+        except TypeError:
+            raise InvalidInputError(f"obstacles must be a list of bik.obstacles, got {obstacles!r:.60}") from None
+        for i, obstacle in enumerate(given):
+            if not isinstance(obstacle, Obstacle):
+                made = "must be made by bik.obstacles, such as Sphere or Box"
+                raise InvalidInputError(f"obstacle {i} {made}, got {obstacle!r:.60}")
+        self._obstacles = given
+
+    @classmethod
+    def load(cls, file: str | os.PathLike[str]) -> Scene:
+        """Reads a scene from a JSON file.
+
+        The file is what `save` writes, or simpler: a list of shapes, each with its "type" (the name of the class in
+        lower case, with underscores) and the arguments of the class (m, rad).
+
+        Raises:
+            InvalidInputError: the file is not a scene, or one of a later version. Names the file and the obstacle.
+        """
+        from ._scene_json import read_obstacles
+
+        return cls(read_obstacles(file))
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the scene to a JSON file, from which `load` returns an equal one."""
+        from ._scene_json import write_obstacles
+
+        write_obstacles(file, self._obstacles)
+
+    @classmethod
+    def from_moveit(cls, file: str | os.PathLike[str], *, frame: ArrayLike | None = None) -> Scene:
+        """Reads the collision objects of a MoveIt planning scene in YAML (`moveit_msgs/PlanningScene`).
+
+        Boxes, spheres, cylinders and meshes, in the order of the file. What has no counterpart here (cones, planes,
+        octomaps, objects attached to the robot) is refused, not left out. Needs PyYAML.
+
+        Args:
+            file: the YAML file, as `ros2 topic echo` or MotionBenchMaker write it.
+            frame: pose (4, 4) of the frame of the objects in the frame of the robot's base; None: it is that frame.
+
+        Raises:
+            InvalidInputError: the file is not a planning scene, has objects in several frames, or one that cannot be
+                read. Names the file and the object.
+        """
+        from ._moveit_scene import read_planning_scene
+
+        return cls(read_planning_scene(file, frame))
+
+    @classmethod
+    def from_trimesh(cls, geometry: Any) -> Scene:
+        """Returns the obstacles of a `trimesh.Trimesh` or `trimesh.Scene`, in metres.
+
+        Primitives (boxes, spheres, cylinders, capsules) become the exact shape, convex meshes a `ConvexMesh`,
+        all others a `Mesh`.
+
+        Raises:
+            InvalidInputError: neither of the two, a unit other than metres, or a geometry without faces.
+        """
+        from ._trimesh_scene import obstacles_of
+
+        return cls(obstacles_of(geometry))
+
+    @overload
+    def __getitem__(self, index: int) -> Obstacle: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Scene: ...
+
+    def __getitem__(self, index: int | slice) -> Obstacle | Scene:
+        return Scene(self._obstacles[index]) if isinstance(index, slice) else self._obstacles[index]
+
+    def __len__(self) -> int:
+        return len(self._obstacles)
+
+    def __iter__(self) -> Iterator[Obstacle]:
+        return iter(self._obstacles)
+
+    def __add__(self, others: Iterable[Obstacle]) -> Scene:
+        """Returns a scene with `others` after these."""
+        return Scene((*self._obstacles, *Scene(others)))
+
+    def __eq__(self, other: object) -> bool:
+        return self._obstacles == other._obstacles if isinstance(other, Scene) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._obstacles)
+
+    def __repr__(self) -> str:
+        if len(self) > _WRITTEN_OUT:
+            return f"<Scene: {len(self)} obstacles>"
+        return f"Scene([{', '.join(map(repr, self._obstacles))}])"
 
 
-def _shape(where: str, shape: Any) -> Obstacle:
-    types = ", ".join(_SHAPES)
-    if not isinstance(shape, dict) or "type" not in shape:
-        raise InvalidInputError(f'{where}: expected an object with a "type", one of {types}')
-    kind = _SHAPES.get(shape["type"]) if isinstance(shape["type"], str) else None
-    if kind is None:
-        raise InvalidInputError(f"{where}: unknown type {shape['type']!r:.60}; types: {types}")
-    arguments = {name: value for name, value in shape.items() if name != "type"}
-    try:
-        inspect.signature(kind).bind(**arguments)
-        return kind(**arguments)
-    except (TypeError, BeetleIkError) as error:
-        raise InvalidInputError(f"{where} ({shape['type']}): {error}") from error
+Scene.__module__ = "beetle_ik"

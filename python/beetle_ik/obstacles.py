@@ -6,8 +6,8 @@ A plan keeps all link capsules of the robot clear of the obstacles:
     crate = bik.obstacles.Box(center=(0.5, 0, 0.2), size=(0.2, 0.6, 0.4))
     plan = bik.plan_point_to_point(robot, start_q=here, end=there, obstacles=[crate])
 
-`clearance` is the smallest distance at one configuration or many; `nearest` also says which two bodies, where, along
-which normal, and how the distance changes with each joint.
+A `Scene` keeps obstacles together and saves them. `clearance` is the smallest distance at one configuration or many;
+`nearest` also says which two bodies, where, along which normal, and how the distance changes with each joint.
 """
 
 from ._core import (

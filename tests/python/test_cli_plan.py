@@ -2,33 +2,15 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
-from beetle_ik._scene import read_obstacles
 from beetle_ik.cli import app
 
 LIMITS = ["--velocity-limit", "1", "--acceleration-limit", "2"]
-SHAPES: list[dict[str, Any]] = [
-    {"type": "sphere", "center": [0.1, 0.2, 0.3], "radius": 0.5},
-    {"type": "box", "center": [0.1, 0.2, 0.3], "size": [1, 2, 3], "rotation": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]},
-    {"type": "capsule", "a": [0, 0, 0], "b": [1, 0, 0], "radius": 0.25},
-    {"type": "ellipsoid", "center": [0.1, 0.2, 0.3], "semi_axes": [1, 2, 3]},
-    {"type": "ellipse", "center": [0.1, 0.2], "semi_axes": [1, 2], "angle": 0.7},
-    {"type": "convex_mesh", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]},
-]
-OBSTACLES = [
-    bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),
-    bik.obstacles.Box([0.1, 0.2, 0.3], [1, 2, 3], rotation=[[0, -1, 0], [1, 0, 0], [0, 0, 1]]),
-    bik.obstacles.Capsule([0, 0, 0], [1, 0, 0], 0.25),
-    bik.obstacles.Ellipsoid([0.1, 0.2, 0.3], [1, 2, 3]),
-    bik.obstacles.Ellipse([0.1, 0.2], [1, 2], angle=0.7),
-    bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-]
 
 
 def plan(*arguments: str) -> Result:
@@ -38,33 +20,6 @@ def plan(*arguments: str) -> Result:
 @pytest.fixture
 def scene(tmp_path: Path) -> Path:
     return tmp_path / "scene.json"
-
-
-@pytest.mark.parametrize("whole", [SHAPES, {"obstacles": SHAPES}], ids=["a list", "an object"])
-def test_a_scene_holds_every_shape(scene: Path, whole: object) -> None:
-    scene.write_text(json.dumps(whole))
-    assert read_obstacles(scene) == OBSTACLES
-
-
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        ("{", "not JSON: "),
-        ("3", 'expected a list of shapes, or an object with such a list as "obstacles"'),
-        ('{"shapes": []}', 'expected a list of shapes, or an object with such a list as "obstacles"'),
-        ("[1]", 'obstacle 0: expected an object with a "type", one of sphere, box, capsule'),
-        ('[{"type": "cone"}]', "obstacle 0: unknown type 'cone'; types: sphere, box, capsule"),
-        ('[{"type": "sphere", "center": [0, 0, 0]}]', "obstacle 0 (sphere): missing a required argument: 'radius'"),
-        ('[{"type": "sphere", "center": [0, 0], "radius": 1}]', "obstacle 0 (sphere): center: expected shape (3,)"),
-        ('[{"type": "sphere", "center": [0, 0, 0], "radius": -1}]', "obstacle 0 (sphere): "),
-        ('[{"type": "box", "center": [0, 0, 0], "size": [1, 1, 1], "color": 1}]', "obstacle 0 (box): "),
-    ],
-)
-def test_what_is_no_scene_is_refused(scene: Path, text: str, problem: str) -> None:
-    scene.write_text(text)
-    with pytest.raises(bik.InvalidInputError) as caught:
-        read_obstacles(scene)
-    assert str(caught.value).startswith(f"{scene}: {problem}")
 
 
 def test_a_plan_goes_round_the_obstacles_of_a_scene(scene: Path) -> None:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from operator import attrgetter
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -105,6 +105,11 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.with_held": {"hold": {}},
     "Robot.with_srdf": {"path_or_xml": "<robot/>"},
     "Robot.with_tool": {"tool": np.eye(4)},
+    "Scene.": {".": bik.Scene()},
+    "Scene.from_moveit": {"file": "scene.yaml"},
+    "Scene.from_trimesh": {"geometry": SimpleNamespace(vertices=np.eye(3), faces=[[0, 1, 2]], is_watertight=False)},
+    "Scene.load": {"file": "scene.json"},
+    "Scene.save": {"file": "saved.json"},
     "Sinusoid": {"mean": 1.0, "amplitude": 0.1, "angular_frequency": 1.0},
     "TrackResult.": {".": TRACK},
     "Tracker": {"robot": ARM, **TICKS},
@@ -199,6 +204,7 @@ def needed(name: str) -> dict[str, Any]:
 CALLS = {name: call for prefix, module in MODULES.items() for name, call in public(prefix, module)}
 MADE_BY_THE_LIBRARY = [
     "BatchSolution",
+    "Body",
     "ControlSession",
     "Minimum",
     "ModelFreeResult",
@@ -233,6 +239,8 @@ def _with_one_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         monkeypatch.setitem(sys.modules, module.__name__, module)
     MOTION.to_csv("motion.csv")
     MOTION.to_npz("motion.npz")
+    bik.Scene().save("scene.json")
+    Path("scene.yaml").write_text("world: {}")
 
 
 def refusal(call: Callable[..., object], arguments: dict[str, Any]) -> str | None:

@@ -206,7 +206,8 @@ SHORT: dict[str, str] = {
     ),
     **dict.fromkeys(
         [
-            "Robot.from_mjcf", "Robot.from_description",
+            "Robot.from_mjcf", "Robot.from_description", "Scene", "Scene.load", "Scene.save", "Scene.from_moveit",
+            "Scene.from_trimesh",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
             "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
             "plot.track", "plot.trajectory",

@@ -46,6 +46,17 @@ Jerk = Annotated[
     str | None,
     typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint: j1,j2,...; default: none."),
 ]
+SceneFile = Annotated[
+    Path | None, typer.Option("--scene", help="Obstacles: a JSON file of shapes; the page on scenes has the format.")
+]
+Margin = Annotated[
+    float | None,
+    typer.Option("--margin", help="Distance in m to keep from obstacles and between links; default: 1 mm."),
+]
+LinkRadius = Annotated[
+    float | None,
+    typer.Option("--link-radius", help="Radius in m of a capsule along each link, which must not touch obstacles."),
+]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 
@@ -94,8 +105,15 @@ def make_solver(name: SolverName) -> "_Single":
     return _SOLVERS[name]
 
 
-def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:
-    """Loads the built-in robot or the one in the URDF file, whichever was given."""
+def load_robot(
+    name: str | None, urdf: Path | None, base: str | None, tip: str | None, link_radius: float | None = None
+) -> Robot:
+    """Loads the built-in robot or the one in the URDF file, whichever was given; with capsules of `link_radius`."""
+    robot = _load(name, urdf, base, tip)
+    return robot if link_radius is None else robot.with_capsules(radius=link_radius)
+
+
+def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:
     if urdf is not None:
         if name is not None:
             raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")

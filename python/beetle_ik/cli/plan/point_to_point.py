@@ -1,19 +1,20 @@
 """`beetle-ik plan point-to-point`: plans a motion between two positions."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from ... import TPBSO, InvalidInputError, plan_point_to_point, pose
-from ..._scene import read_obstacles
+from ... import TPBSO, InvalidInputError, Scene, plan_point_to_point, pose
 from ..options import (
     Acceleration,
     AsJson,
     BaseLink,
     Jerk,
+    LinkRadius,
+    Margin,
     RobotName,
+    SceneFile,
     Seed,
     TipLink,
     UrdfFile,
@@ -64,14 +65,9 @@ def point_to_point(
         ),
     ] = Method.MINMAX,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
-    scene: Annotated[
-        Path | None,
-        typer.Option(help="Obstacles: a JSON file of shapes; the page on planning has the format."),
-    ] = None,
-    link_radius: Annotated[
-        float | None,
-        typer.Option("--link-radius", help="Radius in m of a capsule along each link, which must not touch obstacles."),
-    ] = None,
+    scene: SceneFile = None,
+    margin: Margin = None,
+    link_radius: LinkRadius = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
@@ -86,18 +82,17 @@ def point_to_point(
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion between two places of the tip, or two configurations, from rest to rest."""
-    arm = load_robot(robot, urdf, base, tip)
-    if link_radius is not None:
-        arm = arm.with_capsules(radius=link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, max_evaluations)
-    obstacles = [] if scene is None else read_obstacles(scene)
+    obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_point_to_point(
             arm,
             **ends,
             objective=objective.value,
             obstacles=obstacles,
+            margin=margin,
             seed=seed,
             progress=not as_json,
             **chosen,

@@ -1,0 +1,102 @@
+"""Scenes as JSON.
+
+    {"version": 1, "obstacles": [
+        {"type": "sphere", "center": [0.5, 0.0, 0.4], "radius": 0.1},
+        {"type": "box", "center": [0.5, 0.0, 0.1], "size": [0.4, 0.6, 0.2]}
+    ]}
+
+A list alone is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in
+metres and radians.
+"""
+
+import inspect
+import json
+import os
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from . import obstacles
+from ._core import BeetleIkError, InvalidInputError, Obstacle
+from ._files import path_of, whole_file
+
+VERSION = 1
+
+_SHAPES: dict[str, type[Obstacle]] = {
+    "sphere": obstacles.Sphere,
+    "box": obstacles.Box,
+    "capsule": obstacles.Capsule,
+    "cylinder": obstacles.Cylinder,
+    "half_space": obstacles.HalfSpace,
+    "ellipsoid": obstacles.Ellipsoid,
+    "ellipse": obstacles.Ellipse,
+    "convex_mesh": obstacles.ConvexMesh,
+    "mesh": obstacles.Mesh,
+    "point_cloud": obstacles.PointCloud,
+    "grid": obstacles.Grid,
+}
+_TYPES = {shape: name for name, shape in _SHAPES.items()}
+
+
+def write_obstacles(file: str | os.PathLike[str], shapes: Iterable[Obstacle]) -> None:
+    """Writes the file of a scene, an obstacle a line. Numbers are exact."""
+    lines = ",\n".join(f"    {json.dumps(_described(shape))}" for shape in shapes)
+    text = f'{{"version": {VERSION}, "obstacles": [\n{lines}\n]}}\n'
+    with whole_file(file) as stream:
+        stream.write(text.encode())
+
+
+def _described(shape: Obstacle) -> dict[str, Any]:
+    kind = type(shape)
+    arguments = {name: np.asarray(getattr(shape, name)).tolist() for name in inspect.signature(kind).parameters}
+    return {"type": _TYPES[kind]} | arguments
+
+
+def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
+    """Reads the obstacles of a scene.
+
+    Raises:
+        InvalidInputError: the file is not a scene. Names the file and the obstacle.
+    """
+    path, where = path_of(file), os.fspath(file)
+    try:
+        scene = json.loads(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError as error:
+        raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise InvalidInputError(f"{where}: not JSON: {error}") from error
+    shapes = scene
+    if isinstance(scene, dict):
+        _require_version(where, scene)
+        shapes = scene.get("obstacles")
+    if not isinstance(shapes, list):
+        raise InvalidInputError(f'{where}: expected a list of shapes, or an object with such a list as "obstacles"')
+    if isinstance(scene, dict) and (unknown := scene.keys() - {"version", "obstacles"}):
+        raise InvalidInputError(f'{where}: unknown key {min(unknown)!r:.60}; keys: "version", "obstacles"')
+    return [_shape(f"{where}: obstacle {i}", shape) for i, shape in enumerate(shapes)]
+
+
+def _require_version(where: str, scene: dict[str, Any]) -> None:
+    version = scene.get("version", VERSION)
+    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
+        raise InvalidInputError(f'{where}: "version" must be {VERSION}, got {version!r:.60}')
+    if version > VERSION:
+        raise InvalidInputError(
+            f"{where}: a scene of version {version}; this beetle-ik reads version {VERSION}: use a later beetle-ik"
+        )
+
+
+def _shape(where: str, shape: Any) -> Obstacle:
+    types = ", ".join(_SHAPES)
+    if not isinstance(shape, dict) or "type" not in shape:
+        raise InvalidInputError(f'{where}: expected an object with a "type", one of {types}')
+    kind = _SHAPES.get(shape["type"]) if isinstance(shape["type"], str) else None
+    if kind is None:
+        raise InvalidInputError(f"{where}: unknown type {shape['type']!r:.60}; types: {types}")
+    arguments = {name: value for name, value in shape.items() if name != "type"}
+    try:
+        inspect.signature(kind).bind(**arguments)
+        return kind(**arguments)
+    except (TypeError, BeetleIkError) as error:
+        raise InvalidInputError(f"{where} ({shape['type']}): {error}") from error
