@@ -64,14 +64,14 @@ PARTS = {
     "fore": [turned([(0, 0.02), (0.05, 0.05), (0.03, 0.14), (0.025, 0.32), (0.05, 0.36), (0.05, 0.4), (0, 0.4)])],
 }
 PLACES = {"base": 0.0, "shoulder": 0.2, "upper": 0.1, "fore": 0.44}
-folder = tempfile.TemporaryDirectory()
+folder = Path(tempfile.mkdtemp())
 urdf = ["<robot name='turned arm'>"]
 for link, parts in PARTS.items():
     if link == "shoulder":  # its housing is above its own axis
         parts[1] = (parts[1][0] + np.array([0, 0, 0.1]), parts[1][1])
     if link == "upper":  # and this one at the elbow
         parts[1] = (parts[1][0] + np.array([0, 0, 0.44]), parts[1][1])
-    (Path(folder.name) / f"{link}.obj").write_text(joined(*parts))
+    (folder / f"{link}.obj").write_text(joined(*parts))
     urdf.append(f"<link name='{link}'><collision><geometry><mesh filename='{link}.obj'/></geometry></collision></link>")
 for i, (parent, child) in enumerate(zip(PARTS, list(PARTS)[1:], strict=False)):
     urdf.append(
@@ -79,20 +79,21 @@ for i, (parent, child) in enumerate(zip(PARTS, list(PARTS)[1:], strict=False)):
         f"<origin xyz='0 0 {PLACES[child]}'/><axis xyz='{'0 0 1' if i == 0 else '0 1 0'}'/>"
         "<limit lower='-2.5' upper='2.5' velocity='1' effort='1'/></joint>"
     )
-file = Path(folder.name) / "arm.urdf"
+file = folder / "arm.urdf"
 file.write_text("\n".join([*urdf, "</robot>"]))
 
 # %%
 # By how much the capsules are larger than the meshes.
-fitted = bik.Robot.from_urdf(file, collision="fit")
-hulls = bik.Robot.from_urdf(file, collision="hulls")
+flange = bik.pose((0, 0, 0.4))
+fitted = bik.Robot.from_urdf(file, collision="fit").with_tool(flange)
+hulls = bik.Robot.from_urdf(file, collision="hulls").with_tool(flange)
 for link, _, volume_ratio, largest_distance in fitted.mesh_fits:
     print(f"{link}: {volume_ratio:.2f} times the volume, at most {1000 * largest_distance:.0f} mm from the mesh")
 
 # %%
 # The same configuration beside the same shelf: the closer the bodies, the larger the clearance.
 q = [0.5, 0.7, 1.3]
-shelf = bik.obstacles.Box(center=(0.62, 0.35, 0.13), size=(0.3, 0.3, 0.02))
+shelf = bik.obstacles.Box(center=(0.62, 0.35, 0.4), size=(0.3, 0.3, 0.02))
 for name, robot in (("capsules", fitted), ("hulls", hulls)):
     nearest = bik.obstacles.nearest(robot, q, [shelf])
     print(f"{name}: {nearest.body} is {1000 * nearest.distance:.1f} mm from {nearest.other}")

@@ -137,7 +137,12 @@ def with_mesh(count: int) -> Callable[[], object]:
     file = Path(folder.name) / "arm.urdf"
     file.write_text(urdf(1).replace('<link name="l0"/>', collision))
     robot = bik.Robot.from_urdf(file)
-    return lambda: (folder, robot.collision_meshes())  # the folder lives as long as the call
+
+    def call() -> object:
+        with folder:
+            return robot.collision_meshes()
+
+    return call
 
 
 def with_target(tracker: bik.Tracker) -> Callable[[], object]:
