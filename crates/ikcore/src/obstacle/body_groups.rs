@@ -6,11 +6,11 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use super::carried::Carried;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
-use crate::shape::{BodyBlock, Shape, ShapeIndex, clear_of_each_other};
+use crate::robot::Carried;
+use crate::shape::{BodyBlock, PlacedBody, Shape, ShapeIndex, clear_of_each_other};
 
 /// The bodies of a robot by moving element, and the pairs of them that must not touch.
 #[derive(Debug, Clone)]
@@ -21,6 +21,8 @@ pub(super) struct BodyGroups {
     pairs: Vec<GroupPair>,
     /// Finds the obstacles near a ball, if there are many.
     index: Option<ShapeIndex>,
+    /// Whether some bodies are no capsules.
+    solids: bool,
 }
 
 /// All bodies of one moving element, in its frame.
@@ -29,8 +31,8 @@ struct Group {
     stages: usize,
     center: [f64; 3],
     radius: f64,
-    /// Number of bodies, four in a block.
-    count: usize,
+    /// Indices of its bodies, four in a block.
+    bodies: Vec<usize>,
     blocks: Vec<BodyBlock>,
 }
 
@@ -75,9 +77,10 @@ impl BodyGroups {
             for (i, body) in bodies.iter().enumerate() {
                 places[*body] = [groups.len(), i / 4, i % 4];
             }
-            groups.push(Group::new(stage, &bodies.iter().map(|i| &carried[*i]).collect::<Vec<_>>()));
+            groups.push(Group::new(stage, bodies, carried));
         }
-        Self { groups, places, pairs: vec![], index: ShapeIndex::of_many(obstacles) }
+        let solids = carried.iter().any(|body| body.solid.is_some());
+        Self { groups, places, pairs: vec![], index: ShapeIndex::of_many(obstacles), solids }
     }
 
     /// Forbids these pairs of bodies to touch, given by their indices in `carried`.
@@ -108,8 +111,13 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
-        are_clear(self, frames, obstacles, margin)
+    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
+        are_clear(self, carried, frames, obstacles, margin)
+    }
+
+    /// Whether some bodies are no capsules: [`four_are_clear`](Self::four_are_clear) would see the capsules around them.
+    pub fn has_solids(&self) -> bool {
+        self.solids
     }
 
     /// Whether one configuration at a time is faster: obstacles are then found by a tree.
@@ -120,6 +128,42 @@ impl BodyGroups {
     /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
     pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         four_are_clear(self, frames, obstacles, margin)
+    }
+
+    /// Whether the bodies of the lanes that are not `clear` by their capsules are `clear_of` an obstacle by their shapes.
+    #[inline(never)]
+    fn solids_are_clear(
+        &self,
+        (group, block): (usize, usize),
+        clear: &F64x4,
+        carried: &[Carried],
+        frames: &[Frame],
+        clear_of: impl Fn(&PlacedBody) -> bool,
+    ) -> bool {
+        self.solids
+            && (0..4).filter(|lane| clear.0[*lane] == 0.0).all(|lane| {
+                let body = &carried[self.groups[group].body(block, lane)];
+                let frame = &frames[body.stages];
+                clear_of(&body.placed(&body.axis_at(frame), frame))
+            })
+    }
+
+    /// Whether the pairs of the lanes that are not `clear` by their capsules are at least `margin` (m) apart by their shapes.
+    #[inline(never)]
+    fn solid_pairs_are_clear(
+        &self,
+        (pair, test): (&GroupPair, &BodyTest),
+        clear: &F64x4,
+        carried: &[Carried],
+        frames: &[Frame],
+        margin: f64,
+    ) -> bool {
+        let own = &carried[self.groups[pair.near].body(test.block, test.lane)];
+        let frame = &frames[own.stages];
+        self.solids
+            && self.solids_are_clear((pair.far, test.far_block), clear, carried, frames, |body| {
+                own.placed(&own.axis_at(frame), frame).distance_to(body, margin) >= margin
+            })
     }
 
     /// The balls around all groups, four in a block.
@@ -145,7 +189,8 @@ impl BodyGroups {
 }
 
 impl Group {
-    fn new(stages: usize, bodies: &[&Carried]) -> Self {
+    fn new(stages: usize, indices: Vec<usize>, carried: &[Carried]) -> Self {
+        let bodies: Vec<&Carried> = indices.iter().map(|i| &carried[*i]).collect();
         let ends = || bodies.iter().flat_map(|body| body.ends.map(Vector3::from));
         let (low, high) = ends()
             .fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
@@ -169,12 +214,18 @@ impl Group {
                 spheres: four.iter().all(|body| body.ends[0] == body.ends[1]),
             }
         });
-        Self { stages, center: center.into(), radius, count: bodies.len(), blocks: blocks.collect() }
+        let blocks = blocks.collect();
+        Self { stages, center: center.into(), radius, bodies: indices, blocks }
     }
 
     /// Block and lane of each body.
     fn bodies(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..self.count).map(|i| (i / 4, i % 4))
+        (0..self.bodies.len()).map(|i| (i / 4, i % 4))
+    }
+
+    /// The body in a lane of a block; lanes without one repeat the first.
+    fn body(&self, block: usize, lane: usize) -> usize {
+        self.bodies.get(4 * block + lane).copied().unwrap_or(self.bodies[4 * block])
     }
 
     /// Its blocks with the moving element at `frame`.
@@ -207,7 +258,13 @@ fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
 }
 
 by_instructions! {
-    fn are_clear(all: &BodyGroups, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
+    fn are_clear(
+        all: &BodyGroups,
+        carried: &[Carried],
+        frames: &[Frame],
+        obstacles: &[Shape],
+        margin: f64,
+    ) -> bool {
         let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -247,8 +304,11 @@ by_instructions! {
             if placed.0 != group {
                 placed = (group, all.groups[group].placed::<A>(&frames[all.groups[group].stages]));
             }
-            for block in &placed.1 {
-                if !all_clear(&obstacles[obstacle].clear_lanes::<A>(block, margin)) {
+            for (block, capsules) in placed.1.iter().enumerate() {
+                let clear = obstacles[obstacle].clear_lanes::<A>(capsules, margin);
+                if !all_clear(&clear) && !all.solids_are_clear((group, block), &clear, carried, frames, |body| {
+                    obstacles[obstacle].distance_to_body(body, margin) >= margin
+                }) {
                     return false;
                 }
             }
@@ -263,7 +323,8 @@ by_instructions! {
             let (near, far) = (near.placed::<A>(&frames[near.stages]), far.placed::<A>(&frames[far.stages]));
             for test in &pair.tests {
                 let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
-                if !all_clear(&larger_lanes::<A>(clear, test.ignored)) {
+                let clear = larger_lanes::<A>(clear, test.ignored);
+                if !all_clear(&clear) && !all.solid_pairs_are_clear((pair, test), &clear, carried, frames, margin) {
                     return false;
                 }
             }

@@ -1,8 +1,8 @@
-//! Collisions of capsule-shaped links with obstacles and with each other: distances, and certified motions.
+//! Collisions of links with obstacles and with each other: distances, and certified motions.
 //!
 //! | file | what |
 //! |---|---|
-//! | `carried` | the bodies that a robot carries, and where they are at a configuration |
+//! | `placement` | where the bodies of a robot are at a configuration |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
@@ -10,9 +10,9 @@
 //! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
 
 mod body_groups;
-mod carried;
 mod contact;
 mod link_displacement;
+mod placement;
 mod scene;
 mod sweep;
 

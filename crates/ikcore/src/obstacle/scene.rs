@@ -3,26 +3,26 @@
 use nalgebra::Vector3;
 
 use super::body_groups::BodyGroups;
-use super::carried::{Carried, Placement, carried};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
+use super::placement::Placement;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::f64x4::F64x4;
-use crate::robot::{Joint, Robot};
-use crate::shape::{Shape, capsules_nearest, distance_between};
+use crate::robot::{Carried, Joint, Robot};
+use crate::shape::{PlacedBody, Shape};
 use crate::wording::listed;
 
 /// Two things that could touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BodyPair {
-    /// A capsule and an obstacle.
-    Obstacle { capsule: usize, obstacle: usize },
-    /// Two capsules of the robot; `near` is nearer to the base.
-    Capsules { near: usize, far: usize },
+    /// A body and an obstacle.
+    Obstacle { body: usize, obstacle: usize },
+    /// Two bodies of the robot; `near` is nearer to the base.
+    Bodies { near: usize, far: usize },
 }
 
-/// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
+/// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
 /// All bodies are tested against the obstacles, those of the base and of held links too. Links are tested against each other in
 /// pairs ([`Robot::collision_pairs`]).
@@ -59,12 +59,12 @@ impl<'a> Scene<'a> {
             );
             return Err(Error::InvalidObstacle { problem });
         }
-        let carried = carried(robot);
+        let carried = robot.carried_bodies();
         let groups = BodyGroups::new(&carried, obstacles);
         let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![], fixed: None };
         scene.pairs = scene.self_pairs();
         scene.groups.forbid_contacts(scene.pairs.iter().filter_map(|pair| match pair {
-            BodyPair::Capsules { near, far } => Some([*near, *far]),
+            BodyPair::Bodies { near, far } => Some([*near, *far]),
             BodyPair::Obstacle { .. } => None,
         }));
         let (moving, fixed): (Vec<_>, Vec<_>) = scene.with_obstacles().partition(|pair| scene.carriers_of(*pair).1 > 0);
@@ -78,7 +78,7 @@ impl<'a> Scene<'a> {
     /// Each body with each obstacle.
     fn with_obstacles(&self) -> impl Iterator<Item = BodyPair> + use<> {
         let count = self.obstacles.len();
-        let with_each = move |capsule| (0..count).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle });
+        let with_each = move |body| (0..count).map(move |obstacle| BodyPair::Obstacle { body, obstacle });
         (0..self.carried.len()).flat_map(with_each)
     }
 
@@ -150,14 +150,10 @@ impl<'a> Scene<'a> {
         let placement = self.place(q);
         let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
         let (point, normal) = match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
-                let radius = self.carried[capsule].radius;
-                self.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius)
+            BodyPair::Obstacle { body, obstacle } => {
+                self.obstacles[obstacle].nearest_to_body(&self.placed(body, &placement))
             }
-            BodyPair::Capsules { near, far } => {
-                let [own, other] = [far, near].map(|i| (&placement.segments[i], self.carried[i].radius));
-                capsules_nearest(own, other)
-            }
+            BodyPair::Bodies { near, far } => self.placed(far, &placement).nearest_to(&self.placed(near, &placement)),
         };
         let mut gradient = vec![0.0; self.robot.dof()];
         let (below, own, other) = self.carriers_of(pair);
@@ -180,7 +176,7 @@ impl<'a> Scene<'a> {
         }
         let mut frames = self.robot.frame_buffer();
         self.robot.write_frames(q, &mut frames);
-        self.groups.are_clear(&frames, self.obstacles, margin)
+        self.groups.are_clear(&self.carried, &frames, self.obstacles, margin)
     }
 
     /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
@@ -196,7 +192,7 @@ impl<'a> Scene<'a> {
         if !self.fixed_are_clear(margin) {
             return Ok(vec![false; qs.len() / n]);
         }
-        if self.groups.has_index() {
+        if self.groups.has_index() || self.groups.has_solids() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
         let mut clear = Vec::with_capacity(qs.len() / n);
@@ -221,15 +217,13 @@ impl<'a> Scene<'a> {
 
     /// The contact of a pair that is `distance` apart (m).
     pub(super) fn contact(&self, pair: BodyPair, distance: f64) -> Contact {
-        let link = |capsule: usize| self.carried[capsule].link.clone();
+        let link = |body: usize| self.carried[body].link.clone();
         match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
+            BodyPair::Obstacle { body, obstacle } => {
                 let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
-                Contact { link: link(capsule), other, distance }
+                Contact { link: link(body), other, distance }
             }
-            BodyPair::Capsules { near, far } => {
-                Contact { link: link(far), other: Neighbor::Link(link(near)), distance }
-            }
+            BodyPair::Bodies { near, far } => Contact { link: link(far), other: Neighbor::Link(link(near)), distance },
         }
     }
 
@@ -243,16 +237,20 @@ impl<'a> Scene<'a> {
         placement.update(self.robot, &self.carried, q);
     }
 
-    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
+    fn placed<'b>(&'b self, body: usize, placement: &'b Placement) -> PlacedBody<'b> {
+        let carried = &self.carried[body];
+        carried.placed(&placement.segments[body], &placement.frames[carried.stages])
+    }
+
+    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`; to 1e-7 of it
+    /// for bodies that are no capsules.
     pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
         match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
-                let radius = self.carried[capsule].radius;
-                self.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius) - radius
+            BodyPair::Obstacle { body, obstacle } => {
+                self.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
             }
-            BodyPair::Capsules { near, far } => {
-                let radii = self.carried[near].radius + self.carried[far].radius;
-                distance_between(&placement.segments[near], &placement.segments[far]) - radii
+            BodyPair::Bodies { near, far } => {
+                self.placed(far, placement).distance_to(&self.placed(near, placement), enough)
             }
         }
     }
@@ -260,21 +258,21 @@ impl<'a> Scene<'a> {
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
         let (below, own, other) = self.carriers_of(pair);
-        let moved = |capsule: usize, frame: usize| {
-            displacement(self.robot, &placement.frames, &placement.segments[capsule], [below, frame], reach)
+        let moved = |body: usize, frame: usize| {
+            displacement(self.robot, &placement.frames, &self.placed(body, placement), [below, frame], reach)
         };
         match pair {
-            BodyPair::Obstacle { capsule, .. } => moved(capsule, own),
-            BodyPair::Capsules { near, far } => moved(far, own) + moved(near, other),
+            BodyPair::Obstacle { body, .. } => moved(body, own),
+            BodyPair::Bodies { near, far } => moved(far, own) + moved(near, other),
         }
     }
 
     /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.
     fn carriers_of(&self, pair: BodyPair) -> (usize, usize, usize) {
         match pair {
-            BodyPair::Obstacle { capsule, .. } => (0, self.carried[capsule].stages, 0),
-            BodyPair::Capsules { near, far } => {
-                let [near, far] = [near, far].map(|capsule| self.carried[capsule].stages);
+            BodyPair::Obstacle { body, .. } => (0, self.carried[body].stages, 0),
+            BodyPair::Bodies { near, far } => {
+                let [near, far] = [near, far].map(|body| self.carried[body].stages);
                 (self.robot.meeting_frame(near, far), far, near)
             }
         }
@@ -282,8 +280,8 @@ impl<'a> Scene<'a> {
 
     fn self_pairs(&self) -> Vec<BodyPair> {
         let ordered = |[one, other]: [usize; 2]| match self.carried[one].stages <= self.carried[other].stages {
-            true => BodyPair::Capsules { near: one, far: other },
-            false => BodyPair::Capsules { near: other, far: one },
+            true => BodyPair::Bodies { near: one, far: other },
+            false => BodyPair::Bodies { near: other, far: one },
         };
         self.robot.tested_bodies().into_iter().map(ordered).collect()
     }

@@ -5,8 +5,8 @@
 //! approach within the interval, it is clear in the whole interval; the other pairs are examined again in both halves.
 //! No step width has to be chosen, and no collision can be missed between two samples.
 
-use super::carried::Placement;
 use super::contact::Contact;
+use super::placement::Placement;
 use super::scene::{BodyPair, Scene};
 use crate::math::MAX_DOF;
 use crate::objective::Point;

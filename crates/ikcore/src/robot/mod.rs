@@ -10,6 +10,7 @@
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
+//! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
@@ -21,6 +22,7 @@ mod batched;
 mod bodies;
 mod body;
 mod builder;
+mod carried;
 mod description;
 mod joint;
 mod kinematics;
@@ -39,10 +41,11 @@ mod stance;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
+pub(crate) use carried::Carried;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
-pub use link_capsule::{LinkCapsule, MeshFit};
+pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub(crate) use links::FrameBuffer;
 pub use model::Robot;
 pub use stance::Stance;
