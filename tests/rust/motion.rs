@@ -86,7 +86,7 @@ fn noise_neither_delays_nor_shakes() {
     for jerk in [f64::INFINITY, 50.0] {
         for dt in [0.002, 0.01] {
             let (alone, _) = settle(0.0, jerk, dt);
-            for noise in [1e-6, 1e-5, 1e-4] {
+            for noise in [1e-6, 1e-5, 1e-4, 1e-3] {
                 let (settled, commands) = settle(noise, jerk, dt);
                 let name = format!("noise {noise} jerk {jerk} dt {dt}");
                 assert!(settled <= 1.3 * alone, "{name}: {settled} s against {alone} s");
@@ -249,6 +249,43 @@ fn rare_late_targets_are_followed_smoothly() {
     // Without extrapolation it would lag by 9 mm.
     assert!(worst < 5e-4, "{worst}");
     assert!(commands.largest()[1] < 1.0, "{:?}", commands.largest());
+}
+
+/// Root mean square error (m) behind a circle whose position comes every 8 ticks with `noise` (m). Between, the loop repeats
+/// the last target if it is `held`, and has none otherwise.
+fn stream_error(noise: f64, jerk: f64, held: bool) -> f64 {
+    let arm = robot("panda");
+    let mut session = session(&arm, moderate(&arm, jerk), 0.002);
+    let from = arm.tip_position(&START);
+    let path = |tick: i32| {
+        let angle = 0.002 * 1.57 * f64::from(tick);
+        [from[0], from[1] + 0.08 * angle.sin(), from[2] + 0.08 * (1.0 - angle.cos())]
+    };
+    let (mut draws, mut sum, mut last) = (rng::stream(7, 0), 0.0, from);
+    for tick in 1..=4000 {
+        let arrives = tick % 8 == 0;
+        if arrives {
+            last = path(tick).map(|x| x + noise * normal(&mut draws));
+        }
+        let arrival = Arrival { target: Target::Position(last), velocity: None, stamp: None };
+        session.advance((arrives || held).then_some(arrival), &mut Unattended).unwrap();
+        if tick > 2000 {
+            sum += distance(arm.tip_position(session.q()), path(tick)).powi(2) / 2000.0;
+        }
+    }
+    sum.sqrt()
+}
+
+#[test]
+fn slow_streams_are_followed_whether_the_loop_repeats_targets_or_not() {
+    for jerk in [f64::INFINITY, 50.0] {
+        for held in [false, true] {
+            let error = stream_error(0.0, jerk, held);
+            assert!(error < 1e-4, "jerk {jerk} held {held}: {error}");
+            let error = stream_error(1e-3, jerk, held);
+            assert!(error < 6e-3, "noise, jerk {jerk} held {held}: {error}");
+        }
+    }
 }
 
 #[test]

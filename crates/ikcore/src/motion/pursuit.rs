@@ -91,7 +91,7 @@ impl Pursuit<'_> {
     /// Longest and shortest time of the linear law, in ticks.
     fn law_times(&self) -> (f64, f64) {
         let memory = self.goal.memory();
-        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_share)).sqrt().clamp(1.0, memory);
+        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_share)).sqrt().min(memory).max(1.0);
         ((SHARPER * memory).max(quickest), quickest)
     }
 
