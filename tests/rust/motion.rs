@@ -323,6 +323,20 @@ fn a_reset_in_motion_goes_on_from_there() {
 }
 
 #[test]
+fn stamps_may_be_closer_than_ticks() {
+    let arm = robot("panda");
+    let mut session = session(&arm, moderate(&arm, 50.0), 0.01);
+    let (from, mut draws) = (arm.tip_position(&START), rng::stream(9, 0));
+    for tick in 1..400 {
+        let stamp = 0.002 * f64::from(tick);
+        let target = [from[0], from[1] + 0.1 * stamp.sin() + 1e-4 * normal(&mut draws), from[2]];
+        let arrival = Arrival { target: Target::Position(target), velocity: None, stamp: Some(stamp) };
+        assert!(session.advance(Some(arrival), &mut Unattended).unwrap().inside_limits);
+    }
+    assert!(distance(arm.tip_position(session.q()), from) < 0.12);
+}
+
+#[test]
 fn stamps_are_checked() {
     let arm = robot("panda");
     let target = Target::Position([0.3, 0.4, 0.5]);
