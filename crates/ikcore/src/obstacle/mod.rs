@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `carried` | the bodies that a robot carries, and where they are at a configuration |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
+//! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
@@ -11,11 +12,16 @@
 
 mod body_groups;
 mod carried;
+mod clear_space;
 mod contact;
 mod link_displacement;
 mod scene;
+mod surroundings;
 mod sweep;
 
+pub use clear_space::ClearSpace;
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use scene::Scene;
+pub use surroundings::Surroundings;
+pub(crate) use surroundings::kept_margin;
 pub use sweep::{Edge, JointMotion, Sweep, TooNear};

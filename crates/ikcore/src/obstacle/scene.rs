@@ -104,6 +104,16 @@ impl<'a> Scene<'a> {
         nearest
     }
 
+    /// Calls `visit` with each pair that is nearer than `up_to` (m), and its distance.
+    pub(super) fn for_each_within(&self, up_to: f64, placement: &Placement, mut visit: impl FnMut(BodyPair, f64)) {
+        for pair in &self.pairs {
+            let distance = self.distance(*pair, placement, up_to);
+            if distance < up_to {
+                visit(*pair, distance);
+            }
+        }
+    }
+
     /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
     ///
     /// # Errors
@@ -129,6 +139,21 @@ impl<'a> Scene<'a> {
         self.robot.check("joint angles", q)?;
         let placement = self.place(q);
         let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
+        let mut gradient = vec![0.0; self.robot.dof()];
+        let [point, normal] = self.add_gradient(pair, &placement, 1.0, &mut gradient);
+        let contact = self.contact(pair, distance);
+        Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
+    }
+
+    /// Adds `factor` times the derivative of a pair's distance by the joints. Returns the point of the link that is nearest to the
+    /// other body, and the normal there.
+    pub(super) fn add_gradient(
+        &self,
+        pair: BodyPair,
+        placement: &Placement,
+        factor: f64,
+        gradient: &mut [f64],
+    ) -> [Vector3<f64>; 2] {
         let (point, normal) = match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.carried[capsule].radius;
@@ -139,17 +164,27 @@ impl<'a> Scene<'a> {
                 capsules_nearest(own, other)
             }
         };
-        let mut gradient = vec![0.0; self.robot.dof()];
         let (below, own, other) = self.carriers_of(pair);
-        let sides = [(own, 1.0), (other, -1.0)];
-        for (frame, sign) in sides {
+        for (frame, factor) in [(own, factor), (other, -factor)] {
             for (moved, motion) in self.robot.carriers(frame, below) {
                 let velocity = motion.velocity(&placement.frames[moved], &point.into());
-                gradient[motion.joint] += sign * normal.dot(&Vector3::from(velocity));
+                gradient[motion.joint] += factor * normal.dot(&Vector3::from(velocity));
             }
         }
-        let contact = self.contact(pair, distance);
-        Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
+        [point, normal]
+    }
+
+    /// The nearest pair of which one body is fixed to the tip, and the other does not move; `None` if there is none.
+    pub(super) fn nearest_of_hand(&self, q: &[f64]) -> Option<Contact> {
+        let placement = self.place(q);
+        let hand = self.robot.tip_frame_number();
+        let is_hand = |pair: &&BodyPair| {
+            let (_, own, other) = self.carriers_of(**pair);
+            own == hand && other == 0
+        };
+        let distances = self.pairs.iter().filter(is_hand).map(|pair| (self.distance(*pair, &placement, f64::INFINITY), pair));
+        let nearest = distances.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        nearest.map(|(distance, pair)| self.contact(*pair, distance))
     }
 
     /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
@@ -193,7 +228,7 @@ impl<'a> Scene<'a> {
         let link = |capsule: usize| self.carried[capsule].link.clone();
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
-                let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
+                let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name().into());
                 Contact { link: link(capsule), other, distance }
             }
             BodyPair::Capsules { near, far } => {

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 pub use argument::Obstacles;
 pub use body::PyObstacle;
 use large::{PyGrid, PyMesh, PyPointCloud};
-use nearest::PyNearest;
+pub use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

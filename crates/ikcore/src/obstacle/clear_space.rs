@@ -1,0 +1,51 @@
+//! The configurations at which a robot keeps a margin from everything.
+
+use super::contact::{Contact, NearestContact};
+use super::scene::Scene;
+
+/// A scene and a margin. Configurations are checked by the caller: one finite entry per joint.
+#[derive(Debug, Clone)]
+pub struct ClearSpace<'a> {
+    scene: Scene<'a>,
+    margin: f64,
+}
+
+impl<'a> ClearSpace<'a> {
+    pub(super) fn new(scene: Scene<'a>, margin: f64) -> Self {
+        Self { scene, margin }
+    }
+
+    /// The distance to keep (m).
+    pub fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// Whether everything keeps the margin at `q` (n,). Never true for bodies that are nearer.
+    pub fn holds(&self, q: &[f64]) -> bool {
+        self.scene.is_clear(q, self.margin)
+    }
+
+    /// The nearest two bodies at `q` (n,); `None` if nothing can touch.
+    pub fn nearest(&self, q: &[f64]) -> Option<NearestContact> {
+        self.scene.nearest_contact(q).ok().flatten()
+    }
+
+    /// What the bodies that are fixed to the tip are nearer to at `q` (n,) than the margin, of what does not move: no other
+    /// configuration with the same pose of the tip is clear. `None` if they keep the margin.
+    pub fn blocked_hand(&self, q: &[f64]) -> Option<Contact> {
+        self.scene.nearest_of_hand(q).filter(|contact| contact.distance < self.margin)
+    }
+
+    /// The sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to` (m). Adds `weight` times its
+    /// derivative by the joints to `gradient`.
+    pub fn nearness(&self, q: &[f64], up_to: f64, weight: f64, gradient: &mut [f64]) -> f64 {
+        let placement = self.scene.place(q);
+        let mut sum = 0.0;
+        self.scene.for_each_within(up_to, &placement, |pair, distance| {
+            let short = (up_to - distance) / up_to;
+            sum += short * short;
+            self.scene.add_gradient(pair, &placement, -2.0 * weight * short / up_to, gradient);
+        });
+        sum
+    }
+}
