@@ -282,10 +282,14 @@ class Robot:
         """
 
     @property
+    def bodies(self) -> list[Body]:
+        """The bodies on the links, by which collisions are found: those given by `with_capsules`, attached by `with_attached`, or
+        read from the collision shapes of a file.
+        """
+    @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
-        segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
-        URDF.
+        """A capsule around each of the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment from a
+        (3,) to b (3,) in the frame of the link. Spheres and capsules are their own.
         """
     def with_capsules(
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
@@ -2480,6 +2484,20 @@ class Grid(Obstacle):
         """Whether each voxel is occupied (nx, ny, nz)."""
 
 @final
+class Body:
+    """A body of a robot: a convex shape fixed to a link, from `Robot.bodies`."""
+
+    @property
+    def link(self) -> str:
+        """The link that carries it."""
+    @property
+    def shape(self) -> Obstacle:
+        """The shape, in the frame of the link: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`."""
+    @property
+    def source(self) -> str:
+        """Where it comes from: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
+
+@final
 class Nearest:
     """The nearest two bodies at a configuration, from `obstacles.nearest`."""
 
@@ -2509,16 +2527,16 @@ def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = N
     bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
 
     Args:
-        robot: an arm with capsules.
+        robot: an arm with bodies.
         q: joint positions (n,) (rad, m).
         obstacles: obstacles in the frame of the robot's base.
 
     Raises:
-        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+        InvalidInputError: a robot without bodies, or an obstacle that is not of `bik.obstacles`.
     """
 
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
-    """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
+    """Returns the smallest distance (m) between the robot's bodies and obstacles, or between two of its bodies: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 
     Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
@@ -2526,15 +2544,15 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
     voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 
     Args:
-        robot: an arm with capsules.
+        robot: an arm with bodies.
         q: joint positions (n,) or (m, n) (rad, m).
-        obstacles: obstacles in the frame of the robot's base. Links that no joint moves are not compared with them.
+        obstacles: obstacles in the frame of the robot's base. All bodies are compared with them, those of the base and of held
+            links too: a table that the robot stands on must leave its base some room.
 
-    Two links of the robot are compared if at least one link lies between them and their capsules do not overlap with all
-    joints in the middle of their ranges.
+    Two links of the robot are compared if they are among `robot.collision_pairs`.
 
     Raises:
-        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+        InvalidInputError: a robot without bodies, or an obstacle that is not of `bik.obstacles`.
     """
 
 # --- planning -----------------------------------------------------------------------------------

@@ -204,6 +204,7 @@ def needed(name: str) -> dict[str, Any]:
 CALLS = {name: call for prefix, module in MODULES.items() for name, call in public(prefix, module)}
 MADE_BY_THE_LIBRARY = [
     "BatchSolution",
+    "Body",
     "ControlSession",
     "Minimum",
     "ModelFreeResult",

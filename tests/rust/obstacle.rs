@@ -351,3 +351,34 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
     }
     assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
 }
+
+#[test]
+fn bodies_that_no_joint_moves_count_against_obstacles() {
+    let arm = Robot::named("panda").unwrap();
+    let base = arm.link_names().next().unwrap().to_owned();
+    let foot = LinkCapsule { link: base.clone(), a: [0.0; 3], b: [0.0, 0.0, 0.1], radius: 0.05 };
+    let hand = LinkCapsule { link: "flange".into(), a: [0.0; 3], b: [0.0; 3], radius: 0.02 };
+    let robot = arm.with_capsules(vec![foot, hand]).unwrap();
+    let box_on_foot = Shape::cuboid([0.0, 0.3, 0.05], [0.02, 0.02, 0.02], None).unwrap();
+    let carrying = robot.with_attached(&base, &box_on_foot, &[], None).unwrap();
+    let q = [0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0];
+    let other: Vec<f64> = q.iter().map(|x| x + 0.2).collect();
+    for (robot, link, expected) in [(&robot, base.as_str(), 0.25), (&carrying, "attached", 0.34)] {
+        let obstacles =
+            [Shape::sphere([-0.4, 0.0, 0.05], 0.1).unwrap(), Shape::sphere([0.0, 0.7, 0.05], 0.05).unwrap()];
+        let obstacles = if link == "attached" { &obstacles[1..] } else { &obstacles[..1] };
+        let scene = Scene::new(robot, obstacles).unwrap();
+        let found = scene.nearest_contact(&q).unwrap().unwrap();
+        assert!((found.contact.distance - expected).abs() < 6e-3, "{found:?}");
+        assert_eq!((found.contact.link.as_str(), found.gradient), (link, vec![0.0; 7]));
+        let distance = found.contact.distance;
+        let edge = Edge { from: &q, to: &other };
+        for (margin, clear) in [(distance - 1e-3, true), (distance + 1e-3, false)] {
+            assert_eq!(scene.is_clear(&q, margin), clear);
+            assert_eq!(scene.which_are_clear(&[q, q].concat(), margin).unwrap(), [clear; 2]);
+            assert_eq!(Sweep::new(&scene).check(&edge, [0.0, 1.0], margin).is_ok(), clear);
+        }
+        let smallest = Sweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
+        assert_eq!(smallest.contact, found.contact);
+    }
+}

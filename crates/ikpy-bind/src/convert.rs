@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
-use crate::monitor::check_signals_at;
+use crate::signals::check_signals_at;
 
 /// A float64 array of any shape.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;

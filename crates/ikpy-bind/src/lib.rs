@@ -22,6 +22,7 @@ mod posture;
 mod python_calls;
 mod robot;
 mod self_motion;
+mod signals;
 mod solve_all;
 mod solve_arguments;
 mod solver;
@@ -39,6 +40,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
+    module.add_class::<robot::PyBody>()?;
     module.add_class::<robot::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<limits::PySinusoid>()?;

@@ -73,11 +73,6 @@ pub fn in_pieces(
     Ok(results)
 }
 
-/// Checks for Ctrl-C at every 4096th call, some milliseconds: functions written in C do not check themselves.
-pub fn check_signals_at(py: Python<'_>, call: usize) -> PyResult<()> {
-    if call % 4096 == 4095 { py.check_signals() } else { Ok(()) }
-}
-
 /// Runs code of other libraries, which has no checkpoints, on a thread of its own. Ctrl-C ends the call; the thread ends
 /// when it is done, and its result is dropped.
 pub fn on_a_thread<T: Send + 'static>(

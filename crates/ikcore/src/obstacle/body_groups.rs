@@ -60,7 +60,7 @@ type Placed = SmallVec<[BodyBlock; BLOCKS]>;
 type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
 
 impl BodyGroups {
-    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`.
+    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`: the scene has done so.
     pub fn new(carried: &[Carried], obstacles: &[Shape]) -> Self {
         let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
         stages.sort_unstable_by(|one, other| other.cmp(one));

@@ -24,15 +24,18 @@ pub(super) enum BodyPair {
 
 /// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Links are tested against
-/// each other in pairs ([`Robot::collision_pairs`]).
+/// All bodies are tested against the obstacles, those of the base and of held links too. Links are tested against each other in
+/// pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
     carried: Vec<Carried>,
     groups: BodyGroups,
     obstacles: &'a [Shape],
+    /// Pairs whose distance changes with the joints.
     pub(super) pairs: Vec<BodyPair>,
+    /// Of the bodies that no joint moves the nearest to an obstacle, at this distance (m).
+    pub(super) fixed: Option<(f64, BodyPair)>,
 }
 
 /// Distances that differ by less (m) are equal but for rounding.
@@ -58,17 +61,25 @@ impl<'a> Scene<'a> {
         }
         let carried = carried(robot);
         let groups = BodyGroups::new(&carried, obstacles);
-        let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![] };
+        let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![], fixed: None };
         scene.pairs = scene.self_pairs();
         scene.groups.forbid_contacts(scene.pairs.iter().filter_map(|pair| match pair {
             BodyPair::Capsules { near, far } => Some([*near, *far]),
             BodyPair::Obstacle { .. } => None,
         }));
-        let moving = (0..scene.carried.len()).filter(|i| scene.carried[*i].stages > 0);
-        let with_obstacles = moving
-            .flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle }));
-        scene.pairs.extend(with_obstacles.collect::<Vec<_>>());
+        let (moving, fixed): (Vec<_>, Vec<_>) = scene.with_obstacles().partition(|pair| scene.carriers_of(*pair).1 > 0);
+        scene.pairs.extend(moving);
+        // Bodies that no joint moves are in the same place at any configuration.
+        let somewhere = scene.place(&vec![0.0; robot.dof()]);
+        scene.fixed = scene.nearest_of(&fixed, &somewhere, None);
         Ok(scene)
+    }
+
+    /// Each body with each obstacle.
+    fn with_obstacles(&self) -> impl Iterator<Item = BodyPair> + use<> {
+        let count = self.obstacles.len();
+        let with_each = move |capsule| (0..count).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle });
+        (0..self.carried.len()).flat_map(with_each)
     }
 
     /// The same scene, but links may cross each other, as in a planar arm.
@@ -93,8 +104,17 @@ impl<'a> Scene<'a> {
     }
 
     fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
-        let mut nearest: Option<(f64, BodyPair)> = None;
-        for pair in &self.pairs {
+        self.nearest_of(&self.pairs, placement, self.fixed)
+    }
+
+    /// The nearest of `pairs`, unless `nearest` is nearer.
+    fn nearest_of(
+        &self,
+        pairs: &[BodyPair],
+        placement: &Placement,
+        mut nearest: Option<(f64, BodyPair)>,
+    ) -> Option<(f64, BodyPair)> {
+        for pair in pairs {
             let (least, first) = nearest.unwrap_or((f64::INFINITY, *pair));
             let distance = self.distance(*pair, placement, least);
             // Of pairs that are equally near, the first counts.
@@ -190,6 +210,9 @@ impl<'a> Scene<'a> {
     /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
     /// bodies that are nearer.
     pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
+        if !self.fixed_are_clear(margin) {
+            return false;
+        }
         let mut frames = self.robot.frame_buffer();
         self.robot.write_frames(q, &mut frames);
         self.groups.are_clear(&frames, self.obstacles, margin)
@@ -205,6 +228,9 @@ impl<'a> Scene<'a> {
         }
         let n = self.robot.dof();
         qs.chunks(n).try_for_each(|q| self.robot.check("joint angles", q))?;
+        if !self.fixed_are_clear(margin) {
+            return Ok(vec![false; qs.len() / n]);
+        }
         if self.groups.has_index() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
@@ -221,6 +247,11 @@ impl<'a> Scene<'a> {
             clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
         }
         Ok(clear)
+    }
+
+    /// Whether the bodies that no joint moves are at least `margin` (m) from the obstacles.
+    fn fixed_are_clear(&self, margin: f64) -> bool {
+        self.fixed.is_none_or(|(distance, _)| distance >= margin)
     }
 
     /// The contact of a pair that is `distance` apart (m).
@@ -289,7 +320,7 @@ impl<'a> Scene<'a> {
             true => BodyPair::Capsules { near: one, far: other },
             false => BodyPair::Capsules { near: other, far: one },
         };
-        self.robot.tested_capsules().into_iter().map(ordered).collect()
+        self.robot.tested_bodies().into_iter().map(ordered).collect()
     }
 }
 

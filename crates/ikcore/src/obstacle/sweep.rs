@@ -75,6 +75,11 @@ impl<'a> Sweep<'a> {
     /// Certifies that all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], between samples
     /// too. An error if one does not, or exceeds the margin by less than a hundredth of a millimetre.
     pub fn check(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
+        if let Some((distance, pair)) = self.scene.fixed
+            && distance < margin
+        {
+            return Err(Box::new(TooNear { at: from, contact: self.scene.contact(pair, distance) }));
+        }
         self.check_pending(motion, [from, to], margin, self.pending.len())
     }
 
@@ -111,8 +116,11 @@ impl<'a> Sweep<'a> {
     /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a certified lower bound, at
     /// most 0.1 mm or 1 % below the true value. `None` if nothing can touch.
     pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
-        let first = self.pending.first().copied()?;
-        let mut best = Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: first };
+        let mut best = match (self.scene.fixed, self.pending.first()) {
+            (Some((distance, pair)), _) => Best { seen: distance, proven: distance, at: from, pair },
+            (None, Some(first)) => Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: *first },
+            (None, None) => return None,
+        };
         // A good first guess makes most of the motion quick to rule out.
         for i in 0..=FIRST_SAMPLES {
             let t = from + (to - from) * i as f64 / FIRST_SAMPLES as f64;

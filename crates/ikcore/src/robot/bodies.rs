@@ -1,6 +1,7 @@
-//! Bodies of a robot: the capsules on its links, given explicitly or generated along the links.
+//! Bodies of a robot: read, given explicitly or generated along the links.
 
-use super::link_capsule::{Bodies, LinkCapsule, MeshFit};
+use super::body::{Bodies, Body, BodySource};
+use super::link_capsule::{LinkCapsule, MeshFit};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
@@ -11,20 +12,25 @@ use crate::math::vector::distance;
 const SHORTEST: f64 = 1e-9;
 
 impl Robot {
-    /// The capsules on the links; none unless given or fitted to the collision shapes of a URDF.
+    /// The bodies on the links; none unless given, attached or read from the collision shapes of a file.
+    pub fn bodies(&self) -> &[Body] {
+        self.parts().bodies.list()
+    }
+
+    /// A capsule around each body, in the order of [`bodies`](Self::bodies). Spheres and capsules are their own.
     pub fn capsules(&self) -> &[LinkCapsule] {
-        &self.bodies().capsules
+        self.parts().bodies.capsules()
     }
 
     /// Collision shapes of a URDF that were not converted to a capsule, for example "a mesh of link 'hand'". Add
     /// capsules for them by [`with_capsules`](Self::with_capsules).
     pub fn unread_collision_shapes(&self) -> &[String] {
-        &self.bodies().unread
+        self.parts().bodies.unread()
     }
 
     /// The meshes of a URDF that capsules were fitted to, with how well they follow them.
     pub fn mesh_fits(&self) -> &[MeshFit] {
-        &self.bodies().fits
+        self.parts().bodies.fits()
     }
 
     /// The same robot with these capsules and no others.
@@ -40,7 +46,7 @@ impl Robot {
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
         }
-        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
+        self.with_capsules_as_bodies(capsules)
     }
 
     /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
@@ -69,7 +75,12 @@ impl Robot {
                 capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
             }
         }
-        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
+        self.with_capsules_as_bodies(capsules)
+    }
+
+    fn with_capsules_as_bodies(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
+        let bodies = capsules.into_iter().map(|capsule| Body::from_capsule(capsule, BodySource::Given));
+        Ok(self.with_bodies(Bodies::new(bodies.collect::<Result<_>>()?, vec![], vec![])))
     }
 
     fn nameless(&self, body: usize) -> Error {

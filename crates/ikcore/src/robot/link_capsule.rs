@@ -15,16 +15,6 @@ pub struct LinkCapsule {
     pub radius: f64,
 }
 
-/// The capsules of a robot, and the collision shapes that were not converted.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Bodies {
-    pub capsules: Vec<LinkCapsule>,
-    /// Collision shapes without a capsule, for example "a mesh of link 'hand'".
-    pub unread: Vec<String>,
-    /// The meshes that capsules were fitted to.
-    pub fits: Vec<MeshFit>,
-}
-
 /// How well the capsules fitted to a mesh follow it. They hold all of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshFit {

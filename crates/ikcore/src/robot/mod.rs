@@ -9,7 +9,7 @@
 //! | `model`, `parts` | [`Robot`], and what determines one |
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
-//! | `link_capsule`, `bodies` | capsules on the links |
+//! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
@@ -19,6 +19,7 @@
 mod attached;
 mod batched;
 mod bodies;
+mod body;
 mod builder;
 mod description;
 mod joint;
@@ -35,11 +36,12 @@ mod parts;
 mod serialization;
 mod stance;
 
+pub(crate) use body::Bodies;
+pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
-pub(crate) use link_capsule::Bodies;
 pub use link_capsule::{LinkCapsule, MeshFit};
 pub(crate) use links::FrameBuffer;
 pub use model::Robot;

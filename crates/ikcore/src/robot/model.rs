@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
+use super::body::Bodies;
 use super::description::{Description, Element};
 use super::joint::Joint;
-use super::link_capsule::Bodies;
 use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::parts::Parts;
@@ -311,10 +311,6 @@ impl Robot {
     /// The robot of these parts, whose chain is that of this one.
     pub(super) fn with_parts_beside_chain(&self, parts: Parts) -> Result<Self> {
         Self::assembled(parts).map(|robot| self.lend_to(robot))
-    }
-
-    pub(super) fn bodies(&self) -> &Bodies {
-        &self.parts.bodies
     }
 
     pub(super) fn parts(&self) -> &Parts {

@@ -57,7 +57,7 @@ pub(super) fn that_can_touch(robot: &Robot) -> Vec<[usize; 2]> {
 /// Pairs of links with capsules, between which no other link with capsules lies in the tree.
 fn neighbours(robot: &Robot) -> HashSet<[usize; 2]> {
     let mut with_capsules = vec![false; robot.all_link_names().count()];
-    robot.links_of_capsules().into_iter().for_each(|link| with_capsules[link] = true);
+    robot.links_of_bodies().into_iter().for_each(|link| with_capsules[link] = true);
     // The nearest link with capsules at or above each link; parents come before their children.
     let mut carrier: Vec<Option<usize>> = Vec::with_capacity(with_capsules.len());
     let mut pairs = HashSet::new();
@@ -138,7 +138,7 @@ impl<'a> Sampling<'a> {
 /// The links with capsules, in the order of the links.
 fn carriers(robot: &Robot) -> Vec<Carrier> {
     let mut on_link: Vec<Vec<(LineSegment, f64)>> = vec![vec![]; robot.all_link_names().count()];
-    for (link, capsule) in robot.links_of_capsules().into_iter().zip(robot.capsules()) {
+    for (link, capsule) in robot.links_of_bodies().into_iter().zip(robot.capsules()) {
         let (_, offset) = robot.place_of_link_number(link);
         let axis = [capsule.a, capsule.b].map(|end| Vector3::from(offset.place::<NoFma>(&end)));
         on_link[link].push((axis, capsule.radius));

@@ -43,11 +43,11 @@ impl Robot {
         &self.parts().stances
     }
 
-    /// Pairs of capsules, as indices into [`capsules`](Self::capsules), that are tested against each other.
-    pub(crate) fn tested_capsules(&self) -> Vec<[usize; 2]> {
-        let links = self.links_of_capsules();
+    /// Pairs of bodies, as indices into [`bodies`](Self::bodies), that are tested against each other.
+    pub(crate) fn tested_bodies(&self) -> Vec<[usize; 2]> {
+        let links = self.links_of_bodies();
         let mut on_link: Vec<Vec<usize>> = vec![vec![]; self.tree().links.len()];
-        links.iter().enumerate().for_each(|(capsule, link)| on_link[*link].push(capsule));
+        links.iter().enumerate().for_each(|(body, link)| on_link[*link].push(body));
         let pairs = self.tested_links().iter().flat_map(|[one, other]| {
             let others = &on_link[*other];
             on_link[*one].iter().flat_map(move |a| others.iter().map(move |b| [*a, *b]))
@@ -55,10 +55,10 @@ impl Robot {
         pairs.collect()
     }
 
-    /// Number of the link of each capsule.
-    pub(super) fn links_of_capsules(&self) -> Vec<usize> {
+    /// Number of the link of each body.
+    pub(super) fn links_of_bodies(&self) -> Vec<usize> {
         let numbers = self.link_numbers();
-        self.capsules().iter().filter_map(|capsule| numbers.get(capsule.link.as_str()).copied()).collect()
+        self.bodies().iter().filter_map(|body| numbers.get(body.link.as_str()).copied()).collect()
     }
 
     /// The pairs as numbers of links.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::body::Bodies;
 use super::description::Description;
-use super::link_capsule::Bodies;
 use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::stance::Stance;

@@ -2,7 +2,7 @@
 
 use super::model::Robot;
 use super::parts::Parts;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::stored;
 
 impl Robot {
@@ -20,7 +20,13 @@ impl Robot {
     /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, of another type, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let robot = Self::assembled(stored::from_bytes::<Parts>("robot", bytes)?)?;
-        let checked = robot.with_capsules(robot.capsules().to_vec())?;
-        Ok(checked.with_bodies(robot.bodies().clone()))
+        for body in robot.bodies() {
+            robot.link_number(&body.link)?;
+            if !body.shape.can_be_carried() {
+                let problem = format!("a {} is no body of a robot", body.shape.name());
+                return Err(Error::InvalidObstacle { problem });
+            }
+        }
+        Ok(robot)
     }
 }

@@ -67,6 +67,26 @@ impl Shape {
         Ok(Self::made(Geometry::Capsule { a, b, radius }, bounds))
     }
 
+    /// All points within `radius` >= 0 of the segment from `a` to `b` (m): a sphere if they are equal, else a capsule. A radius
+    /// of zero makes a rod or a point, for bodies of robots.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
+    pub(crate) fn swept_ball(a: [f64; 3], b: [f64; 3], radius: f64) -> Result<Self> {
+        if radius > 0.0 {
+            return if a == b { Self::sphere(a, radius) } else { Self::capsule(a, b, radius) };
+        }
+        require_point("a", &a)?;
+        require_point("b", &b)?;
+        if radius != 0.0 {
+            return Err(Error::out_of_range("radius of the capsule", "zero or more and finite", radius));
+        }
+        let center = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+        let bounds = BoundingBall { center, radius: 0.5 * (Vector3::from(a) - Vector3::from(b)).norm() };
+        let geometry = if a == b { Geometry::Sphere { center: a, radius } } else { Geometry::Capsule { a, b, radius } };
+        Ok(Self::made(geometry, bounds))
+    }
+
     /// A cylinder of this radius and length (m) about `center`, along `axis` (of any length).
     ///
     /// # Errors

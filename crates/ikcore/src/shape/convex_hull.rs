@@ -51,6 +51,11 @@ impl Hull {
         &self.points
     }
 
+    /// Its corners (m).
+    pub(super) fn corners(&self) -> &[Vector3<f64>] {
+        &self.corners
+    }
+
     /// Corners of the hull's triangles (m), for drawing.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
         self.polyhedron.triangles()

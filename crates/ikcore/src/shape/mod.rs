@@ -22,6 +22,7 @@
 //! | `mesh`, `inside_mesh`, `triangle` | triangle meshes, closed or not |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
 //! | `cover` | covers of meshes by few spheres and capsules |
+//! | `enclosing_capsule` | capsules that hold other shapes |
 //! | `separation` | where a capsule is nearest to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
 
@@ -34,6 +35,7 @@ mod collision_crate;
 mod convex_hull;
 mod cover;
 mod ellipsoid;
+mod enclosing_capsule;
 mod geometry;
 mod grid;
 mod inside_mesh;

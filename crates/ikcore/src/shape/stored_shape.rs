@@ -60,9 +60,10 @@ impl TryFrom<StoredShape> for Shape {
         let rotation = |pose: &Pose| Some(*pose.rotation.matrix());
         let center = |pose: &Pose| pose.translation.vector.into();
         match stored {
-            StoredShape::Sphere(center, radius) => Self::sphere(center, radius),
+            StoredShape::Sphere(center, radius) => Self::swept_ball(center, center, radius),
             StoredShape::Box(pose, size) => Self::cuboid(center(&pose), size, rotation(&pose)),
-            StoredShape::Capsule(a, b, radius) => Self::capsule(a, b, radius),
+            StoredShape::Capsule(a, b, radius) if a == b => Self::capsule(a, b, radius),
+            StoredShape::Capsule(a, b, radius) => Self::swept_ball(a, b, radius),
             StoredShape::Cylinder(center, axis, radius, length) => Self::cylinder(center, axis, radius, length),
             StoredShape::HalfSpace(normal, offset) => Self::half_space(normal, offset),
             StoredShape::Ellipsoid(pose, semi_axes) => Self::ellipsoid(center(&pose), semi_axes, rotation(&pose)),

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::convert::scalar_or_vector;
 use crate::error::invalid;
-use crate::monitor::check_signals_at;
+use crate::signals::check_signals_at;
 
 /// When functions of time are sampled: before the core runs, since callables never reach its threads.
 pub struct Sampling {

@@ -3,20 +3,29 @@
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
 use ikcore::shape::{Geometry, Grid, Shape};
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
+use super::arrays::{faces, occupied, points};
 use crate::convert::{Array, table};
+use crate::error::raise;
 use crate::hash::content_hash;
 use crate::options::NewArguments;
-
-use super::large::{faces, occupied, points};
 
 /// The base class of obstacles: a shape, fixed in the frame of the robot's base.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
     pub core: Shape,
+}
+
+/// Makes an instance of an obstacle's class, with its own fields.
+pub(super) fn made<C>(core: ikcore::Result<Shape>, own: C) -> PyResult<PyClassInitializer<C>>
+where
+    C: PyClass<BaseType = PyObstacle>,
+{
+    Ok(PyClassInitializer::from(PyObstacle { core: core.map_err(raise)? }).add_subclass(own))
 }
 
 #[pymethods]

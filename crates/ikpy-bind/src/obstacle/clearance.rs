@@ -12,7 +12,7 @@ use crate::robot::PyRobot;
 /// Rows between two checks for Ctrl-C; among many obstacles a row takes a millisecond.
 const ROWS: usize = 128;
 
-/// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
+/// Returns the smallest distance (m) between the robot's bodies and obstacles, or between two of its bodies: a number
 /// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 ///
 /// Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
@@ -20,15 +20,15 @@ const ROWS: usize = 128;
 /// voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 ///
 /// Args:
-///     robot: an arm with capsules.
+///     robot: an arm with bodies.
 ///     q: joint positions (n,) or (m, n) (rad, m).
-///     obstacles: obstacles in the frame of the robot's base. Links that no joint moves are not compared with them.
+///     obstacles: obstacles in the frame of the robot's base. All bodies are compared with them, those of the base and of held
+///         links too: a table that the robot stands on must leave its base some room.
 ///
-/// Two links of the robot are compared if at least one link lies between them and their capsules do not overlap with all
-/// joints in the middle of their ranges.
+/// Two links of the robot are compared if they are among `robot.collision_pairs`.
 ///
 /// Raises:
-///     InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+///     InvalidInputError: a robot without bodies, or an obstacle that is not of `bik.obstacles`.
 #[pyfunction]
 #[pyo3(signature = (robot, q, obstacles=None))]
 pub fn clearance<'py>(

@@ -1,6 +1,7 @@
 //! `bik.obstacles`.
 
 mod argument;
+mod arrays;
 mod body;
 mod clearance;
 mod large;
@@ -13,6 +14,7 @@ pub use argument::Obstacles;
 pub use body::PyObstacle;
 use large::{PyGrid, PyMesh, PyPointCloud};
 pub use nearest::PyNearest;
+pub use shapes::wrapped;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -96,12 +96,12 @@ impl PyNearest {
 /// bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
 ///
 /// Args:
-///     robot: an arm with capsules.
+///     robot: an arm with bodies.
 ///     q: joint positions (n,) (rad, m).
 ///     obstacles: obstacles in the frame of the robot's base.
 ///
 /// Raises:
-///     InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+///     InvalidInputError: a robot without bodies, or an obstacle that is not of `bik.obstacles`.
 #[pyfunction]
 #[pyo3(signature = (robot, q, obstacles=None))]
 pub fn nearest(

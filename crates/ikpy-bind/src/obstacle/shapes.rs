@@ -1,65 +1,13 @@
 //! The shapes of obstacles, one class each.
 
-use std::convert::Infallible;
-
-use ikcore::nalgebra::Matrix3;
 use ikcore::shape::{Geometry, Shape};
-use numpy::{PyArray1, PyArrayDyn};
-use pyo3::PyClass;
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use super::body::PyObstacle;
-use super::large::read_points;
-use crate::convert::{Array, copied, entries, matrix3, point, table};
-use crate::error::raise;
+use super::arrays::{Coordinates, Rotation, read_points, read_rotation};
+use super::body::{PyObstacle, made};
+use crate::convert::{Array, copied, entries, point, table};
 use crate::monitor::on_a_thread;
-
-/// A vector stored by a class; Python gets a read-only array.
-#[derive(Clone, Copy)]
-pub(super) struct Coordinates<const N: usize>(pub [f64; N]);
-
-impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
-    type Target = PyArray1<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(copied(py, &self.0))
-    }
-}
-
-/// A rotation stored by a class; Python gets a read-only matrix (3, 3).
-#[derive(Clone, Copy)]
-struct Rotation(Matrix3<f64>);
-
-impl Rotation {
-    /// Returns this rotation, or the identity if none was given.
-    fn or_none(given: Option<Matrix3<f64>>) -> Self {
-        Self(given.unwrap_or_else(Matrix3::identity))
-    }
-}
-
-impl<'py> IntoPyObject<'py> for Rotation {
-    type Target = PyArrayDyn<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
-    }
-}
-
-fn read_rotation(rotation: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Matrix3<f64>>> {
-    rotation.map(|rotation| matrix3("rotation", rotation)).transpose()
-}
-
-/// Makes an instance of an obstacle's class, with its own fields.
-pub(super) fn made<C>(core: ikcore::Result<Shape>, own: C) -> PyResult<PyClassInitializer<C>>
-where
-    C: PyClass<BaseType = PyObstacle>,
-{
-    Ok(PyClassInitializer::from(PyObstacle { core: core.map_err(raise)? }).add_subclass(own))
-}
 
 /// A sphere: centre (3,) and radius (m).
 #[pyclass(name = "Sphere", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
@@ -280,4 +228,39 @@ impl PyConvexMesh {
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         table(py, self.points.as_flattened().to_vec(), &[self.points.len(), 3])
     }
+}
+
+/// Returns a shape of the core as an instance of its class. Of shapes that cannot be bodies of a robot it is the base class.
+pub fn wrapped(py: Python<'_>, shape: &Shape) -> PyResult<Py<PyAny>> {
+    let base = PyClassInitializer::from(PyObstacle { core: shape.clone() });
+    let object = match shape.geometry() {
+        Geometry::Sphere { center, radius } => {
+            let own = PySphere { center: Coordinates(*center), radius: *radius };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        Geometry::Box { pose, size } => {
+            let (center, rotation) = (pose.translation.vector.into(), *pose.rotation.matrix());
+            let own = PyBox { center: Coordinates(center), size: Coordinates(*size), rotation: Rotation(rotation) };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        Geometry::Capsule { a, b, radius } => {
+            let own = PyCapsule { a: Coordinates(*a), b: Coordinates(*b), radius: *radius };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        Geometry::Cylinder { center, radius, length, .. } => {
+            let own = PyCylinder { center: Coordinates(*center), radius: *radius, length: *length };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        Geometry::Ellipsoid { pose, semi_axes } => {
+            let (center, rotation) = (pose.translation.vector.into(), Rotation(*pose.rotation.matrix()));
+            let own = PyEllipsoid { center: Coordinates(center), semi_axes: Coordinates(*semi_axes), rotation };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        Geometry::ConvexMesh(hull) => {
+            let own = PyConvexMesh { points: hull.points().to_vec() };
+            Bound::new(py, base.add_subclass(own))?.into_any()
+        }
+        _ => Bound::new(py, base)?.into_any(),
+    };
+    Ok(object.unbind())
 }

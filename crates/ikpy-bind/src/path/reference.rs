@@ -11,8 +11,8 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use crate::convert::{Array, matrix3, point, row, summary, table, times};
 use crate::error::{invalid, raise};
-use crate::monitor::check_signals_at;
 use crate::pickling::{self, Reduced};
+use crate::signals::check_signals_at;
 use crate::traversal::{Traversed, traversed};
 
 /// A reference path of the tip: position, and optionally orientation, for each time in [0, duration]. Times outside are

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 use super::reference::{Curve, Orientation, PyPath};
 use crate::error::raise;
-use crate::monitor::{check_signals_at, long_call};
+use crate::monitor::long_call;
+use crate::signals::check_signals_at;
 
 /// Positions (m), and orientations if the path has them.
 type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);

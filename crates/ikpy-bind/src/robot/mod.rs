@@ -1,5 +1,6 @@
 //! `Robot`: its methods, grouped by topic.
 
+mod body;
 mod chain_elements;
 mod constructors;
 mod kinematics;
@@ -7,5 +8,6 @@ mod manipulability;
 mod model;
 mod modified_copies;
 
+pub use body::PyBody;
 pub use manipulability::PyVelocityEllipsoid;
 pub use model::PyRobot;

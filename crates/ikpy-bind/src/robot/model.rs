@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
+use super::body::PyBody;
 use crate::convert::{copied, counted, row};
 use crate::error::raise;
 use crate::hash::content_hash;
@@ -134,9 +135,15 @@ impl PyRobot {
         PyLimits::rated(&self.core)
     }
 
-    /// Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
-    /// segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
-    /// URDF.
+    /// The bodies on the links, by which collisions are found: those given by `with_capsules`, attached by `with_attached`, or
+    /// read from the collision shapes of a file.
+    #[getter]
+    fn bodies(&self) -> Vec<PyBody> {
+        self.core.bodies().iter().map(|body| PyBody { core: body.clone() }).collect()
+    }
+
+    /// A capsule around each of the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment from a
+    /// (3,) to b (3,) in the frame of the link. Spheres and capsules are their own.
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();

@@ -10,7 +10,7 @@ use crate::shape::tangent::nearest_on_segment;
 
 /// A capsule that holds the points it was made for (m).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FittedCapsule {
+pub(in crate::shape) struct FittedCapsule {
     a: Vector3<f64>,
     b: Vector3<f64>,
     radius: f64,
@@ -29,10 +29,15 @@ impl FittedCapsule {
         Self { radius: self.radius.max(farthest * GROWTH), ..self }
     }
 
+    /// Ends of the axis, and radius.
+    pub fn parts(&self) -> ([f64; 3], [f64; 3], f64) {
+        (self.a.into(), self.b.into(), self.radius)
+    }
+
     /// As a shape: a sphere if it has no length.
     pub fn shape(&self) -> Result<Shape> {
-        let [a, b] = [self.a, self.b].map(<[f64; 3]>::from);
-        if a == b { Shape::sphere(a, self.radius) } else { Shape::capsule(a, b, self.radius) }
+        let (a, b, radius) = self.parts();
+        Shape::swept_ball(a, b, radius)
     }
 }
 
@@ -54,7 +59,7 @@ const GROWTH: f64 = 1.0 + 1e-9;
 const THINNEST: f64 = 1e-6;
 
 /// The smallest capsule found that holds all `points`.
-pub(super) fn smallest_capsule(all: &[Vector3<f64>]) -> FittedCapsule {
+pub(in crate::shape) fn smallest_capsule(all: &[Vector3<f64>]) -> FittedCapsule {
     let hull = (all.len() > MANY_POINTS).then(|| hull_corners(all)).flatten();
     let points = hull.as_deref().unwrap_or(all);
     let along = |points: &[Vector3<f64>], axis: &Vector3<f64>| along(points, axis, CIRCLE_STEPS);

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::checked_shape::Shape;
 use super::mesh::Mesh;
 use crate::error::Result;
-use fit::{FittedCapsule, rough_volume, smallest_capsule};
+pub(super) use fit::smallest_capsule;
+use fit::{FittedCapsule, rough_volume};
 use parts::CoveredPart;
 
 /// Few spheres and capsules that hold a mesh.

@@ -1,0 +1,8 @@
+//! Ctrl-C in loops of the binding.
+
+use pyo3::prelude::*;
+
+/// Checks for Ctrl-C at every 4096th call, some milliseconds: functions written in C do not check themselves.
+pub fn check_signals_at(py: Python<'_>, call: usize) -> PyResult<()> {
+    if call % 4096 == 4095 { py.check_signals() } else { Ok(()) }
+}
