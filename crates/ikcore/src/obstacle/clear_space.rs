@@ -3,6 +3,15 @@
 use super::contact::{Contact, NearestContact};
 use super::scene::Scene;
 
+/// A contact that no motion of the arm alone ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Blocked {
+    /// Of a body that no joint moves.
+    Base(Contact),
+    /// Of a body that is fixed to the tip.
+    Hand(Contact),
+}
+
 /// A scene and a margin. Configurations are checked by the caller: one finite entry per joint.
 #[derive(Debug, Clone)]
 pub struct ClearSpace<'a> {
@@ -30,10 +39,19 @@ impl<'a> ClearSpace<'a> {
         self.scene.nearest_contact(q).ok().flatten()
     }
 
-    /// What the bodies that are fixed to the tip are nearer to at `q` (n,) than the margin, of what does not move: no other
-    /// configuration with the same pose of the tip is clear. `None` if they keep the margin.
-    pub fn blocked_hand(&self, q: &[f64]) -> Option<Contact> {
-        self.scene.nearest_of_hand(q).filter(|contact| contact.distance < self.margin)
+    /// What makes every configuration unclear that has the tip where `q` (n,) has it: a body that no joint moves, or one that is
+    /// fixed to the tip, is nearer than the margin to something that does not move either.
+    pub(crate) fn blocked_at_tip(&self, q: &[f64]) -> Option<Blocked> {
+        self.blocked_anywhere().or_else(|| self.too_near(self.scene.nearest_of_hand(q)).map(Blocked::Hand))
+    }
+
+    /// What makes every configuration unclear: a body that no joint moves is nearer to an obstacle than the margin.
+    pub(crate) fn blocked_anywhere(&self) -> Option<Blocked> {
+        self.too_near(self.scene.nearest_fixed_contact()).map(Blocked::Base)
+    }
+
+    fn too_near(&self, contact: Option<Contact>) -> Option<Contact> {
+        contact.filter(|contact| contact.distance < self.margin)
     }
 
     /// The sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to` (m). Adds `weight` times its

@@ -10,6 +10,7 @@
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
+//! | `derived` | what a higher module derives from the bodies |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
@@ -21,6 +22,7 @@ mod batched;
 mod bodies;
 mod body;
 mod builder;
+mod derived;
 mod description;
 mod joint;
 mod kinematics;

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use super::body::Bodies;
+use super::derived::Derived;
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::off_chain::OffChain;
@@ -40,6 +41,8 @@ pub struct Robot {
     reach_of_links: Reach,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
+    /// Of bodies and pairs.
+    derived: Derived,
     /// The smallest change of each joint that leaves the pose of every link unchanged.
     turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
@@ -73,6 +76,7 @@ impl Robot {
             chain: Arc::new(chain),
             tree: OnceLock::new(),
             pairs: Arc::default(),
+            derived: Derived::default(),
             start_index: Arc::default(),
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
@@ -276,6 +280,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.bodies = bodies;
         robot.pairs = Arc::default();
+        robot.derived = Derived::default();
         robot
     }
 
@@ -284,6 +289,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.pairs = pairs;
         robot.pairs = Arc::default();
+        robot.derived = Derived::default();
         robot
     }
 
@@ -297,6 +303,10 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.stances = stances;
         robot
+    }
+
+    pub(super) fn slot(&self) -> &Derived {
+        &self.derived
     }
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {

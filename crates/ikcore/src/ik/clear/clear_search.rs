@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use crate::ik::attempt::Attempt;
 use crate::ik::solution::{Nearest, Solution};
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, Contact};
+use crate::obstacle::{Blocked, ClearSpace, Contact};
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
@@ -19,8 +19,8 @@ pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     pub attempt: &'s mut Attempt<'m, 'p>,
     pub space: &'p ClearSpace<'p>,
     blocked: Candidates,
-    /// What the hand is too near to, whatever the arm does.
-    hand: Option<Contact>,
+    /// What no motion of the arm ends.
+    hopeless: Option<Blocked>,
     push: Goals,
 }
 
@@ -37,7 +37,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn new(attempt: &'s mut Attempt<'m, 'p>, space: &'p ClearSpace<'p>) -> Self {
         let away = Goal::Clearance { up_to: space.margin() + BEYOND, weight: 1.0 };
         let push = Goals::new(&[away], attempt.context.robot(), attempt.context.bounds());
-        Self { attempt, space, blocked: Candidates::new(), hand: None, push }
+        Self { attempt, space, blocked: Candidates::new(), hopeless: None, push }
     }
 
     /// Whether the solution `q` is clear. If not, it is remembered.
@@ -46,16 +46,17 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         if self.space.holds(q) {
             return true;
         }
-        if self.blocked.count == 0 && self.attempt.context.fixes_pose(self.attempt.problem.target()) {
-            self.hand = self.space.blocked_hand(q);
+        if self.blocked.count == 0 {
+            let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
+            self.hopeless = if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere() };
         }
         self.blocked.push(q);
         false
     }
 
-    /// Whether the hand is in the way, so that no solution is clear.
+    /// Whether no solution is clear, whatever the arm does.
     pub fn is_hopeless(&self) -> bool {
-        self.hand.is_some()
+        self.hopeless.is_some()
     }
 
     /// The solution `q`, or one near it on its self-motion that is clear.
@@ -89,8 +90,11 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
         let margin = self.space.margin();
         let said = |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
-        let obstruction = match (&self.hand, exhausted) {
-            (Some(contact), _) => format!("{}, wherever the arm is: the hand itself is in the way", said(contact)),
+        let obstruction = match (&self.hopeless, exhausted) {
+            (Some(Blocked::Hand(contact)), _) => {
+                format!("{} whatever the arm does: the hand itself is in the way", said(contact))
+            }
+            (Some(Blocked::Base(contact)), _) => format!("{}, and no joint moves it", said(contact)),
             (None, Exhausted::All) if self.blocked.count == 1 => {
                 format!("{} at the only solution inside the limits", said(&nearest.contact))
             }
