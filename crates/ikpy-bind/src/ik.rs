@@ -69,10 +69,7 @@ impl PySolution {
     /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        match self.core.nearest.as_deref() {
-            Some(ik::Nearest::Bodies(nearest)) => Some(nearest.clone().into()),
-            _ => None,
-        }
+        self.core.nearest.as_ref()?.bodies.clone().map(PyNearest::from)
     }
 
     /// Iterations over all starts.

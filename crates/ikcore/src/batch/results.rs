@@ -32,7 +32,8 @@ pub struct BatchItem {
 
 impl From<Solution> for BatchItem {
     fn from(solution: Solution) -> Self {
-        let Solution { q: _, status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed } = solution;
+        let Solution { q: _, status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed } =
+            solution;
         Self { status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed }
     }
 }
@@ -47,13 +48,32 @@ impl BatchItem {
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
         let obstruction = String::new();
-        Self { status, error, obstruction, nearest: None, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
+        Self {
+            status,
+            error,
+            obstruction,
+            nearest: None,
+            iterations: 0,
+            restarts: 0,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+        }
     }
 
     /// Combines the item with its configuration.
     pub fn solution(&self, q: &[f64]) -> Solution {
         let Self { status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed } = self.clone();
-        Solution { q: Point::from_slice(q), status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed }
+        Solution {
+            q: Point::from_slice(q),
+            status,
+            error,
+            obstruction,
+            nearest,
+            iterations,
+            restarts,
+            evaluations,
+            elapsed,
+        }
     }
 }
 

@@ -6,8 +6,8 @@
 
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::dot;
-use crate::obstacle::ClearSpace;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
+use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::task::Goals;
@@ -80,7 +80,9 @@ impl GoalDescent<'_, '_> {
                 rate = if bend > 0.0 { dot(&step, &step) / bend } else { f64::INFINITY };
             }
             rate = rate.min(LONGEST / largest(&slope));
-            let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate, within) else { break };
+            let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate, within) else {
+                break;
+            };
             last = Some((difference(&there.q, &here.q), slope));
             here = there;
         }

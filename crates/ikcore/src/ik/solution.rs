@@ -35,25 +35,22 @@ pub struct Solution {
 
 /// What is nearest to what at a configuration, where that was asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Nearest {
-    /// These two bodies.
-    Bodies(NearestContact),
-    /// No two bodies can touch.
-    Nothing,
+pub struct Nearest {
+    /// The two bodies; `None` if no two can touch.
+    pub bodies: Option<NearestContact>,
+    /// The first obstacle that is a mesh which is not closed: its inside is not known.
+    pub open_mesh: Option<usize>,
 }
 
 impl Nearest {
     /// At `q` in `space`.
     pub(super) fn at(space: &ClearSpace<'_>, q: &[f64]) -> Self {
-        space.nearest(q).map_or(Self::Nothing, Self::Bodies)
+        Self { bodies: space.nearest(q), open_mesh: space.first_open_mesh() }
     }
 
     /// The smallest distance (m); infinite if nothing can touch.
     pub fn clearance(&self) -> f64 {
-        match self {
-            Self::Bodies(nearest) => nearest.contact.distance,
-            Self::Nothing => f64::INFINITY,
-        }
+        self.bodies.as_ref().map_or(f64::INFINITY, |bodies| bodies.contact.distance)
     }
 }
 
@@ -89,10 +86,14 @@ impl Solution {
 
     /// The clearance, as the end of a sentence; empty if nothing was checked.
     fn kept_clear(&self) -> String {
-        match self.nearest.as_deref() {
-            None => String::new(),
-            Some(Nearest::Nothing) => ", with nothing to touch".into(),
-            Some(Nearest::Bodies(nearest)) => format!(", {} m clear of everything", number(nearest.contact.distance)),
+        let Some(nearest) = &self.nearest else { return String::new() };
+        let clear = match nearest.bodies {
+            None => ", with nothing to touch".into(),
+            Some(_) => format!(", {} m clear of everything", number(nearest.clearance())),
+        };
+        match nearest.open_mesh {
+            None => clear,
+            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
         }
     }
 }

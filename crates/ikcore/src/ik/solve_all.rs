@@ -184,8 +184,7 @@ pub fn solve_all(
     }
     found.complete &= found.solutions.len() <= limit;
     found.solutions.truncate(limit);
-    found.nearest =
-        context.space().map(|space| found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
+    found.nearest = context.space().map(|space| found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
     (found.iterations, found.restarts) = (attempt.budget.iterations, attempt.budget.restarts);
     (found.evaluations, found.elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
     Ok(found)

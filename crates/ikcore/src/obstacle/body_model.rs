@@ -49,7 +49,8 @@ impl BodyModel {
         };
         let pairs: Vec<[usize; 2]> = robot.tested_bodies().into_iter().map(ordered).collect();
         let groups = BodyGroups::new(&carried, &pairs);
-        let pairs: Vec<BodyPair> = (0..).zip(pairs).map(|(number, [near, far])| BodyPair::Capsules { near, far, number }).collect();
+        let pairs: Vec<BodyPair> =
+            (0..).zip(pairs).map(|(number, [near, far])| BodyPair::Capsules { near, far, number }).collect();
         let mut by_groups: Vec<([usize; 2], Vec<BodyPair>)> = vec![];
         for pair in &pairs {
             if let BodyPair::Capsules { near, far, .. } = pair {

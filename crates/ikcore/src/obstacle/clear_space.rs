@@ -2,6 +2,7 @@
 
 use super::contact::{Contact, NearestContact};
 use super::scene::Scene;
+use crate::shape::{Geometry, Shape};
 
 /// A contact that no motion of the arm alone ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,12 @@ impl<'a> ClearSpace<'a> {
     /// Whether everything keeps the margin at `q` (n,). Never true for bodies that are nearer.
     pub fn holds(&self, q: &[f64]) -> bool {
         self.scene.is_clear(q, self.margin)
+    }
+
+    /// The first obstacle that is a mesh which is not closed.
+    pub fn first_open_mesh(&self) -> Option<usize> {
+        let is_open = |shape: &Shape| matches!(shape.geometry(), Geometry::Mesh(mesh) if !mesh.is_closed());
+        self.scene.others.obstacles.iter().position(is_open)
     }
 
     /// The nearest two bodies at `q` (n,); `None` if nothing can touch.

@@ -252,7 +252,8 @@ impl<'a> Scene<'a> {
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.bodies.carried[capsule].radius;
-                self.others.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius) - radius
+                self.others.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius)
+                    - radius
             }
             BodyPair::Capsules { near, far, .. } => {
                 let radii = self.bodies.carried[near].radius + self.bodies.carried[far].radius;

@@ -5,8 +5,8 @@ use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{PointToPointMethod, PointToPointOptions};
 use super::{minmax, tpbso};
-use crate::obstacle::kept_margin;
 use crate::error::{Error, Result};
+use crate::obstacle::kept_margin;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 

@@ -59,7 +59,8 @@ impl ClearSearch<'_, '_, '_> {
             if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
                 return Branches::Clear(q);
             }
-            let interrupted = k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going();
+            let interrupted =
+                k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going();
             if interrupted || self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
                 break;
             }
@@ -79,7 +80,7 @@ impl ClearSearch<'_, '_, '_> {
     ) -> Option<Point> {
         preference.ordered(configurations).into_iter().find(|q| {
             let is_solved = self.attempt.problem.assess(q).score.solved;
-            is_solved && self.is_clear(q) 
+            is_solved && self.is_clear(q)
         })
     }
 }

@@ -89,7 +89,8 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn in_collision(&self, exhausted: Exhausted) -> Option<Solution> {
         let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
         let margin = self.space.margin();
-        let said = |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
+        let said =
+            |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
         let obstruction = match (&self.hopeless, exhausted) {
             (Some(Blocked::Hand(contact)), _) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(contact))
@@ -107,6 +108,10 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
             }
         };
         let solution = self.attempt.solution(Status::InCollision, q);
-        Some(Solution { obstruction, nearest: Some(Box::new(Nearest::Bodies(nearest))), ..solution })
+        Some(Solution {
+            obstruction,
+            nearest: Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() })),
+            ..solution
+        })
     }
 }

@@ -24,7 +24,8 @@ impl ClearSearch<'_, '_, '_> {
         while no_better < PATIENCE {
             let solution = self.attempt.solve_from(&x0);
             if solution.status != Status::Solved {
-                return best.map_or_else(|| Err(self.in_collision(Exhausted::Tried).unwrap_or(solution)), |(_, q)| Ok(q));
+                return best
+                    .map_or_else(|| Err(self.in_collision(Exhausted::Tried).unwrap_or(solution)), |(_, q)| Ok(q));
             }
             no_better += 1;
             if let Some(mut q) = self.cleared(solution.q) {
