@@ -13,12 +13,12 @@ use ikcore::task::{Goal, Target};
 const MARGIN: f64 = 0.01;
 
 fn arm(name: &str) -> Robot {
-    Robot::named(name).unwrap().with_capsules_along_links(0.04).unwrap()
+    Robot::named(name).unwrap().with_capsules_along_links(0.06).unwrap()
 }
 
 /// Boxes in front of an arm, and the pose that a random configuration has.
 fn cluttered(robot: &Robot, rng: &mut LazyRng) -> (Vec<Shape>, Target) {
-    let boxes = (0..6).map(|_| {
+    let boxes = (0..9).map(|_| {
         let (angle, radius) = (rng.uniform_in(-3.0, 3.0), rng.uniform_in(0.3, 0.7));
         let center = [radius * angle.cos(), radius * angle.sin(), rng.uniform_in(0.1, 0.9)];
         Shape::cuboid(center, std::array::from_fn(|_| rng.uniform_in(0.05, 0.2)), None).unwrap()
@@ -202,8 +202,13 @@ fn the_derivative_of_nearness_is_its_difference() {
     let (obstacles, _) = cluttered(&robot, &mut rng);
     let surroundings = among(&obstacles).surroundings;
     let space = surroundings.clear_space(&robot).unwrap().unwrap();
-    for _ in 0..50 {
+    let mut compared = 0;
+    for _ in 0..300 {
         let q = robot.random_configurations(1, &mut rng).unwrap();
+        if space.nearest(&q).unwrap().contact.distance < 0.01 {
+            continue;
+        }
+        compared += 1;
         let mut slope = vec![0.0; 7];
         space.nearness(&q, 0.2, 2.0, &mut slope);
         for j in 0..7 {
@@ -212,13 +217,11 @@ fn the_derivative_of_nearness_is_its_difference() {
                 there[j] += step;
                 2.0 * space.nearness(&there, 0.2, 1.0, &mut [0.0; 7])
             };
-            let (forward, backward) = ((at(1e-6) - at(0.0)) / 1e-6, (at(0.0) - at(-1e-6)) / 1e-6);
-            // At a kink, such as past the edge of a box that is overlapped, the sides differ.
-            if (forward - backward).abs() < 1e-2 * (1.0 + forward.abs()) {
-                assert!((slope[j] - 0.5 * (forward + backward)).abs() < 1e-2 * (1.0 + slope[j].abs()), "{q:?} {j}");
-            }
+            let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
+            assert!((slope[j] - difference).abs() < 1e-2 * (1.0 + difference.abs()), "{} {difference}", slope[j]);
         }
     }
+    assert!(compared > 20, "{compared}");
 }
 
 #[test]
@@ -231,7 +234,8 @@ fn a_hand_in_the_way_is_said_before_any_search() {
     let found = solved(&robot, &target, &among(&wall));
     assert_eq!(found.status, Status::InCollision);
     let link = &found.message()[found.message().find("link '").unwrap()..];
-    let expected = "link 'wrist_3_link' is 0.09000 m inside obstacle 0 (Sphere) whatever the arm does: the hand itself is in the way: ";
+    let expected =
+        "link 'link_6' is 0.1100 m inside obstacle 0 (Sphere) whatever the arm does: the hand itself is in the way: ";
     assert!(link.starts_with(expected), "{link}");
     // An obstacle that engulfs the arm.
     let all = [Shape::sphere([0.0; 3], 5.0).unwrap()];
@@ -250,7 +254,7 @@ fn nothing_is_checked_unless_asked_for() {
     assert_eq!(plain.q, unchecked.q);
     let itself = Surroundings { self_collision: Some(true), ..Surroundings::default() };
     let checked = solved(&robot, &target, &SolveOptions { surroundings: itself, ..SolveOptions::default() });
-    assert!(checked.clearance() >= 1e-3);
+    assert!(checked.clearance() >= 1e-3, "{}", checked.message());
 }
 
 #[test]

@@ -4,17 +4,14 @@ use std::any::Any;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-use super::model::Robot;
-
 /// Derived data, made at first use. This module cannot name its type, which belongs to a higher one.
 #[derive(Clone, Default)]
 pub(super) struct Derived(Arc<OnceLock<Arc<dyn Any + Send + Sync>>>);
 
-impl Robot {
-    /// What `make` derives from the bodies of this robot; made once, and shared with copies that have the same bodies. To be called
-    /// with one type alone.
-    pub(crate) fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
-        let shared = self.slot().0.get_or_init(|| Arc::new(make()));
+impl Derived {
+    /// What `make` made at the first call. To be called with one type alone.
+    pub fn get<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
+        let shared = self.0.get_or_init(|| Arc::new(make()));
         Arc::clone(shared).downcast().unwrap_or_else(|_| Arc::new(make()))
     }
 }

@@ -1,5 +1,6 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
+use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
@@ -305,8 +306,10 @@ impl Robot {
         robot
     }
 
-    pub(super) fn slot(&self) -> &Derived {
-        &self.derived
+    /// What `make` derives from the bodies of this robot and their pairs; made once, and shared with copies that have the same. To
+    /// be called with one type alone.
+    pub(crate) fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
+        self.derived.get(make)
     }
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {

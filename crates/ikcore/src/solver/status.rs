@@ -80,9 +80,7 @@ impl Status {
             Self::Invalid => "use on_invalid=\"raise\" to see what is wrong",
             Self::PlantFailed => "fix the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
-            Self::InCollision => {
-                "move the target or what is in the way, lower the margin, or see `nearest`; another seed or a larger budget may find a way"
-            }
+            Self::InCollision => "move the target or what is in the way, or lower the margin",
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"

@@ -14,7 +14,7 @@ const SCANNED: usize = 2048;
 const VALUES_BETWEEN_LOOKS: usize = 64;
 
 /// What the closed form yields.
-pub(super) enum Branches {
+pub(super) enum BranchOutcome {
     /// A clear solution.
     Clear(Point),
     /// No branch inside the limits is clear.
@@ -25,11 +25,11 @@ pub(super) enum Branches {
 
 impl ClearSearch<'_, '_, '_> {
     /// The preferred one of the clear branches; of a redundant arm one at the first value of its parameter that has one.
-    pub(super) fn by_branches(&mut self, preference: &Preference) -> Branches {
+    pub(super) fn by_branches(&mut self, preference: &Preference) -> BranchOutcome {
         let (context, target) = (self.attempt.context, self.attempt.problem.target());
-        let Target::Pose(pose) = target else { return Branches::Open };
+        let Target::Pose(pose) = target else { return BranchOutcome::Open };
         if !context.asks_for_pose(target) || self.attempt.budget.left() < LEAST_BUDGET {
-            return Branches::Open;
+            return BranchOutcome::Open;
         }
         let robot = context.robot();
         match (robot.solves_at_once(), robot.family(pose)) {
@@ -38,26 +38,28 @@ impl ClearSearch<'_, '_, '_> {
                 Some(branches) => {
                     self.attempt.budget.evaluations += branches.evaluations;
                     match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
-                        Some(q) => Branches::Clear(q),
-                        None if !self.has_candidates() => Branches::Open,
-                        None if branches.complete && !branches.singular => Branches::Blocked(Exhausted::All),
-                        None => self.pushed_candidate().map_or(Branches::Blocked(Exhausted::Tried), Branches::Clear),
+                        Some(q) => BranchOutcome::Clear(q),
+                        None if !self.has_candidates() => BranchOutcome::Open,
+                        None if branches.complete && !branches.singular => BranchOutcome::Blocked(Exhausted::All),
+                        None => self
+                            .pushed_candidate()
+                            .map_or(BranchOutcome::Blocked(Exhausted::Tried), BranchOutcome::Clear),
                     }
                 }
-                None => Branches::Open,
+                None => BranchOutcome::Open,
             },
-            _ => Branches::Open,
+            _ => BranchOutcome::Open,
         }
     }
 
-    fn of_family(&mut self, family: &PoseFamily<'_>, preference: &Preference) -> Branches {
+    fn of_family(&mut self, family: &PoseFamily<'_>, preference: &Preference) -> BranchOutcome {
         let [lower, upper] = self.attempt.context.sampling_ranges();
         let half_the_budget = self.attempt.budget.left() / 2;
         for (k, value) in family.arcs(&lower, &upper).scattered(SCANNED).enumerate() {
             let branches = family.branches_at(value);
             self.attempt.budget.evaluations += branches.evaluations;
             if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
-                return Branches::Clear(q);
+                return BranchOutcome::Clear(q);
             }
             let interrupted =
                 k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going();
@@ -66,9 +68,9 @@ impl ClearSearch<'_, '_, '_> {
             }
         }
         match self.has_candidates() {
-            true if self.is_hopeless() => Branches::Blocked(Exhausted::Tried),
-            true => self.pushed_candidate().map_or(Branches::Blocked(Exhausted::Tried), Branches::Clear),
-            false => Branches::Open,
+            true if self.is_hopeless() => BranchOutcome::Blocked(Exhausted::Tried),
+            true => self.pushed_candidate().map_or(BranchOutcome::Blocked(Exhausted::Tried), BranchOutcome::Clear),
+            false => BranchOutcome::Open,
         }
     }
 

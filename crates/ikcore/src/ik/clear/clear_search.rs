@@ -1,6 +1,6 @@
 //! The state of a search for a clear solution: what was tried, and why it was not clear.
 
-use super::candidates::Candidates;
+use super::blocked_solutions::BlockedSolutions;
 use crate::ik::attempt::Attempt;
 use crate::ik::solution::{Nearest, Solution};
 use crate::objective::Point;
@@ -11,14 +11,14 @@ use crate::task::{Goal, Goals};
 /// How far beyond the margin a configuration is pushed (m).
 const BEYOND: f64 = 5e-3;
 
-/// Candidates that are pushed where none is clear.
+/// BlockedSolutions that are pushed where none is clear.
 const PUSHED: usize = 8;
 
-/// Candidates of one target.
+/// BlockedSolutions of one target.
 pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     pub attempt: &'s mut Attempt<'m, 'p>,
     pub space: &'p ClearSpace<'p>,
-    blocked: Candidates,
+    blocked: BlockedSolutions,
     /// What no motion of the arm ends.
     hopeless: Option<Blocked>,
     push: Goals,
@@ -37,7 +37,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn new(attempt: &'s mut Attempt<'m, 'p>, space: &'p ClearSpace<'p>) -> Self {
         let away = Goal::Clearance { up_to: space.margin() + BEYOND, weight: 1.0 };
         let push = Goals::new(&[away], attempt.context.robot(), attempt.context.bounds());
-        Self { attempt, space, blocked: Candidates::new(), hopeless: None, push }
+        Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: None, push }
     }
 
     /// Whether the solution `q` is clear. If not, it is remembered.
@@ -104,7 +104,11 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
                 format!("{} at the best of {count} solutions, and there are no others", said(&nearest.contact))
             }
             (None, Exhausted::Tried) => {
-                format!("{} at the best of {} solutions tried", said(&nearest.contact), self.blocked.count)
+                let count = self.blocked.count;
+                format!(
+                    "{} at the best of {count} solutions tried; a larger budget may find others",
+                    said(&nearest.contact)
+                )
             }
         };
         let solution = self.attempt.solution(Status::InCollision, q);

@@ -1,6 +1,6 @@
 //! A solution that is clear, as `solve` returns it.
 
-use super::branches::Branches;
+use super::branches::BranchOutcome;
 use super::clear_search::{ClearSearch, Exhausted};
 use crate::ik::attempt::Attempt;
 use crate::ik::first_branch::by_closed_form;
@@ -58,13 +58,13 @@ impl ClearSearch<'_, '_, '_> {
         }
         let context = self.attempt.context;
         match self.by_branches(&Preference::new(context, start)) {
-            Branches::Clear(q) => return Ok(q),
-            Branches::Blocked(exhausted) => {
+            BranchOutcome::Clear(q) => return Ok(q),
+            BranchOutcome::Blocked(exhausted) => {
                 if let Some(solution) = self.in_collision(exhausted) {
                     return Err(solution);
                 }
             }
-            Branches::Open => {
+            BranchOutcome::Open => {
                 if let Some(solution) = by_closed_form(self.attempt, start) {
                     return self.checked(solution);
                 }
@@ -101,13 +101,13 @@ impl ClearSearch<'_, '_, '_> {
         let context = self.attempt.context;
         if context.robot().dof() <= context.robot().task_rank().pose {
             match self.by_branches(&Preference::new(context, Some(start))) {
-                Branches::Clear(q) => return Ok(q),
-                Branches::Blocked(exhausted) => {
+                BranchOutcome::Clear(q) => return Ok(q),
+                BranchOutcome::Blocked(exhausted) => {
                     if let Some(solution) = self.in_collision(exhausted) {
                         return Err(solution);
                     }
                 }
-                Branches::Open => {}
+                BranchOutcome::Open => {}
             }
         }
         let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };

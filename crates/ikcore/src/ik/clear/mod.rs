@@ -5,8 +5,8 @@
 //! `least_cost` compares several. Every solution that is returned as solved was certified by
 //! [`ClearSpace::holds`](crate::obstacle::ClearSpace::holds).
 
+mod blocked_solutions;
 mod branches;
-mod candidates;
 mod clear_search;
 mod clear_solution;
 mod least_cost;

@@ -8,7 +8,7 @@ const KEPT: usize = 64;
 
 /// Some of the candidates, spread evenly over the order in which they came.
 #[derive(Debug)]
-pub(super) struct Candidates {
+pub(super) struct BlockedSolutions {
     kept: Vec<Point>,
     /// How many there were.
     pub count: usize,
@@ -16,7 +16,7 @@ pub(super) struct Candidates {
     stride: usize,
 }
 
-impl Candidates {
+impl BlockedSolutions {
     pub fn new() -> Self {
         Self { kept: Vec::new(), count: 0, stride: 1 }
     }
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn a_spread_of_many_candidates_is_kept() {
-        let mut all = Candidates::new();
+        let mut all = BlockedSolutions::new();
         (0..1000).for_each(|i| all.push(&[f64::from(i)]));
         let kept: Vec<f64> = all.kept.iter().map(|q| q[0]).collect();
         assert!(kept.len() > KEPT / 2 - 1 && kept.len() <= KEPT && all.count == 1000);
