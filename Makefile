@@ -5,7 +5,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test zoo lint bench coverage docs papers
+.PHONY: help demo test test-rust test-python zoo lint lint-rust lint-python bench coverage docs papers
+
+# The jobs that `test` runs side by side are no jobs of cargo's.
+unexport MAKEFLAGS
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -15,22 +18,32 @@ demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; resul
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
 	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
 
-test: lint  ## all checks and tests, of Rust and of Python
+# Two halves side by side: compiling keeps one core busy for long. Each line prints its output when it ends.
+test:  ## all checks and tests, of Rust and of Python
+	$(MAKE) $(MAKEOVERRIDES) --no-print-directory --jobs=2 $(if $(filter output-sync,$(.FEATURES)),--output-sync=line) test-rust test-python
+
+test-rust: lint-rust
 	cargo test --locked
+
+test-python: lint-python
 	$(BIN)/python -m mypy.stubtest beetle_ik._core
 	$(BIN)/python -m pytest
 
 zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
 	$(BIN)/python -m pytest tests/zoo
 
-lint: $(VENV)/with-test  ## formatting, clippy, ruff, types and the docstrings that editors show
+lint: lint-rust lint-python  ## formatting, clippy, ruff, types and the docstrings that editors show
+
+lint-rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
+
+lint-python: $(VENV)/with-test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python tools/stub_docstrings.py --check
-	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
 
 bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison with other libraries in target/compare/
 	cargo bench --locked

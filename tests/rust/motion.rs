@@ -102,8 +102,7 @@ fn noise_neither_delays_nor_shakes() {
 #[test]
 fn a_smooth_target_is_followed_without_lag() {
     let arm = robot("panda");
-    // Under a jerk limit the jerk of the target itself passes for a little noise.
-    for (jerk, most) in [(f64::INFINITY, 1e-8), (200.0, 5e-4)] {
+    for (jerk, most) in [(f64::INFINITY, 1e-8), (200.0, 1e-7), (50.0, 1e-7)] {
         let mut session = session(&arm, moderate(&arm, jerk), 0.002);
         let from = arm.tip_position(&START);
         for tick in 1..2000 {

@@ -76,7 +76,7 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
     };
     let mut found = taker.found;
     if found.solutions.is_empty() {
-        found.obstruction = found.complete.then(|| match attempt.problem.beyond_reach(bounds) {
+        found.obstruction = found.complete.then(|| match attempt.problem.reach_shortfall(bounds) {
             Some(beyond) => beyond.to_string(),
             None => outside(count),
         });

@@ -54,7 +54,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             let (status, q) = self.search(bounds, x0, 0);
             return self.explained(status, q);
         };
-        if self.problem.beyond_reach(bounds).is_some() {
+        if self.problem.reach_shortfall(bounds).is_some() {
             let q = self.approach(&descent, x0, APPROACHES);
             return self.explained(Status::OutOfReach, q);
         }

@@ -33,7 +33,7 @@ mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
 pub use jacobian::Columns;
-pub use reach::{Beyond, Reach};
+pub use reach::{Reach, ReachShortfall};
 pub use screws::{Screw, Screws};
 pub use task_rank::TaskRank;
 pub use torques::Wrench;

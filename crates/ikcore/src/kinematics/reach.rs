@@ -27,7 +27,7 @@ pub struct Reach {
 
 /// Lower bounds on how far a target is out of reach.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Beyond {
+pub struct ReachShortfall {
     /// Distance from the nearest point that the tip can reach (m).
     pub distance: f64,
     /// Distance from the plane of a planar arm (m); 0 for other arms.
@@ -36,7 +36,7 @@ pub struct Beyond {
     pub angle: f64,
 }
 
-impl fmt::Display for Beyond {
+impl fmt::Display for ReachShortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = [
             (self.distance, "out of reach by at least ", " m"),
@@ -51,22 +51,22 @@ impl fmt::Display for Beyond {
 
 impl Reach {
     /// How far a position, an orientation, or both are outside; `None` if within `tolerance` (m, rad).
-    pub fn beyond(
+    pub fn shortfall(
         &self,
         position: Option<&[f64; 3]>,
         orientation: Option<&Frame>,
         tolerance: [f64; 2],
-    ) -> Option<Beyond> {
+    ) -> Option<ReachShortfall> {
         let [metres, radians] = tolerance;
         let above = |size: f64, tolerance: f64| if size > tolerance { size } else { 0.0 };
-        let beyond = Beyond {
+        let shortfall = ReachShortfall {
             distance: position.map_or(0.0, |position| above(self.excess(position), metres)),
             off_plane: position.map_or(0.0, |position| above(self.off_plane(position).abs(), metres)),
             angle: orientation
                 .zip(self.fixed_direction)
                 .map_or(0.0, |(frame, fixed)| above(fixed.angle_to(frame), radians)),
         };
-        (beyond != Beyond::default()).then_some(beyond)
+        (shortfall != ReachShortfall::default()).then_some(shortfall)
     }
 
     /// Distance of `position` from the reach (m); zero or less inside.

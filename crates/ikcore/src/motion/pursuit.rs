@@ -69,9 +69,9 @@ impl Pursuit<'_> {
         self.reachable.clip(out);
     }
 
-    /// The share of its limits that each joint uses.
+    /// The share of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
     fn shares(&self, q: &[f64]) -> Shares {
-        let way = |j: usize| (self.goal.q()[j] - q[j]).abs();
+        let way = |j: usize| (self.goal.q()[j] - self.goal.step()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
         if farthest <= FAR * (1.0 + self.goal.noise()) {

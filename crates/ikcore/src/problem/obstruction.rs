@@ -1,7 +1,7 @@
 //! Explains why a target was missed: out of reach, blocked by its region, or joints at their limits.
 
 use super::inverse_kinematics::Problem;
-use crate::kinematics::Beyond;
+use crate::kinematics::ReachShortfall;
 use crate::objective::Bounds;
 use crate::task::Target;
 
@@ -10,7 +10,7 @@ const MOST_NAMED: usize = 3;
 
 impl Problem<'_> {
     /// How far the target is beyond the reach within `bounds`; `None` unless that is certain.
-    pub(crate) fn beyond_reach(&self, bounds: &Bounds) -> Option<Beyond> {
+    pub(crate) fn reach_shortfall(&self, bounds: &Bounds) -> Option<ReachShortfall> {
         let criterion = self.criterion();
         if criterion.components.is_some() {
             return None; // component weights and tolerances may leave the unreachable part free
@@ -21,12 +21,12 @@ impl Problem<'_> {
             Target::Position(_) | Target::Pointing { .. } => None,
         };
         let tolerance = [criterion.tolerance.position, criterion.tolerance.rotation];
-        self.robot().reach(bounds.lower(), bounds.upper()).beyond(aim.position().as_ref(), orientation, tolerance)
+        self.robot().reach(bounds.lower(), bounds.upper()).shortfall(aim.position().as_ref(), orientation, tolerance)
     }
 
     /// Describes the obstruction between the tip and the target at `q`; empty if nothing is known.
     pub(crate) fn obstruction(&self, bounds: &Bounds, q: &[f64]) -> String {
-        let reach = self.beyond_reach(bounds).map(|beyond| beyond.to_string());
+        let reach = self.reach_shortfall(bounds).map(|shortfall| shortfall.to_string());
         let reasons = reach.into_iter().chain(self.outside_region(q)).chain(self.joints_at_limits(bounds, q));
         reasons.collect::<Vec<_>>().join("; ")
     }

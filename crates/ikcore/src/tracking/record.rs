@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
 use crate::error::Result;
-use crate::kinematics::Beyond;
+use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::comparison::larger;
 use crate::solver::Status;
@@ -56,7 +56,7 @@ pub struct Record {
     pub criterion: Criterion,
     /// Distance by which the path is provably out of reach, and when (s). `None` if the track succeeded or nothing is
     /// proven.
-    pub out_of_reach: Option<(Beyond, f64)>,
+    pub out_of_reach: Option<(ReachShortfall, f64)>,
     /// How the track as a whole ended.
     pub status: Status,
     /// Time taken.

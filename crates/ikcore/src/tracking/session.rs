@@ -9,7 +9,7 @@ use super::step::Step;
 use super::target_stream::{Arrival, TargetStream};
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result, require_positive};
-use crate::kinematics::Beyond;
+use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::problem::Problem;
@@ -142,9 +142,9 @@ impl Session {
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
+    pub(super) fn reach_shortfall(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
         let target = self.read(wanted)?;
-        Ok(Problem::new(&self.robot, &target, self.criterion).beyond_reach(bounds))
+        Ok(Problem::new(&self.robot, &target, self.criterion).reach_shortfall(bounds))
     }
 
     /// Configuration and box of the last tick.

@@ -6,7 +6,7 @@ use super::session::Session;
 use super::track_options::TrackOptions;
 use crate::error::Result;
 use crate::ik::{Prefer, SolveOptions, solve};
-use crate::kinematics::Beyond;
+use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
@@ -56,14 +56,18 @@ pub fn track(
 }
 
 /// Returns the largest distance by which the path is provably out of reach from row `first` on, and its time (s).
-fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session) -> Result<Option<(Beyond, f64)>> {
-    let mut farthest: Option<(Beyond, f64)> = None;
+fn farthest_out_of_reach(
+    reference: &Reference,
+    first: usize,
+    session: &Session,
+) -> Result<Option<(ReachShortfall, f64)>> {
+    let mut farthest: Option<(ReachShortfall, f64)> = None;
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // limits vary over time
     for i in first..reference.len() {
-        if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
-            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.angle) > (most.distance, most.angle))
+        if let Some(shortfall) = session.reach_shortfall(&target(reference, i), &bounds)?
+            && farthest.is_none_or(|(most, _)| (shortfall.distance, shortfall.angle) > (most.distance, most.angle))
         {
-            farthest = Some((beyond, reference.time(i)));
+            farthest = Some((shortfall, reference.time(i)));
         }
     }
     Ok(farthest)

@@ -144,7 +144,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
         } else {
             // eq. (27), with inertia and limit
             velocities.update([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
-            self.feel(&population.members, &velocities.all, *step, antennae, evaluator)?;
+            self.evaluate_antennae(&population.members, &velocities.all, *step, antennae, evaluator)?;
             self.advance(&mut population.members, &velocities.all, antennae, *step);
             population.members.evaluate_from(0, evaluator)?;
             *step *= self.step_decay; // eq. (32)
@@ -156,7 +156,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
 
 impl BeetleSwarm {
     /// Evaluates x + V d/2 and x - V d/2, eq. (29) and (30), with d = delta / c, eq. (31).
-    fn feel<O: Objective + ?Sized>(
+    fn evaluate_antennae<O: Objective + ?Sized>(
         &self,
         beetles: &Members,
         velocities: &[f64],
