@@ -184,7 +184,11 @@ pub fn solve_all(
     }
     found.complete &= found.solutions.len() <= limit;
     found.solutions.truncate(limit);
-    found.nearest = context.space().map(|space| found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
+    if let Some(space) = context.space() {
+        // Whole turns may have rounded a solution out of the clear space.
+        found.solutions = found.solutions.filtered(|_, q| space.holds(q));
+        found.nearest = Some(found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
+    }
     (found.iterations, found.restarts) = (attempt.budget.iterations, attempt.budget.restarts);
     (found.evaluations, found.elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
     Ok(found)

@@ -1,7 +1,7 @@
 //! Clear solutions by the closed form: branches, and samples of the self-motion.
 
 use super::clear_search::{ClearSearch, Exhausted};
-use crate::closed_form::PoseFamily;
+use crate::closed_form::{ArmBranches, PoseFamily};
 use crate::ik::first_branch::LEAST_BUDGET;
 use crate::ik::preference::Preference;
 use crate::objective::Point;
@@ -34,21 +34,22 @@ impl ClearSearch<'_, '_, '_> {
         let robot = context.robot();
         match (robot.solves_at_once(), robot.family(pose)) {
             (Some(true), Some(family)) => self.of_family(&family, preference),
-            (Some(_), None) => match robot.branches(pose) {
-                Some(branches) => {
-                    self.attempt.budget.evaluations += branches.evaluations;
-                    match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
-                        Some(q) => BranchOutcome::Clear(q),
-                        None if !self.has_candidates() => BranchOutcome::Open,
-                        None if branches.complete && !branches.singular => BranchOutcome::Blocked(Exhausted::All),
-                        None => self
-                            .pushed_candidate()
-                            .map_or(BranchOutcome::Blocked(Exhausted::Tried), BranchOutcome::Clear),
-                    }
-                }
-                None => BranchOutcome::Open,
-            },
+            (Some(_), None) => {
+                robot.branches(pose).map_or(BranchOutcome::Open, |all| self.of_branches(&all, preference))
+            }
             _ => BranchOutcome::Open,
+        }
+    }
+
+    /// Of an arm that is not redundant.
+    fn of_branches(&mut self, branches: &ArmBranches, preference: &Preference) -> BranchOutcome {
+        self.attempt.budget.evaluations += branches.evaluations;
+        match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
+            Some(q) => BranchOutcome::Clear(q),
+            None if self.has_candidates() && branches.complete && !branches.singular => {
+                BranchOutcome::Blocked(Exhausted::All)
+            }
+            None => self.clear_by_pushing(),
         }
     }
 
@@ -61,16 +62,22 @@ impl ClearSearch<'_, '_, '_> {
             if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
                 return BranchOutcome::Clear(q);
             }
-            let interrupted =
-                k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going();
-            if interrupted || self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
+            if self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
                 break;
             }
+            if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
+                return BranchOutcome::Blocked(Exhausted::Interrupted);
+            }
         }
-        match self.has_candidates() {
-            true if self.is_hopeless() => BranchOutcome::Blocked(Exhausted::Tried),
-            true => self.pushed_candidate().map_or(BranchOutcome::Blocked(Exhausted::Tried), BranchOutcome::Clear),
-            false => BranchOutcome::Open,
+        self.clear_by_pushing()
+    }
+
+    /// Where no branch is clear.
+    fn clear_by_pushing(&mut self) -> BranchOutcome {
+        match self.pushed_candidate() {
+            Some(q) => BranchOutcome::Clear(q),
+            None if self.has_candidates() => BranchOutcome::Blocked(Exhausted::Tried),
+            None => BranchOutcome::Open,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::blocked_solutions::BlockedSolutions;
 use crate::ik::attempt::Attempt;
 use crate::ik::solution::{Nearest, Solution};
+use crate::ik::whole_turns::bring_near;
 use crate::objective::Point;
 use crate::obstacle::{Blocked, ClearSpace, Contact};
 use crate::solver::Status;
@@ -31,6 +32,8 @@ pub(in crate::ik) enum Exhausted {
     All,
     /// Other solutions may exist.
     Tried,
+    /// The monitor asked to stop.
+    Interrupted,
 }
 
 impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
@@ -67,8 +70,20 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         if self.is_hopeless() { None } else { self.pushed(q) }
     }
 
+    /// Shifts the joints of the clear solution `q` by whole turns towards `start`, unless rounding takes it out of the clear space.
+    pub fn bring_near(&self, start: &[f64], q: &mut Point) {
+        let (context, mut near) = (self.attempt.context, q.clone());
+        bring_near(context.robot(), context.bounds(), start, &mut near);
+        if self.space.holds(&near) {
+            *q = near;
+        }
+    }
+
     /// A clear solution that one of the candidates least deep in collision is pushed to.
     pub fn pushed_candidate(&mut self) -> Option<Point> {
+        if self.is_hopeless() {
+            return None;
+        }
         let nearly = self.blocked.by_clearance(self.space);
         nearly.into_iter().take(PUSHED).find_map(|(_, q)| self.pushed(q))
     }
@@ -103,7 +118,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
                 let count = self.blocked.count;
                 format!("{} at the best of {count} solutions, and there are no others", said(&nearest.contact))
             }
-            (None, Exhausted::Tried) => {
+            (None, _) => {
                 let count = self.blocked.count;
                 format!(
                     "{} at the best of {count} solutions tried; a larger budget may find others",
@@ -111,7 +126,8 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
                 )
             }
         };
-        let solution = self.attempt.solution(Status::InCollision, q);
+        let status = if exhausted == Exhausted::Interrupted { Status::Interrupted } else { Status::InCollision };
+        let solution = self.attempt.solution(status, q);
         Some(Solution {
             obstruction,
             nearest: Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() })),

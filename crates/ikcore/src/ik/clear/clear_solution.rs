@@ -7,7 +7,6 @@ use crate::ik::first_branch::by_closed_form;
 use crate::ik::preference::Preference;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::solve_options::Prefer;
-use crate::ik::whole_turns::bring_near;
 use crate::objective::Point;
 use crate::obstacle::ClearSpace;
 use crate::solver::Status;
@@ -121,7 +120,7 @@ impl ClearSearch<'_, '_, '_> {
             return q;
         }
         if let Some(start) = start {
-            bring_near(context.robot(), context.bounds(), start, &mut q);
+            self.bring_near(start, &mut q);
         }
         self.attempt.descend_goals(&mut context.goals().clone(), &mut q);
         q

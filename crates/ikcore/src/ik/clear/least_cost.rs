@@ -2,7 +2,6 @@
 
 use super::clear_search::{ClearSearch, Exhausted};
 use crate::ik::solution::Solution;
-use crate::ik::whole_turns::bring_near;
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Goals;
@@ -30,7 +29,7 @@ impl ClearSearch<'_, '_, '_> {
             no_better += 1;
             if let Some(mut q) = self.cleared(solution.q) {
                 if let Some(start) = start {
-                    bring_near(context.robot(), context.bounds(), start, &mut q);
+                    self.bring_near(start, &mut q);
                 }
                 self.attempt.descend_goals(goals, &mut q);
                 let cost = goals.cost(context.robot(), context.space(), &q, &mut q.clone());

@@ -20,7 +20,7 @@ impl ClearSearch<'_, '_, '_> {
                 return Ok(q);
             }
             if !self.attempt.monitor.keep_going() {
-                return Err(Solution { status: Status::Interrupted, ..self.missed(solution) });
+                return Err(self.in_collision(Exhausted::Interrupted).unwrap_or(solution));
             }
             if self.is_hopeless() || self.attempt.budget.is_spent() {
                 return Err(self.missed(solution));
