@@ -87,7 +87,7 @@ class Robot:
         tip: str | None = None,
         hold: Mapping[str, float] | None = None,
         srdf: str | os.PathLike[str] | None = None,
-        collision: Literal["primitives", "fit"] | None = "primitives",
+        collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
         package_dirs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
     ) -> Robot:
         """Makes a robot from a URDF file or a string of XML. Links and joints beside the chain are kept: see `all_link_names` and
@@ -101,9 +101,10 @@ class Robot:
             hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
                 the limit nearest to it.
             srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
-            collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become `capsules` that
+            collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become capsules that
                 enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
-                hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. None: none is read.
+                hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. "hulls": meshes become
+                their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
             package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
                 AMENT_PREFIX_PATH, and the folders above the file.
 
@@ -116,7 +117,12 @@ class Robot:
         """
     @staticmethod
     def from_mjcf(
-        model: Any, *, base: str | None = None, tip: str | None = None, hold: Mapping[str, float] | None = None
+        model: Any,
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
     ) -> Robot:
         """Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
 
@@ -124,10 +130,10 @@ class Robot:
             model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
             base: body whose frame is the reference frame; None: "world".
             tip: body or site at the end of the chain; None: the only leaf body.
-            hold: as in `from_urdf`.
+            hold, collision: as in `from_urdf`.
 
         Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
-        follow their master. Geoms that collide become `capsules` if they are spheres, capsules, cylinders or boxes.
+        follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
 
         Raises:
             BeetleIkError: MuJoCo is not installed.
@@ -143,7 +149,7 @@ class Robot:
         tip: str | None = None,
         hold: Mapping[str, float] | None = None,
         srdf: str | os.PathLike[str] | None = None,
-        collision: Literal["primitives", "fit"] | None = None,
+        collision: Literal["primitives", "fit", "hulls"] | None = None,
     ) -> Robot:
         """Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
         downloads it at first use. Needs the extra "robots".
@@ -151,7 +157,7 @@ class Robot:
         Args:
             name: a name of robot_descriptions.
             base, tip, hold: as in `from_urdf`.
-            srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take neither.
+            srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
 
         Raises:
             BeetleIkError: robot_descriptions is not installed.
@@ -234,10 +240,17 @@ class Robot:
         """Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
         of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
         """
+    def collision_meshes(self) -> list[tuple[str, Mesh]]:
+        """Reads the meshes of the collision shapes whose files were found when the robot was loaded from a URDF file, each (link,
+        `obstacles.Mesh` in the frame of the link).
+
+        Raises:
+            InvalidInputError: a file that is no longer there, or cannot be read.
+        """
     @property
     def unread_collision_shapes(self) -> list[str]:
-        """Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
-        meshes.
+        """Collision shapes that did not become `bodies`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` and
+        `"hulls"` read meshes.
         """
     @property
     def collision_pairs(self) -> list[tuple[str, str]]:
@@ -315,8 +328,7 @@ class Robot:
 
         Args:
             link: the link that carries it.
-            shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`; the body is the capsule that
-                encloses it.
+            shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`.
             touch: links that it may touch, besides those that move with `link`.
             name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
 

@@ -28,8 +28,8 @@ def robot(name: str, options: Mapping[str, Any]) -> Robot:
     if hasattr(described, "XACRO_PATH"):
         return Robot.from_urdf(described.XACRO_PATH, **options)
     if hasattr(described, "MJCF_PATH"):
-        if refused := options.keys() & {"srdf", "collision"}:
-            raise InvalidInputError(f"the description '{name}' is a MuJoCo model, which takes no {min(refused)}=")
+        if "srdf" in options:
+            raise InvalidInputError(f"the description '{name}' is a MuJoCo model, which takes no srdf=")
         return Robot.from_mjcf(described.MJCF_PATH, **options)
     raise InvalidInputError(f"the description '{name}' is neither URDF nor MJCF")
 

@@ -4,7 +4,8 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Literal
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -26,6 +27,7 @@ def robot(
     base: str | None,
     tip: str | None,
     hold: Mapping[str, float] | None,
+    collision: Literal["primitives", "fit", "hulls"] | None,
 ) -> Robot:
     """Returns `Robot.from_mjcf` of a file, a text or a compiled model."""
     mujoco = library("mujoco", "mujoco", "a MuJoCo model", extra="sim")
@@ -33,11 +35,16 @@ def robot(
     reader = _Reader(mujoco, described)
     for link in (base, tip):
         reader.require_known(link)
-    try:
-        made = Robot.from_urdf(reader.urdf(tip), base=base, tip=tip, hold=hold)
-    except UrdfError as error:
-        problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
-        raise InvalidInputError(problem) from None
+    with TemporaryDirectory() as folder:
+        if collision in ("fit", "hulls"):
+            reader.write_meshes(Path(folder))
+        try:
+            made = Robot.from_urdf(
+                reader.urdf(tip), base=base, tip=tip, hold=hold, collision=collision, package_dirs=[folder]
+            )
+        except UrdfError as error:
+            problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
+            raise InvalidInputError(problem) from None
     reader.require_uncoupled(made.joint_names)
     return made
 
@@ -92,6 +99,25 @@ class _Reader:
             place = pose(model.site_pos[site], wxyz=model.site_quat[site])
             lines += [f"<link name={quoteattr(tip)}/>", *_joint(f"{tip}/site", "fixed", carrier, tip, place)]
         return "\n".join([*lines, "</robot>"])
+
+    def write_meshes(self, folder: Path) -> None:
+        """Writes the meshes of the model as OBJ files, by the names that `urdf` gives them."""
+        model = self.model
+        for mesh in range(model.nmesh):
+            first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+            lines = [f"v {_numbers(vertex)}" for vertex in model.mesh_vert[first : first + count]]
+            first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+            lines += [f"f {a} {b} {c}" for a, b, c in model.mesh_face[first : first + count] + 1]
+            file = folder / self._mesh(mesh)
+            file.parent.mkdir(exist_ok=True)
+            file.write_text("\n".join(lines))
+
+    def _mesh_element(self, geom: Any) -> str:
+        mesh = self.model.geom_dataid[geom]
+        return f"<mesh filename={quoteattr(f'package://{self._mesh(mesh)}')}/>" if mesh >= 0 else ""
+
+    def _mesh(self, mesh: int) -> str:
+        return f"{mesh}/{re.sub(r'[^0-9A-Za-z_-]', '_', self.model.mesh(mesh).name) or 'mesh'}.obj"
 
     def _name(self) -> str:
         return bytes(self.model.names).split(b"\0", 1)[0].decode() or "mujoco"
@@ -167,6 +193,7 @@ class _Reader:
                 "mjGEOM_CYLINDER": f"<cylinder radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
                 "mjGEOM_BOX": f"<box size='{_numbers(2 * np.array(size))}'/>",
                 "mjGEOM_ELLIPSOID": "<ellipsoid/>",
+                "mjGEOM_MESH": self._mesh_element(geom),
             }.get(self.mujoco.mjtGeom(model.geom_type[geom]).name, "<mesh/>")
             place = pose(model.geom_pos[geom], wxyz=model.geom_quat[geom])
             yield f"<collision>{_origin(place)}<geometry>{shape}</geometry></collision>"

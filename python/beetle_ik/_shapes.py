@@ -1,4 +1,4 @@
-"""Draws obstacles and link capsules."""
+"""Draws obstacles and bodies of robots."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._core import Capsule
 from ._style import ORANGE, SKY
+from ._surface import Surface, draw_surfaces
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -84,13 +84,25 @@ def joints_to_tip(robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
     return np.vstack((origins, tip)) if has_tool else origins
 
 
-def draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:
-    """Draws the link capsules at `q` (n,), translucent, in 3-D axes."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped, unused-ignore]
+def placed_bodies(robot: Robot, q: ArrayLike) -> list[NDArray[np.float64]]:
+    """Returns the triangles (t, 3, 3) of each body at `q` (n,); a rod without thickness has none."""
+    poses = link_poses(robot, q)
+    return [
+        moved(body.shape.triangles, poses[body.link]) for body in robot.bodies if getattr(body.shape, "radius", 1.0)
+    ]
 
-    poses = dict(zip(robot.link_names, robot.link_poses(q), strict=True))
-    for link, a, b, radius in robot.capsules:
-        if radius > 0.0:
-            rotation, origin = poses[link][:3, :3], poses[link][:3, 3]
-            surface = Capsule(rotation @ a + origin, rotation @ b + origin, radius).triangles
-            axes.add_collection3d(Poly3DCollection(surface, facecolor=SKY, alpha=0.12, linewidth=0))
+
+def link_poses(robot: Robot, q: ArrayLike) -> dict[str, NDArray[np.float64]]:
+    """Returns the poses (4, 4) of all links at `q` (n,) by name."""
+    return dict(zip(robot.all_link_names, robot.all_link_poses(q), strict=True))
+
+
+def moved(triangles: NDArray[np.float64], pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns triangles (t, 3, 3) given in a frame as seen from the base."""
+    return triangles @ pose[:3, :3].T + pose[:3, 3]
+
+
+def draw_bodies(axes: Any, bodies: Iterable[NDArray[np.float64]]) -> None:
+    """Draws bodies, translucent, in 3-D axes."""
+    for triangles in bodies:
+        draw_surfaces(axes, [Surface(triangles, SKY, alpha=0.14)])

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +13,16 @@ import numpy as np
 
 from . import _core, _plan_figure
 from ._arguments import require
-from ._shapes import draw_capsules, draw_in_space, joints_to_tip
+from ._shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
 from ._style import BLUE, FORBIDDEN, GREEN, ORANGE, VERMILION, line, style
+from ._surface import Surface, draw_surfaces
 from ._text import counted
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped, unused-ignore]
     from numpy.typing import ArrayLike, NDArray
 
     from ._core import Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
@@ -33,39 +36,69 @@ _HEADROOM = 1.15  # height of a panel over what it shows
 _FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
+_LINKS = ("#E9EBEE", "#9FB3C8")  # colours of meshes, by turns
+_ABOVE = 1000  # drawn after everything else
 
 
-def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None, bodies: bool = True) -> Figure:
-    """Draws the robot as a stick figure at configuration `q` (n,), with its tool, its capsules and `obstacles`.
+def robot(
+    robot: Robot,
+    q: ArrayLike,
+    *,
+    obstacles: Iterable[Obstacle] | None = None,
+    bodies: bool = True,
+    meshes: bool = True,
+) -> Figure:
+    """Draws the robot at configuration `q` (n,): its meshes or a stick figure, tool, tip, bodies and `obstacles`.
 
     Args:
         robot: the robot.
         q: joint positions (n,) (rad, m).
         obstacles: obstacles in the frame of the robot's base.
-        bodies: whether to draw the capsules of the links.
+        bodies: whether to draw the bodies of the links, translucent.
+        meshes: whether to draw the meshes that `robot.collision_meshes()` reads; at most about 30,000 triangles, larger
+            meshes are made coarser.
     """
     require("robot", robot, _core.Robot)
     require("bodies", bodies, bool)
+    require("meshes", meshes, bool)
     obstacles = () if obstacles is None else obstacles
     require("obstacles", obstacles, Iterable)
     obstacles = list(obstacles)
     for i, obstacle in enumerate(obstacles):
         require(f"obstacles[{i}]", obstacle, _core.Obstacle)
     corners = joints_to_tip(robot, q)
-    flange = len(robot.link_names) - 1
+    surfaces = _mesh_surfaces(robot, q) if meshes else []
+    translucent = placed_bodies(robot, q) if bodies else []
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
-        if len(corners) > flange + 1:
-            axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
-        axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
-        if bodies:
-            draw_capsules(axes, robot, q)
-        draw_in_space(axes, corners, obstacles)
+        _draw_stick(axes, corners, len(robot.link_names) - 1, inside=bool(surfaces))
+        draw_surfaces(axes, surfaces)
+        draw_bodies(axes, translucent)
+        solid = [triangles.reshape(-1, 3) for triangles in (*(s.triangles for s in surfaces), *translucent)]
+        extent = [np.stack((points.min(axis=0), points.max(axis=0))) for points in (corners, *solid)]
+        draw_in_space(axes, np.vstack(extent if surfaces else [corners]), obstacles)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
+
+
+def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
+    """Returns the meshes of the links at `q` (n,); neighbours differ in colour."""
+    poses = link_poses(robot, q)
+    colors = dict(zip(poses, itertools.cycle(_LINKS), strict=False))
+    meshes = robot.collision_meshes()
+    return [Surface(moved(mesh.triangles, poses[link]), colors[link]) for link, mesh in meshes]
+
+
+def _draw_stick(axes: Axes3D, corners: NDArray[np.float64], flange: int, *, inside: bool) -> None:
+    """Draws the links from joint to joint, the tool and the tip; `inside` meshes only tool and tip."""
+    if not inside:
+        axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
+    if len(corners) > flange + 1:
+        axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
+    above = {"zorder": _ABOVE} if inside else {}
+    axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip", **above)
 
 
 def track(result: TrackResult) -> Figure:

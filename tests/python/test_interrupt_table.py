@@ -6,6 +6,7 @@ signals meets the handler once, after it has returned, and nothing is raised.
 
 import signal
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -69,6 +70,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Robot.jacobian": lambda: with_rows(IIWA.jacobian, 800_000),
         "Robot.manipulability": lambda: with_rows(IIWA.manipulability, 1_000_000),
         "Robot.random_configurations": lambda: lambda: IIWA.random_configurations(10_000_000),
+        "Robot.collision_meshes": lambda: with_mesh(300_000),
         "Robot.from_urdf": lambda: with_text(urdf(60_000)),
         "Tracker.step": lambda: with_target(bik.Tracker(IIWA, START, dt=0.1, solver=slow)),
         "Trajectory.max_velocity": lambda: wave(1_500_000).max_velocity,
@@ -124,6 +126,23 @@ def with_times(call: Callable[[np.ndarray], object], count: int = 3_000_000) -> 
 
 def with_text(text: str) -> Callable[[], object]:
     return lambda: bik.Robot.from_urdf(text)
+
+
+def with_mesh(count: int) -> Callable[[], object]:
+    folder = tempfile.TemporaryDirectory()
+    triangles = np.zeros(count, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    triangles["corners"] = np.random.default_rng(0).random((count, 3, 3))
+    (Path(folder.name) / "link.stl").write_bytes(bytes(80) + count.to_bytes(4, "little") + triangles.tobytes())
+    collision = "<link name='l0'><collision><geometry><mesh filename='link.stl'/></geometry></collision></link>"
+    file = Path(folder.name) / "arm.urdf"
+    file.write_text(urdf(1).replace('<link name="l0"/>', collision))
+    robot = bik.Robot.from_urdf(file)
+
+    def call() -> object:
+        with folder:
+            return robot.collision_meshes()
+
+    return call
 
 
 def with_target(tracker: bik.Tracker) -> Callable[[], object]:

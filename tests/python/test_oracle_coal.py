@@ -1,4 +1,4 @@
-"""Distances of capsules from obstacles against coal, an independent collision library."""
+"""Distances of bodies from obstacles and from each other against coal, an independent collision library."""
 
 from collections.abc import Callable
 
@@ -87,3 +87,67 @@ def test_distances_are_those_of_coal(make: Callable[..., tuple[bik.obstacles.Obs
         compared += 1
         assert exact - 1e-6 < found < exact + 1e-6
     assert compared > PAIRS / 3
+
+
+def hull(c: np.ndarray, s: np.ndarray, turn: np.ndarray) -> tuple[bik.obstacles.Obstacle, object]:
+    corners = np.random.default_rng(int(1e6 * s[0])).uniform(-0.4, 0.4, (12, 3))
+    points = coal.StdVec_Vec3s()
+    points.extend(corners)
+    return bik.obstacles.ConvexMesh(corners @ turn.T + c), coal.Convex.convexHull(points, False, "Qt")
+
+
+SOLIDS = [box, cylinder, ellipsoid, hull]
+
+
+def random_place(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return rng.uniform(-0.8, 0.8, 3), rng.uniform(0.05, 0.5, 3), rotation(rng)
+
+
+def apart(one: object, place: object, other: object, other_place: object) -> float:
+    return float(coal.distance(one, place, other, other_place, REQUEST, coal.DistanceResult()))
+
+
+@pytest.mark.parametrize("own", SOLIDS)
+@pytest.mark.parametrize("make", [sphere, capsule, *SOLIDS, mesh])
+def test_bodies_of_any_shape_are_as_far_as_coal_says(
+    own: Callable[..., tuple[bik.obstacles.Obstacle, object]],
+    make: Callable[..., tuple[bik.obstacles.Obstacle, object]],
+) -> None:
+    rng = np.random.default_rng(2)
+    compared = 0
+    for _ in range(60):
+        (center, size, turn), (there, extent, twist) = random_place(rng), random_place(rng)
+        body, model = own(center - PLACE, size, turn)
+        obstacle, shape = make(there, extent, twist)
+        found = bik.obstacles.clearance(ARM.with_attached(LINK, body), [0.0], [obstacle])
+        at = coal.Transform3s(np.eye(3) if make is sphere else twist, there)
+        exact = apart(model, coal.Transform3s(turn, center), shape, at)
+        if exact <= 0:
+            assert found <= 1e-6
+            continue
+        compared += 1
+        assert exact - 1e-6 < found < exact + 1e-6
+    assert compared > 20
+
+
+@pytest.mark.parametrize("other", [capsule, *SOLIDS])
+@pytest.mark.parametrize("own", SOLIDS)
+def test_bodies_of_two_links_are_as_far_apart_as_coal_says(
+    own: Callable[..., tuple[bik.obstacles.Obstacle, object]],
+    other: Callable[..., tuple[bik.obstacles.Obstacle, object]],
+) -> None:
+    rng = np.random.default_rng(3)
+    compared = 0
+    for _ in range(40):
+        (center, size, turn), (there, extent, twist) = random_place(rng), random_place(rng)
+        body, model = own(center - PLACE, size, turn)
+        fixed, shape = other(there, extent, twist)
+        robot = ARM.with_attached(LINK, body, name="moving").with_attached(ARM.link_names[0], fixed, name="still")
+        found = bik.obstacles.clearance(robot.with_collision_pairs([("moving", "still")]), [0.0])
+        exact = apart(model, coal.Transform3s(turn, center), shape, coal.Transform3s(twist, there))
+        if exact <= 0:
+            assert found <= 1e-6
+            continue
+        compared += 1
+        assert exact - 1e-6 < found < exact + 1e-6
+    assert compared > 12

@@ -121,7 +121,7 @@ LINKS = "its links: base, upper, hand, left, right"
         (
             lambda: bik.Robot.from_urdf(GRIPPER, tip="hand", collision="hull"),  # type: ignore[arg-type]
             bik.InvalidInputError,
-            "collision must be one of 'primitives', 'fit' or None, got 'hull'",
+            "collision must be one of 'primitives', 'fit', 'hulls' or None, got 'hull'",
         ),
     ],
 )

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 import beetle_ik as bik
 from beetle_ik import _plan_figure
 from beetle_ik._shapes import inside
+from beetle_ik._surface import simplified
 
 
 def labels(figure: Figure) -> list[str]:
@@ -96,6 +97,49 @@ def test_velocities_far_below_their_limits_fill_their_panels() -> None:
     assert first.get_ylim()[1] == pytest.approx(1.15 * fastest)
     assert [text.get_text() for text in first.texts] == ["limit 100"]
     assert not second.texts or second.texts[0].get_text() == "limit 0.2"
+
+
+def sphere_mesh(count: int) -> np.ndarray:
+    """Returns triangles (t, 3, 3) of a unit sphere, about `count`."""
+    steps = int(np.sqrt(count / 2))
+    polar, turn = np.linspace(0, np.pi, steps + 1), np.linspace(0, 2 * np.pi, steps + 1)
+    rings = ((np.sin(polar), np.cos(turn)), (np.sin(polar), np.sin(turn)), (np.cos(polar), turn**0))
+    corner = np.stack([np.outer(*ring) for ring in rings], axis=-1)
+    a, b, c, d = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
+    return np.concatenate([np.stack(face, axis=2).reshape(-1, 3, 3) for face in ((a, b, c), (a, c, d))])
+
+
+def test_huge_meshes_are_drawn_coarser() -> None:
+    triangles = sphere_mesh(80_000)
+    coarse = simplified(triangles, 5000)
+    assert 1000 < len(coarse) <= 5000
+    np.testing.assert_allclose(np.linalg.norm(coarse.reshape(-1, 3), axis=1), 1.0, atol=0.1)
+    np.testing.assert_array_equal(simplified(triangles, len(triangles)), triangles)
+
+
+def test_meshes_are_drawn_in_one_collection(tmp_path: Path) -> None:
+    for link in ("a", "b"):
+        vertices = sphere_mesh(3000).reshape(-1, 3) * 0.1
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices]
+        lines += [f"f {i} {i + 1} {i + 2}" for i in range(1, len(vertices), 3)]
+        (tmp_path / f"{link}.obj").write_text("\n".join(lines))
+    links = "".join(
+        f"<link name='{link}'><collision><geometry><mesh filename='{link}.obj'/></geometry></collision></link>"
+        for link in ("a", "b")
+    )
+    joint = "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><origin xyz='0 0 0.5'/></joint>"
+    (tmp_path / "arm.urdf").write_text(f"<robot name='arm'>{links}{joint}</robot>")
+    robot = bik.Robot.from_urdf(tmp_path / "arm.urdf", collision="hulls")
+    (axes,) = bik.plot.robot(robot, [0.0], bodies=False).get_axes()
+    assert len(axes.collections) == 1
+    (tip,) = axes.get_lines()
+    assert tip.get_label() == "tip"
+    assert axes.get_zlim()[1] > 0.6  # the mesh beyond the tip is inside
+    (axes,) = bik.plot.robot(robot, [0.0]).get_axes()
+    assert len(axes.collections) == 1 + len(robot.bodies)
+    (axes,) = bik.plot.robot(robot, [0.0], bodies=False, meshes=False).get_axes()
+    assert len(axes.collections) == 0
+    assert len(axes.get_lines()) == 2
 
 
 def test_a_floor_leaves_the_arm_its_size() -> None:

@@ -352,6 +352,110 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
     assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
 }
 
+/// A Panda with spheres, capsules and other shapes.
+fn with_solid_bodies(rng: &mut LazyRng) -> Robot {
+    let mut robot = with_random_bodies("panda", rng);
+    for (kind, link) in ["link_2", "link_3", "link_4", "link_5", "link_7"].into_iter().enumerate() {
+        let (center, turn) = (point(rng, 0.05), *rotation(rng).matrix());
+        let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.05, 0.2));
+        let shape = match kind {
+            0 => Shape::cylinder(center, point(rng, 1.0), sizes[0], sizes[1]),
+            1 => Shape::ellipsoid(center, sizes.map(|x| 0.5 * x), Some(turn)),
+            2 => Shape::convex_mesh(&std::array::from_fn::<_, 12, _>(|_| point(rng, 0.1))),
+            _ => Shape::cuboid(center, sizes, Some(turn)),
+        };
+        robot = robot.with_attached(link, &shape.unwrap(), &[], None).unwrap();
+    }
+    robot
+}
+
+#[test]
+fn bodies_of_any_shape_are_clear_when_the_nearest_pair_is() {
+    let mut rng = rng::stream(21, 0);
+    for count in [0, 12, 40] {
+        let robot = with_solid_bodies(&mut rng);
+        let obstacles: Vec<Shape> = (0..count).map(|k| distant_obstacle(&mut rng, k)).collect();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let (qs, margin) = (robot.random_configurations(101, &mut rng).unwrap(), rng.uniform_in(0.0, 0.03));
+        let many = scene.which_are_clear(&qs, margin).unwrap();
+        let capsules = robot.with_capsules(robot.capsules().to_vec()).unwrap();
+        let capsules = capsules
+            .with_collision_pairs(robot.collision_pairs().into_iter().map(|pair| pair.map(str::to_owned)).collect());
+        let capsules = capsules.unwrap();
+        let by_capsules = Scene::new(&capsules, &obstacles).unwrap();
+        let (mut seen, mut closer) = ([0; 2], 0);
+        for (q, clear) in qs.chunks(7).zip(many) {
+            let distance = scene.clearance(q).unwrap();
+            assert!((distance - margin).abs() < 1e-6 || clear == (distance >= margin), "{distance} {margin}");
+            assert_eq!(scene.is_clear(q, margin), clear);
+            seen[usize::from(clear)] += 1;
+            let around = by_capsules.clearance(q).unwrap();
+            assert!(around <= distance + 1e-6 || distance < 0.0, "{around} {distance}");
+            closer += usize::from(around < distance - 1e-3);
+        }
+        assert!(seen[1] > 3 && (count == 0 || seen[0] > 3) && closer > 3, "{seen:?} {closer}");
+    }
+}
+
+#[test]
+fn motions_of_bodies_of_any_shape_are_certified() {
+    let mut rng = rng::stream(22, 0);
+    for _ in 0..12 {
+        let robot = with_solid_bodies(&mut rng);
+        let obstacles: Vec<Shape> = (0..6).map(|k| distant_obstacle(&mut rng, k)).collect();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let from = robot.random_configurations(1, &mut rng).unwrap();
+        let to: Vec<f64> = from.iter().map(|x| x + rng.uniform_in(-0.4, 0.4)).collect();
+        let edge = Edge { from: &from, to: &to };
+        let found = Sweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
+        let at = |i: usize| {
+            let q: Vec<f64> = from.iter().zip(&to).map(|(a, b)| a + i as f64 / 400.0 * (b - a)).collect();
+            scene.clearance(&q).unwrap()
+        };
+        let sampled = (0..=400).map(at).fold(f64::INFINITY, f64::min);
+        let slack = 1e-4_f64.max(0.011 * sampled.abs());
+        let distance = found.contact.distance;
+        assert!(distance <= sampled + 1e-9 && distance >= sampled - slack - 2e-3, "{distance}, sampled {sampled}");
+    }
+}
+
+#[test]
+fn the_gradient_of_bodies_of_any_shape_is_the_slope() {
+    let mut rng = rng::stream(23, 0);
+    let (mut with_links, mut with_obstacles) = (0, 0);
+    for case in 0..80 {
+        let robot = with_solid_bodies(&mut rng);
+        let obstacles: Vec<Shape> = (0..case % 2 * 4).map(|k| distant_obstacle(&mut rng, k + case)).collect();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let scene = if obstacles.is_empty() { scene } else { scene.without_self_collision() };
+        let q = robot.random_configurations(1, &mut rng).unwrap();
+        let found = scene.nearest_contact(&q).unwrap().unwrap();
+        if found.contact.distance < 1e-3 {
+            continue; // of overlapping faces several may be equally deep
+        }
+        let step = 1e-5;
+        for j in 0..7 {
+            let at = |sign: f64| {
+                let mut moved = q.clone();
+                moved[j] += sign * step;
+                scene.nearest(&moved).unwrap().unwrap()
+            };
+            let [low, high] = [at(-1.0), at(1.0)];
+            let slope = (high.distance - low.distance) / (2.0 * step);
+            let one_sided = (high.distance - found.contact.distance) / step;
+            if low.other == high.other && low.link == high.link && (slope - one_sided).abs() < 1e-3 {
+                assert!((slope - found.gradient[j]).abs() < 1e-2, "case {case}, joint {j}: {slope} {found:?}");
+                *(if matches!(found.contact.other, Neighbor::Link(_)) {
+                    &mut with_links
+                } else {
+                    &mut with_obstacles
+                }) += 1;
+            }
+        }
+    }
+    assert!(with_links > 20 && with_obstacles > 50, "{with_links} {with_obstacles}");
+}
+
 #[test]
 fn bodies_that_no_joint_moves_count_against_obstacles() {
     let arm = Robot::named("panda").unwrap();
@@ -369,7 +473,7 @@ fn bodies_that_no_joint_moves_count_against_obstacles() {
         let obstacles = if link == "attached" { &obstacles[1..] } else { &obstacles[..1] };
         let scene = Scene::new(robot, obstacles).unwrap();
         let found = scene.nearest_contact(&q).unwrap().unwrap();
-        assert!((found.contact.distance - expected).abs() < 6e-3, "{found:?}");
+        assert!((found.contact.distance - expected).abs() < 1e-6, "{found:?}");
         assert_eq!((found.contact.link.as_str(), found.gradient), (link, vec![0.0; 7]));
         let distance = found.contact.distance;
         let edge = Edge { from: &q, to: &other };

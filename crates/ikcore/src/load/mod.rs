@@ -12,5 +12,5 @@ mod urdf;
 
 pub use cover_cache::covered_mesh;
 pub use dh::{Dh, DhTable};
-pub use mesh::{parse_mesh, read_mesh};
+pub use mesh::{parse_mesh, read_link_mesh, read_mesh};
 pub use urdf::{CollisionShapes, UrdfOptions};

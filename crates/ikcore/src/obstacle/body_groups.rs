@@ -6,11 +6,11 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use super::carried::Carried;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
-use crate::shape::{BodyBlock, Shape, ShapeIndex, clear_of_each_other};
+use crate::robot::Carried;
+use crate::shape::{BodyBlock, PlacedBody, Shape, ShapeIndex, clear_of_each_other};
 
 /// The bodies of a robot by moving element, and the pairs of them that must not touch.
 #[derive(Debug, Clone)]
@@ -19,6 +19,8 @@ pub(super) struct BodyGroups {
     /// Group, block and lane of each body.
     places: Vec<[usize; 3]>,
     pairs: Vec<GroupPair>,
+    /// Whether some bodies are no capsules.
+    solids: bool,
 }
 
 /// What the bodies are to keep clear of.
@@ -98,7 +100,8 @@ impl BodyGroups {
             }
             groups.push(Group::new(stage, bodies, carried));
         }
-        let mut all = Self { groups, places, pairs: vec![] };
+        let solids = carried.iter().any(|body| body.solid.is_some());
+        let mut all = Self { groups, places, pairs: vec![], solids };
         for [near, far] in pairs {
             all.forbid(all.places[*near], all.places[*far]);
         }
@@ -121,8 +124,13 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, frames: &[Frame], others: &Others<'_>, margin: f64) -> bool {
-        are_clear(self, frames, others, margin)
+    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], others: &Others<'_>, margin: f64) -> bool {
+        are_clear(self, carried, frames, others, margin)
+    }
+
+    /// Whether some bodies are no capsules: [`four_are_clear`](Self::four_are_clear) would see the capsules around them.
+    pub fn has_solids(&self) -> bool {
+        self.solids
     }
 
     /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
@@ -159,6 +167,42 @@ impl BodyGroups {
     /// The pairs of groups that must keep clear.
     fn pairs_of(&self, others: &Others<'_>) -> &[GroupPair] {
         if others.itself { &self.pairs } else { &[] }
+    }
+
+    /// Whether the bodies of the lanes that are not `clear` by their capsules are `clear_of` an obstacle by their shapes.
+    #[inline(never)]
+    fn solids_are_clear(
+        &self,
+        (group, block): (usize, usize),
+        clear: &F64x4,
+        carried: &[Carried],
+        frames: &[Frame],
+        clear_of: impl Fn(&PlacedBody) -> bool,
+    ) -> bool {
+        self.solids
+            && (0..4).filter(|lane| clear.0[*lane] == 0.0).all(|lane| {
+                let body = &carried[self.groups[group].body(block, lane)];
+                let frame = &frames[body.stages];
+                clear_of(&body.placed(&body.axis_at(frame), frame))
+            })
+    }
+
+    /// Whether the pairs of the lanes that are not `clear` by their capsules are at least `margin` (m) apart by their shapes.
+    #[inline(never)]
+    fn solid_pairs_are_clear(
+        &self,
+        (pair, test): (&GroupPair, &BodyTest),
+        clear: &F64x4,
+        carried: &[Carried],
+        frames: &[Frame],
+        margin: f64,
+    ) -> bool {
+        let own = &carried[self.groups[pair.near].body(test.block, test.lane)];
+        let frame = &frames[own.stages];
+        self.solids
+            && self.solids_are_clear((pair.far, test.far_block), clear, carried, frames, |body| {
+                own.placed(&own.axis_at(frame), frame).distance_to(body, margin) >= margin
+            })
     }
 
     /// The balls around all groups, four in a block.
@@ -218,6 +262,11 @@ impl Group {
         (0..self.bodies.len()).map(|i| (i / 4, i % 4))
     }
 
+    /// The body in a lane of a block; lanes without one repeat the first.
+    fn body(&self, block: usize, lane: usize) -> usize {
+        self.bodies.get(4 * block + lane).copied().unwrap_or(self.bodies[4 * block])
+    }
+
     /// Its blocks with the moving element at `frame`.
     #[inline(always)]
     fn placed<A: Arithmetic>(&self, frame: &Frame) -> Placed {
@@ -248,7 +297,13 @@ fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
 }
 
 by_instructions! {
-    fn are_clear(all: &BodyGroups, frames: &[Frame], others: &Others<'_>, margin: f64) -> bool {
+    fn are_clear(
+        all: &BodyGroups,
+        carried: &[Carried],
+        frames: &[Frame],
+        others: &Others<'_>,
+        margin: f64,
+    ) -> bool {
         let obstacles = others.obstacles;
         let balls = all.balls(frames);
         let ball = |i: usize| {
@@ -289,8 +344,11 @@ by_instructions! {
             if placed.0 != group {
                 placed = (group, all.groups[group].placed::<A>(&frames[all.groups[group].stages]));
             }
-            for block in &placed.1 {
-                if !all_clear(&obstacles[obstacle].clear_lanes::<A>(block, margin)) {
+            for (block, capsules) in placed.1.iter().enumerate() {
+                let clear = obstacles[obstacle].clear_lanes::<A>(capsules, margin);
+                if !all_clear(&clear) && !all.solids_are_clear((group, block), &clear, carried, frames, |body| {
+                    obstacles[obstacle].distance_to_body(body, margin) >= margin
+                }) {
                     return false;
                 }
             }
@@ -305,7 +363,8 @@ by_instructions! {
             let (near, far) = (near.placed::<A>(&frames[near.stages]), far.placed::<A>(&frames[far.stages]));
             for test in &pair.tests {
                 let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
-                if !all_clear(&larger_lanes::<A>(clear, test.ignored)) {
+                let clear = larger_lanes::<A>(clear, test.ignored);
+                if !all_clear(&clear) && !all.solid_pairs_are_clear((pair, test), &clear, carried, frames, margin) {
                     return false;
                 }
             }

@@ -3,24 +3,23 @@
 use std::sync::Arc;
 
 use super::body_groups::BodyGroups;
-use super::carried::{Carried, carried};
-use crate::robot::Robot;
+use crate::robot::{Carried, Robot};
 
 /// Two things that could touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BodyPair {
-    /// A capsule and an obstacle.
-    Obstacle { capsule: usize, obstacle: usize },
-    /// Two capsules of the robot; `near` is nearer to the base. They have this number among the robot's pairs.
-    Capsules { near: usize, far: usize, number: usize },
+    /// A body and an obstacle.
+    Obstacle { body: usize, obstacle: usize },
+    /// Two bodies of the robot; `near` is nearer to the base. They have this number among the robot's pairs.
+    Bodies { near: usize, far: usize, number: usize },
 }
 
 impl BodyPair {
     /// Sorts pairs: those of links in the order of the robot, then those of links and obstacles.
     pub fn order(&self) -> [usize; 3] {
         match self {
-            Self::Capsules { number, .. } => [0, *number, 0],
-            Self::Obstacle { capsule, obstacle } => [1, *capsule, *obstacle],
+            Self::Bodies { number, .. } => [0, *number, 0],
+            Self::Obstacle { body, obstacle } => [1, *body, *obstacle],
         }
     }
 }
@@ -43,17 +42,17 @@ impl BodyModel {
     }
 
     fn new(robot: &Robot) -> Self {
-        let carried = carried(robot);
+        let carried = robot.carried_bodies();
         let ordered = |[one, other]: [usize; 2]| {
             if carried[one].stages <= carried[other].stages { [one, other] } else { [other, one] }
         };
         let pairs: Vec<[usize; 2]> = robot.tested_bodies().into_iter().map(ordered).collect();
         let groups = BodyGroups::new(&carried, &pairs);
         let pairs: Vec<BodyPair> =
-            (0..).zip(pairs).map(|(number, [near, far])| BodyPair::Capsules { near, far, number }).collect();
+            (0..).zip(pairs).map(|(number, [near, far])| BodyPair::Bodies { near, far, number }).collect();
         let mut by_groups: Vec<([usize; 2], Vec<BodyPair>)> = vec![];
         for pair in &pairs {
-            if let BodyPair::Capsules { near, far, .. } = pair {
+            if let BodyPair::Bodies { near, far, .. } = pair {
                 let of = [*near, *far].map(|body| groups.group_of(body));
                 match by_groups.iter_mut().find(|(known, _)| *known == of) {
                     Some((_, pairs)) => pairs.push(*pair),

@@ -1,8 +1,8 @@
-//! Collisions of capsule-shaped links with obstacles and with each other: distances, and certified motions.
+//! Collisions of links with obstacles and with each other: distances, and certified motions.
 //!
 //! | file | what |
 //! |---|---|
-//! | `carried` | the bodies that a robot carries, and where they are at a configuration |
+//! | `placement` | where the bodies of a robot are at a configuration |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
@@ -14,11 +14,11 @@
 
 mod body_groups;
 mod body_model;
-mod carried;
 mod clear_space;
 mod contact;
 mod link_displacement;
 mod near_pairs;
+mod placement;
 mod scene;
 mod surroundings;
 mod sweep;

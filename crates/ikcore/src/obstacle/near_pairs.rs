@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::body_model::BodyPair;
-use super::carried::Placement;
+use super::placement::Placement;
 use super::scene::Scene;
 
 /// Distances that differ by less (m) are equal but for rounding.
@@ -92,7 +92,7 @@ impl Scene<'_> {
             Near::Groups(i) => self.bodies.pairs_between(i).iter().copied().for_each(visit),
             Near::Obstacle { group, obstacle } => {
                 let bodies = self.bodies.groups.bodies_of(group);
-                bodies.iter().for_each(|capsule| visit(BodyPair::Obstacle { capsule: *capsule, obstacle }));
+                bodies.iter().for_each(|body| visit(BodyPair::Obstacle { body: *body, obstacle }));
             }
         }
     }

@@ -6,17 +6,17 @@ use nalgebra::Vector3;
 
 use super::body_groups::Others;
 use super::body_model::{BodyModel, BodyPair};
-use super::carried::{Carried, Placement};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
+use super::placement::Placement;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::f64x4::F64x4;
-use crate::robot::{Joint, Robot};
-use crate::shape::{Shape, capsules_nearest, distance_between};
+use crate::robot::{Carried, Joint, Robot};
+use crate::shape::{PlacedBody, Shape};
 use crate::wording::listed;
 
-/// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
+/// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
 /// All bodies are tested against the obstacles, those of the base and of held links too. Links are tested against each other in
 /// pairs ([`Robot::collision_pairs`]).
@@ -63,7 +63,7 @@ impl<'a> Scene<'a> {
     /// Each of the bodies that are `wanted` with each obstacle.
     fn with_obstacles(&self, wanted: impl Fn(&Carried) -> bool + Clone) -> impl Iterator<Item = BodyPair> + Clone {
         let count = self.others.obstacles.len();
-        let with_each = move |capsule| (0..count).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle });
+        let with_each = move |body| (0..count).map(move |obstacle| BodyPair::Obstacle { body, obstacle });
         (0..self.bodies.carried.len()).filter(move |i| wanted(&self.bodies.carried[*i])).flat_map(with_each)
     }
 
@@ -140,14 +140,10 @@ impl<'a> Scene<'a> {
         gradient: &mut [f64],
     ) -> [Vector3<f64>; 2] {
         let (point, normal) = match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
-                let radius = self.bodies.carried[capsule].radius;
-                self.others.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius)
+            BodyPair::Obstacle { body, obstacle } => {
+                self.others.obstacles[obstacle].nearest_to_body(&self.placed(body, placement))
             }
-            BodyPair::Capsules { near, far, .. } => {
-                let [own, other] = [far, near].map(|i| (&placement.segments[i], self.bodies.carried[i].radius));
-                capsules_nearest(own, other)
-            }
+            BodyPair::Bodies { near, far, .. } => self.placed(far, placement).nearest_to(&self.placed(near, placement)),
         };
         let (below, own, other) = self.carriers_of(pair);
         for (frame, factor) in [(own, factor), (other, -factor)] {
@@ -184,7 +180,7 @@ impl<'a> Scene<'a> {
         }
         let mut frames = self.robot.frame_buffer();
         self.robot.write_frames(q, &mut frames);
-        self.bodies.groups.are_clear(&frames, &self.others, margin)
+        self.bodies.groups.are_clear(&self.bodies.carried, &frames, &self.others, margin)
     }
 
     /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
@@ -200,7 +196,7 @@ impl<'a> Scene<'a> {
         if !self.fixed_are_clear(margin) {
             return Ok(vec![false; qs.len() / n]);
         }
-        if self.others.has_index() {
+        if self.others.has_index() || self.bodies.groups.has_solids() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
         let mut clear = Vec::with_capacity(qs.len() / n);
@@ -225,13 +221,13 @@ impl<'a> Scene<'a> {
 
     /// The contact of a pair that is `distance` apart (m).
     pub(super) fn contact(&self, pair: BodyPair, distance: f64) -> Contact {
-        let link = |capsule: usize| self.bodies.carried[capsule].link.clone();
+        let link = |body: usize| self.bodies.carried[body].link.clone();
         match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
+            BodyPair::Obstacle { body, obstacle } => {
                 let other = Neighbor::Obstacle(obstacle, self.others.obstacles[obstacle].name().into());
-                Contact { link: link(capsule), other, distance }
+                Contact { link: link(body), other, distance }
             }
-            BodyPair::Capsules { near, far, .. } => {
+            BodyPair::Bodies { near, far, .. } => {
                 Contact { link: link(far), other: Neighbor::Link(link(near)), distance }
             }
         }
@@ -247,22 +243,26 @@ impl<'a> Scene<'a> {
         placement.update(self.robot, &self.bodies.carried, q);
     }
 
-    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
+    fn placed<'b>(&'b self, body: usize, placement: &'b Placement) -> PlacedBody<'b> {
+        let carried = &self.bodies.carried[body];
+        carried.placed(&placement.segments[body], &placement.frames[carried.stages])
+    }
+
+    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`; to 1e-7 of it
+    /// for bodies that are no capsules.
     pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
         match pair {
-            BodyPair::Obstacle { capsule, obstacle } => {
-                let radius = self.bodies.carried[capsule].radius;
-                self.others.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius)
-                    - radius
+            BodyPair::Obstacle { body, obstacle } => {
+                self.others.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
             }
-            BodyPair::Capsules { near, far, .. } => {
+            BodyPair::Bodies { near, far, .. } => {
                 let radii = self.bodies.carried[near].radius + self.bodies.carried[far].radius;
                 let ([a, b], [c, d]) = (&placement.segments[near], &placement.segments[far]);
                 let apart = 0.5 * ((a + b - c - d).norm() - (a - b).norm() - (c - d).norm()) - radii;
                 if apart > enough + 1e-9 {
                     return apart - 1e-9;
                 }
-                distance_between(&placement.segments[near], &placement.segments[far]) - radii
+                self.placed(far, placement).distance_to(&self.placed(near, placement), enough)
             }
         }
     }
@@ -270,21 +270,21 @@ impl<'a> Scene<'a> {
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
         let (below, own, other) = self.carriers_of(pair);
-        let moved = |capsule: usize, frame: usize| {
-            displacement(self.robot, &placement.frames, &placement.segments[capsule], [below, frame], reach)
+        let moved = |body: usize, frame: usize| {
+            displacement(self.robot, &placement.frames, &self.placed(body, placement), [below, frame], reach)
         };
         match pair {
-            BodyPair::Obstacle { capsule, .. } => moved(capsule, own),
-            BodyPair::Capsules { near, far, .. } => moved(far, own) + moved(near, other),
+            BodyPair::Obstacle { body, .. } => moved(body, own),
+            BodyPair::Bodies { near, far, .. } => moved(far, own) + moved(near, other),
         }
     }
 
     /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.
     fn carriers_of(&self, pair: BodyPair) -> (usize, usize, usize) {
         match pair {
-            BodyPair::Obstacle { capsule, .. } => (0, self.bodies.carried[capsule].stages, 0),
-            BodyPair::Capsules { near, far, .. } => {
-                let [near, far] = [near, far].map(|capsule| self.bodies.carried[capsule].stages);
+            BodyPair::Obstacle { body, .. } => (0, self.bodies.carried[body].stages, 0),
+            BodyPair::Bodies { near, far, .. } => {
+                let [near, far] = [near, far].map(|body| self.bodies.carried[body].stages);
                 (self.robot.meeting_frame(near, far), far, near)
             }
         }

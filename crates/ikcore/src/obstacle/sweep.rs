@@ -6,8 +6,8 @@
 //! No step width has to be chosen, and no collision can be missed between two samples.
 
 use super::body_model::BodyPair;
-use super::carried::Placement;
 use super::contact::Contact;
+use super::placement::Placement;
 use super::scene::Scene;
 use crate::math::MAX_DOF;
 use crate::objective::Point;

@@ -1,7 +1,7 @@
 //! Bodies of a robot: read, given explicitly or generated along the links.
 
 use super::body::{Bodies, Body, BodySource};
-use super::link_capsule::{LinkCapsule, MeshFit};
+use super::link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
@@ -31,6 +31,11 @@ impl Robot {
     /// The meshes of a URDF that capsules were fitted to, with how well they follow them.
     pub fn mesh_fits(&self) -> &[MeshFit] {
         self.parts().bodies.fits()
+    }
+
+    /// The collision meshes of a URDF file whose files were found, read or not.
+    pub fn meshes(&self) -> &[LinkMesh] {
+        self.parts().bodies.meshes()
     }
 
     /// The same robot with these capsules and no others.
@@ -80,7 +85,7 @@ impl Robot {
 
     fn with_capsules_as_bodies(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
         let bodies = capsules.into_iter().map(|capsule| Body::from_capsule(capsule, BodySource::Given));
-        Ok(self.with_bodies(Bodies::new(bodies.collect::<Result<_>>()?, vec![], vec![])))
+        Ok(self.with_bodies(Bodies::new(bodies.collect::<Result<_>>()?)))
     }
 
     fn nameless(&self, body: usize) -> Error {

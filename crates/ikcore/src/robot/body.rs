@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::link_capsule::{LinkCapsule, MeshFit};
+use super::link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 use crate::error::Result;
-use crate::shape::Shape;
+use crate::shape::{Geometry, Shape};
 
 /// A convex shape fixed to a link.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,6 +53,11 @@ impl Body {
         Ok(Self { link, shape: Shape::swept_ball(a, b, radius)?, source })
     }
 
+    /// Whether it is a sphere or capsule, and so the capsule that holds it.
+    pub(crate) fn is_capsule(&self) -> bool {
+        matches!(self.shape.geometry(), Geometry::Sphere { .. } | Geometry::Capsule { .. })
+    }
+
     /// The capsule that holds it.
     fn capsule(&self) -> LinkCapsule {
         let (a, b, radius) = self.shape.enclosing_capsule();
@@ -72,6 +77,8 @@ pub(crate) struct Bodies {
     unread: Vec<String>,
     /// The meshes that capsules were fitted to.
     fits: Vec<MeshFit>,
+    /// The meshes whose files were found.
+    meshes: Vec<LinkMesh>,
 }
 
 /// What [`Bodies`] follow from.
@@ -80,18 +87,36 @@ struct StoredBodies {
     list: Vec<Body>,
     unread: Vec<String>,
     fits: Vec<MeshFit>,
+    meshes: Vec<LinkMesh>,
 }
 
 impl From<StoredBodies> for Bodies {
     fn from(stored: StoredBodies) -> Self {
-        Self::new(stored.list, stored.unread, stored.fits)
+        let StoredBodies { list, unread, fits, meshes } = stored;
+        Self { unread, fits, meshes, ..Self::new(list) }
     }
 }
 
 impl Bodies {
-    /// These bodies; `unread` are the collision shapes without one, and `fits` say how well capsules follow meshes.
-    pub fn new(list: Vec<Body>, unread: Vec<String>, fits: Vec<MeshFit>) -> Self {
-        Self { capsules: list.iter().map(Body::capsule).collect(), list, unread, fits }
+    /// These bodies, not from a file.
+    pub fn new(list: Vec<Body>) -> Self {
+        let capsules = list.iter().map(Body::capsule).collect();
+        Self { list, capsules, ..Self::default() }
+    }
+
+    /// Notes a collision shape that does not become a body.
+    pub fn note_unread(&mut self, name: String) {
+        self.unread.push(name);
+    }
+
+    /// Notes how well capsules follow a mesh.
+    pub fn note_fit(&mut self, fit: MeshFit) {
+        self.fits.push(fit);
+    }
+
+    /// Notes a mesh whose file was found.
+    pub fn note_mesh(&mut self, mesh: LinkMesh) {
+        self.meshes.push(mesh);
     }
 
     pub fn list(&self) -> &[Body] {
@@ -108,6 +133,10 @@ impl Bodies {
 
     pub fn fits(&self) -> &[MeshFit] {
         &self.fits
+    }
+
+    pub fn meshes(&self) -> &[LinkMesh] {
+        &self.meshes
     }
 
     /// Adds a body.

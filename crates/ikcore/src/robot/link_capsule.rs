@@ -1,6 +1,8 @@
-//! Capsules fixed to the links of a robot.
+//! Capsules and meshes fixed to the links of a robot.
 
 use serde::{Deserialize, Serialize};
+
+use crate::math::Pose;
 
 /// A capsule: all points within `radius` (m) of the segment from `a` to `b`, in the frame of the link (m).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,4 +28,17 @@ pub struct MeshFit {
     pub volume_ratio: f64,
     /// No point of the capsules is farther than this from the mesh (m).
     pub largest_distance: f64,
+}
+
+/// A collision mesh of a link, in a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LinkMesh {
+    /// The link that carries it.
+    pub link: String,
+    /// Where the file was found.
+    pub path: String,
+    /// Factors of its coordinates.
+    pub scale: [f64; 3],
+    /// Pose of the mesh in its link.
+    pub origin: Pose,
 }

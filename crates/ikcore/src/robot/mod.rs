@@ -11,6 +11,7 @@
 //! | `links` | kinematics of any link |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
 //! | `derived` | what a higher module derives from the bodies |
+//! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
@@ -22,6 +23,7 @@ mod batched;
 mod bodies;
 mod body;
 mod builder;
+mod carried;
 mod derived;
 mod description;
 mod joint;
@@ -41,10 +43,11 @@ mod stance;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
+pub(crate) use carried::Carried;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
-pub use link_capsule::{LinkCapsule, MeshFit};
+pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub(crate) use links::FrameBuffer;
 pub use model::Robot;
 pub use stance::Stance;

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 
 use nalgebra::Vector3;
 
+use super::carried::Carried;
 use super::joint::Joint;
 use super::links::FrameBuffer;
 use super::model::Robot;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::rng;
-use crate::shape::{LineSegment, distance_between};
 
 /// Seed of the random configurations.
 const SEED: u64 = 0;
@@ -24,13 +24,12 @@ const ALWAYS: f64 = 0.95;
 /// Links never nearer than this (m) count as never touching: rare contacts between samples remain out of reach.
 const NEAR: f64 = 0.02;
 
-/// A link with capsules.
+/// A link with bodies.
 struct Carrier {
     link: usize,
     /// Number of the frame that carries it.
     frame: usize,
-    /// The axes of its capsules in that frame, and their radii.
-    capsules: Vec<(LineSegment, f64)>,
+    bodies: Vec<Carried>,
     /// A ball that holds them.
     center: [f64; 3],
     radius: f64,
@@ -137,19 +136,17 @@ impl<'a> Sampling<'a> {
 
 /// The links with capsules, in the order of the links.
 fn carriers(robot: &Robot) -> Vec<Carrier> {
-    let mut on_link: Vec<Vec<(LineSegment, f64)>> = vec![vec![]; robot.all_link_names().count()];
-    for (link, capsule) in robot.links_of_bodies().into_iter().zip(robot.capsules()) {
-        let (_, offset) = robot.place_of_link_number(link);
-        let axis = [capsule.a, capsule.b].map(|end| Vector3::from(offset.place::<NoFma>(&end)));
-        on_link[link].push((axis, capsule.radius));
+    let mut on_link: Vec<Vec<Carried>> = robot.all_link_names().map(|_| vec![]).collect();
+    for (body, link) in robot.carried_bodies().into_iter().zip(robot.links_of_bodies()) {
+        on_link[link].push(body);
     }
-    let with_capsules = on_link.into_iter().enumerate().filter(|(_, capsules)| !capsules.is_empty());
-    with_capsules
-        .map(|(link, capsules)| {
-            let ends = || capsules.iter().flat_map(|(axis, radius)| axis.iter().map(move |end| (end, radius)));
+    let with_bodies = on_link.into_iter().enumerate().filter(|(_, bodies)| !bodies.is_empty());
+    with_bodies
+        .map(|(link, bodies)| {
+            let ends = || bodies.iter().flat_map(|body| body.ends.map(|end| (Vector3::from(end), body.radius)));
             let center = ends().map(|(end, _)| end).sum::<Vector3<f64>>() / ends().count() as f64;
             let radius = ends().map(|(end, radius)| (end - center).norm() + radius).fold(0.0, f64::max);
-            Carrier { link, frame: robot.place_of_link_number(link).0, capsules, center: center.into(), radius }
+            Carrier { link, frame: robot.place_of_link_number(link).0, bodies, center: center.into(), radius }
         })
         .collect()
 }
@@ -162,12 +159,12 @@ fn nearer([one, other]: [&Carrier; 2], frames: &[Frame], distance: f64) -> bool 
     if (center - other_center).norm() > one.radius + other.radius + distance {
         return false;
     }
-    let placed = |frame: &Frame, axis: &LineSegment| axis.map(|end| Vector3::from(frame.place::<NoFma>(&end.into())));
-    one.capsules.iter().any(|(axis, radius)| {
-        let axis = placed(frame, axis);
-        let mut others = other.capsules.iter();
-        others.any(|(other, other_radius)| {
-            distance_between(&axis, &placed(other_frame, other)) <= radius + other_radius + distance
+    one.bodies.iter().any(|body| {
+        let axis = body.axis_at(frame);
+        other.bodies.iter().any(|other| {
+            let other_axis = other.axis_at(other_frame);
+            let (body, other) = (body.placed(&axis, frame), other.placed(&other_axis, other_frame));
+            body.distance_to(&other, distance.next_up()) <= distance
         })
     })
 }

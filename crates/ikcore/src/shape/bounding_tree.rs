@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::math::arithmetic::Arithmetic;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
@@ -159,6 +159,23 @@ impl BoundingTree {
                 }
             }
         }
+    }
+}
+
+by_instructions! {
+    /// Visits the pieces in boxes within `reach` (m) of a segment, and some others; `block_of` gives the pieces of a leaf, and
+    /// `visit` returns the new reach.
+    pub(super) fn each_near(
+        tree: &BoundingTree,
+        block_of: &dyn Fn(usize) -> Block,
+        segment: &[Vector3<f64>; 2],
+        reach: f64,
+        visit: &mut dyn FnMut(usize) -> f64,
+    ) {
+        tree.search::<A>(&SegmentQuery::new(segment), squared_bound(reach), |leaf, bound| {
+            let pieces = block_of(leaf).into_iter().filter(|piece| *piece != NONE);
+            pieces.fold(bound, |_, piece| squared_bound(visit(piece as usize)))
+        });
     }
 }
 

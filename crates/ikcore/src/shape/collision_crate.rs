@@ -1,9 +1,11 @@
 //! The collision crate (parry): the only file that uses its types.
 
 use nalgebra::Vector3;
-use parry3d_f64::math::Vector;
+use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::ConvexPolyhedron;
+use parry3d_f64::query::epa::EPA;
+use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
+use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
 
 /// A convex polyhedron.
 #[derive(Debug, Clone)]
@@ -12,19 +14,19 @@ pub(super) struct Polyhedron(ConvexPolyhedron);
 impl Polyhedron {
     /// The convex hull of `points`; `None` if they lie in a plane.
     pub fn hull_of(points: &[[f64; 3]]) -> Option<Self> {
-        let given: Vec<Vector> = points.iter().map(|[x, y, z]| Vector::new(*x, *y, *z)).collect();
+        let given: Vec<Vector> = points.iter().map(|point| to_crate(&(*point).into())).collect();
         let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&given).ok()?;
         ConvexPolyhedron::from_convex_mesh(vertices, &triangles).map(Self)
     }
 
     /// Its corners.
     pub fn corners(&self) -> Vec<Vector3<f64>> {
-        self.0.points().iter().map(|p| Vector3::new(p.x, p.y, p.z)).collect()
+        self.0.points().iter().copied().map(from_crate).collect()
     }
 
     /// Outward normals of its faces.
     pub fn normals(&self) -> Vec<Vector3<f64>> {
-        self.0.faces().iter().map(|face| Vector3::new(face.normal.x, face.normal.y, face.normal.z)).collect()
+        self.0.faces().iter().map(|face| from_crate(face.normal)).collect()
     }
 
     /// Corners of its triangles.
@@ -36,7 +38,78 @@ impl Polyhedron {
 
     /// The point of the polyhedron nearest to `point`.
     pub fn nearest_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        let nearest = self.0.project_local_point(Vector::new(point.x, point.y, point.z), true).point;
-        Vector3::new(nearest.x, nearest.y, nearest.z)
+        from_crate(self.0.project_local_point(to_crate(point), true).point)
     }
+}
+
+/// What the crate says of two convex sets; normals are of unit length, from the other set to the own one.
+pub(super) enum Proposal {
+    /// They are nearest along `normal`, the own one at `point`.
+    Apart { point: Vector3<f64>, normal: Vector3<f64> },
+    /// They seem to be farther apart than asked, along this normal.
+    Beyond(Vector3<f64>),
+    /// They overlap.
+    Overlapping,
+}
+
+/// Where two convex sets are nearest, if they are within `enough`; each gives its farthest point along a direction.
+pub(super) fn nearest(
+    own: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    towards: &Vector3<f64>,
+    enough: f64,
+) -> Proposal {
+    let mut simplex = VoronoiSimplex::new();
+    match searched(own, other, towards, enough, &mut simplex) {
+        GJKResult::ClosestPoints(point, _, direction) => {
+            Proposal::Apart { point: from_crate(point), normal: -from_crate(direction) }
+        }
+        GJKResult::NoIntersection(direction) | GJKResult::Proximity(direction) => {
+            Proposal::Beyond(-from_crate(direction))
+        }
+        GJKResult::Intersection => Proposal::Overlapping,
+    }
+}
+
+/// The deepest point of the own set in the other, and the normal along which they part soonest; `None` if the crate finds none.
+pub(super) fn deepest(
+    own: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    towards: &Vector3<f64>,
+) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    let mut simplex = VoronoiSimplex::new();
+    searched(own, other, towards, f64::MAX, &mut simplex);
+    let (own, other) = (SupportPoints(own), SupportPoints(other));
+    let (point, _, normal) = EPA::new().closest_points(&Pose::IDENTITY, &own, &other, &simplex)?;
+    let normal = from_crate(normal).try_normalize(0.0).filter(|normal| normal.iter().all(|x| x.is_finite()))?;
+    Some((from_crate(point), normal))
+}
+
+fn searched(
+    own: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    towards: &Vector3<f64>,
+    enough: f64,
+    simplex: &mut VoronoiSimplex,
+) -> GJKResult {
+    let (own, other) = (SupportPoints(own), SupportPoints(other));
+    simplex.reset(CsoPoint::from_shapes(&Pose::IDENTITY, &own, &other, to_crate(&-towards)));
+    closest_points(&Pose::IDENTITY, &own, &other, enough.min(f64::MAX), true, simplex)
+}
+
+/// A convex set by its farthest point along a direction.
+struct SupportPoints<'a, S>(&'a S);
+
+impl<S: Fn(&Vector3<f64>) -> Vector3<f64>> SupportMap for SupportPoints<'_, S> {
+    fn local_support_point(&self, direction: Vector) -> Vector {
+        to_crate(&self.0(&from_crate(direction)))
+    }
+}
+
+fn to_crate(vector: &Vector3<f64>) -> Vector {
+    Vector::new(vector.x, vector.y, vector.z)
+}
+
+fn from_crate(vector: Vector) -> Vector3<f64> {
+    Vector3::new(vector.x, vector.y, vector.z)
 }

@@ -26,6 +26,9 @@ impl PartialEq for Hull {
 /// A body thinner than this, seen against its size, is flat.
 const THINNEST: f64 = 1e-6;
 
+/// Points outside by less than this, seen against the size, are outside by rounding.
+const STICKING_OUT: f64 = 1e-9;
+
 impl Hull {
     /// Err says what is wrong with the points.
     pub(super) fn new(points: &[[f64; 3]]) -> Result<Self, String> {
@@ -59,6 +62,14 @@ impl Hull {
     /// Corners of the hull's triangles (m), for drawing.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
         self.polyhedron.triangles()
+    }
+
+    /// Whether no point is outside by more than rounding.
+    pub(super) fn holds(&self, points: &[[f64; 3]]) -> bool {
+        let size = self.bounding_ball().radius;
+        self.faces.iter().all(|(normal, offset)| {
+            points.iter().all(|point| normal.dot(&Vector3::from(*point)) - offset <= STICKING_OUT * size)
+        })
     }
 
     /// A ball that holds it.

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::{SegmentDistance, by_tangents};
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
 use super::segment_lanes::{TOUCHING, to_box};
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
@@ -112,6 +112,11 @@ impl Grid {
         overlapping: &mut dyn FnMut(usize),
     ) -> NearestBlock {
         nearest_block(self, segment, bound, overlapping)
+    }
+
+    /// Visits the blocks within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
+        each_near(&self.tree, &|leaf| self.leaves[leaf].blocks, segment, reach, visit);
     }
 
     /// Signed distance of a point to the nearest block, and its gradient.

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
 use super::inside_mesh::{is_closed, winding};
 use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
@@ -135,6 +135,11 @@ impl Mesh {
     /// The nearest point of the surface within the square root of `bound`.
     pub(super) fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
         nearest_face(self, segment, bound)
+    }
+
+    /// Visits the triangles within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
+        each_near(&self.tree, &|leaf| self.leaves[leaf].faces, segment, reach, visit);
     }
 
     /// Signed distance of a point, and its gradient.

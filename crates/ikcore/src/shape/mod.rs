@@ -20,9 +20,12 @@
 //! | `body_block` | "nearer than m?" for four capsules at once |
 //! | `shape_index` | finds the shapes near a ball, among many |
 //! | `mesh`, `inside_mesh`, `triangle` | triangle meshes, closed or not |
+//! | `mesh_hull` | convex hulls of meshes |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
 //! | `cover` | covers of meshes by few spheres and capsules |
 //! | `enclosing_capsule` | capsules that hold other shapes |
+//! | `convex`, `convex_distance` | the signed distance of any two convex sets |
+//! | `placed_body` | a body of a robot, and its distances |
 //! | `separation` | where a capsule is nearest to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
 
@@ -32,6 +35,8 @@ mod bounding_ball;
 mod bounding_tree;
 mod checked_shape;
 mod collision_crate;
+mod convex;
+mod convex_distance;
 mod convex_hull;
 mod cover;
 mod ellipsoid;
@@ -40,6 +45,8 @@ mod geometry;
 mod grid;
 mod inside_mesh;
 mod mesh;
+mod mesh_hull;
+mod placed_body;
 mod point_cloud;
 mod segment_distance;
 mod segment_lanes;
@@ -61,7 +68,6 @@ pub use cover::Cover;
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
+pub(crate) use placed_body::PlacedBody;
 pub use point_cloud::PointCloud;
-pub(crate) use segment_distance::distance_between;
-pub(crate) use separation::capsules_nearest;
 pub(crate) use shape_index::ShapeIndex;

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
 use super::segment_lanes::to_point;
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
@@ -74,6 +74,11 @@ impl PointCloud {
     /// The nearest point within the square root of `bound`.
     pub(super) fn nearest_point(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
         nearest_point(self, segment, bound)
+    }
+
+    /// Visits the points within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
+        each_near(&self.tree, &|leaf| self.leaves[leaf].1, segment, reach, visit);
     }
 
     /// Signed distance of a point to the nearest ball, and its gradient.

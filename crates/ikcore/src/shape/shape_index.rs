@@ -2,9 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::bounding_tree::{Aabb, Block, BoundingTree, each_near};
 use super::checked_shape::Shape;
-use crate::math::arithmetic::by_instructions;
 
 /// A tree over the bounding balls of shapes.
 #[derive(Debug, Clone)]
@@ -41,20 +40,9 @@ impl ShapeIndex {
     /// Visits all shapes that may be within `reach` (m) of `center`, and some others.
     pub fn near_ball(&self, center: &Vector3<f64>, reach: f64, mut visit: impl FnMut(usize)) {
         self.unbounded.iter().for_each(|i| visit(*i));
-        near_ball(self, center, reach, &mut |i| visit(self.bounded[i]));
-    }
-}
-
-by_instructions! {
-    fn near_ball(index: &ShapeIndex, center: &Vector3<f64>, reach: f64, visit: &mut dyn FnMut(usize)) {
-        let query = SegmentQuery::new(&[*center; 2]);
-        index.tree.search::<A>(&query, squared_bound(reach), |block, bound| {
-            for item in index.blocks[block] {
-                if item != NONE {
-                    visit(item as usize);
-                }
-            }
-            bound
+        each_near(&self.tree, &|leaf| self.blocks[leaf], &[*center; 2], reach, &mut |i| {
+            visit(self.bounded[i]);
+            reach
         });
     }
 }

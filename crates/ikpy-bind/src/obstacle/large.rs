@@ -56,7 +56,7 @@ impl PyMesh {
 pub struct PyPointCloud {
     /// Radius of the ball about each point (m).
     #[pyo3(get)]
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 #[pymethods]
@@ -83,10 +83,10 @@ impl PyPointCloud {
 pub struct PyGrid {
     /// Lowest corner of the first voxel (3,) (m).
     #[pyo3(get)]
-    origin: Coordinates<3>,
+    pub(super) origin: Coordinates<3>,
     /// Edge of a voxel (m).
     #[pyo3(get)]
-    voxel: f64,
+    pub(super) voxel: f64,
 }
 
 #[pymethods]

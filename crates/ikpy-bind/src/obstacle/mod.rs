@@ -4,6 +4,7 @@ mod argument;
 mod arrays;
 mod body;
 mod clearance;
+mod from_core;
 mod large;
 mod nearest;
 mod shapes;
@@ -12,9 +13,9 @@ use pyo3::prelude::*;
 
 pub use argument::Obstacles;
 pub use body::PyObstacle;
+pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
 pub use nearest::PyNearest;
-pub use shapes::wrapped;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -14,10 +14,10 @@ use crate::monitor::on_a_thread;
 pub struct PySphere {
     /// Centre (3,) (m).
     #[pyo3(get)]
-    center: Coordinates<3>,
+    pub(super) center: Coordinates<3>,
     /// Radius (m).
     #[pyo3(get)]
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 #[pymethods]
@@ -34,13 +34,13 @@ impl PySphere {
 pub struct PyBox {
     /// Centre (3,) (m).
     #[pyo3(get)]
-    center: Coordinates<3>,
+    pub(super) center: Coordinates<3>,
     /// Edge lengths (3,) (m).
     #[pyo3(get)]
-    size: Coordinates<3>,
+    pub(super) size: Coordinates<3>,
     /// Its axes as columns (3, 3).
     #[pyo3(get)]
-    rotation: Rotation,
+    pub(super) rotation: Rotation,
 }
 
 #[pymethods]
@@ -64,13 +64,13 @@ impl PyBox {
 pub struct PyCapsule {
     /// One end of its axis (3,) (m).
     #[pyo3(get)]
-    a: Coordinates<3>,
+    pub(super) a: Coordinates<3>,
     /// The other end (3,) (m).
     #[pyo3(get)]
-    b: Coordinates<3>,
+    pub(super) b: Coordinates<3>,
     /// Radius (m).
     #[pyo3(get)]
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 #[pymethods]
@@ -87,13 +87,13 @@ impl PyCapsule {
 pub struct PyCylinder {
     /// Centre (3,) (m).
     #[pyo3(get)]
-    center: Coordinates<3>,
+    pub(super) center: Coordinates<3>,
     /// Radius (m).
     #[pyo3(get)]
-    radius: f64,
+    pub(super) radius: f64,
     /// Length along the axis (m).
     #[pyo3(get)]
-    length: f64,
+    pub(super) length: f64,
 }
 
 #[pymethods]
@@ -126,7 +126,7 @@ impl PyCylinder {
 pub struct PyHalfSpace {
     /// Distance of the surface from the origin, along the normal (m).
     #[pyo3(get)]
-    offset: f64,
+    pub(super) offset: f64,
 }
 
 #[pymethods]
@@ -152,13 +152,13 @@ impl PyHalfSpace {
 pub struct PyEllipsoid {
     /// Centre (3,) (m).
     #[pyo3(get)]
-    center: Coordinates<3>,
+    pub(super) center: Coordinates<3>,
     /// Lengths of the semi-axes (3,) (m).
     #[pyo3(get)]
-    semi_axes: Coordinates<3>,
+    pub(super) semi_axes: Coordinates<3>,
     /// Its axes as columns (3, 3).
     #[pyo3(get)]
-    rotation: Rotation,
+    pub(super) rotation: Rotation,
 }
 
 #[pymethods]
@@ -187,13 +187,13 @@ impl PyEllipsoid {
 pub struct PyEllipse {
     /// Centre (2,) (m).
     #[pyo3(get)]
-    center: Coordinates<2>,
+    pub(super) center: Coordinates<2>,
     /// Lengths of the semi-axes (2,) (m).
     #[pyo3(get)]
-    semi_axes: Coordinates<2>,
+    pub(super) semi_axes: Coordinates<2>,
     /// Angle of the first semi-axis (rad).
     #[pyo3(get)]
-    angle: f64,
+    pub(super) angle: f64,
 }
 
 #[pymethods]
@@ -210,7 +210,7 @@ impl PyEllipse {
 /// The convex hull of points (k, 3) (m): at least four, not all in one plane.
 #[pyclass(name = "ConvexMesh", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyConvexMesh {
-    points: Vec<[f64; 3]>,
+    pub(super) points: Vec<[f64; 3]>,
 }
 
 #[pymethods]
@@ -228,39 +228,4 @@ impl PyConvexMesh {
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         table(py, self.points.as_flattened().to_vec(), &[self.points.len(), 3])
     }
-}
-
-/// Returns a shape of the core as an instance of its class. Of shapes that cannot be bodies of a robot it is the base class.
-pub fn wrapped(py: Python<'_>, shape: &Shape) -> PyResult<Py<PyAny>> {
-    let base = PyClassInitializer::from(PyObstacle { core: shape.clone() });
-    let object = match shape.geometry() {
-        Geometry::Sphere { center, radius } => {
-            let own = PySphere { center: Coordinates(*center), radius: *radius };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        Geometry::Box { pose, size } => {
-            let (center, rotation) = (pose.translation.vector.into(), *pose.rotation.matrix());
-            let own = PyBox { center: Coordinates(center), size: Coordinates(*size), rotation: Rotation(rotation) };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        Geometry::Capsule { a, b, radius } => {
-            let own = PyCapsule { a: Coordinates(*a), b: Coordinates(*b), radius: *radius };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        Geometry::Cylinder { center, radius, length, .. } => {
-            let own = PyCylinder { center: Coordinates(*center), radius: *radius, length: *length };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        Geometry::Ellipsoid { pose, semi_axes } => {
-            let (center, rotation) = (pose.translation.vector.into(), Rotation(*pose.rotation.matrix()));
-            let own = PyEllipsoid { center: Coordinates(center), semi_axes: Coordinates(*semi_axes), rotation };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        Geometry::ConvexMesh(hull) => {
-            let own = PyConvexMesh { points: hull.points().to_vec() };
-            Bound::new(py, base.add_subclass(own))?.into_any()
-        }
-        _ => Bound::new(py, base)?.into_any(),
-    };
-    Ok(object.unbind())
 }

@@ -27,9 +27,10 @@ impl PyRobot {
     ///     hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
     ///         the limit nearest to it.
     ///     srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
-    ///     collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become `capsules` that
+    ///     collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become capsules that
     ///         enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
-    ///         hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. None: none is read.
+    ///         hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. "hulls": meshes become
+    ///         their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
     ///     package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
     ///         AMENT_PREFIX_PATH, and the folders above the file.
     ///
@@ -78,10 +79,10 @@ impl PyRobot {
     ///     model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
     ///     base: body whose frame is the reference frame; None: "world".
     ///     tip: body or site at the end of the chain; None: the only leaf body.
-    ///     hold: as in `from_urdf`.
+    ///     hold, collision: as in `from_urdf`.
     ///
     /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
-    /// follow their master. Geoms that collide become `capsules` if they are spheres, capsules, cylinders or boxes.
+    /// follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
     ///
     /// Raises:
     ///     BeetleIkError: MuJoCo is not installed.
@@ -89,14 +90,17 @@ impl PyRobot {
     ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
     ///         another way.
     #[staticmethod]
-    #[pyo3(signature = (model, *, base=None, tip=None, hold=None))]
+    #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives")),
+           text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives')")]
     fn from_mjcf<'py>(
         model: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         hold: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold))
+        read_collision(collision)?;
+        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision))
     }
 
     /// Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
@@ -105,7 +109,7 @@ impl PyRobot {
     /// Args:
     ///     name: a name of robot_descriptions.
     ///     base, tip, hold: as in `from_urdf`.
-    ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take neither.
+    ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
     ///
     /// Raises:
     ///     BeetleIkError: robot_descriptions is not installed.
@@ -225,7 +229,10 @@ fn read_collision(name: Option<&str>) -> PyResult<CollisionShapes> {
         None => Ok(CollisionShapes::Ignored),
         Some("primitives") => Ok(CollisionShapes::Primitives),
         Some("fit") => Ok(CollisionShapes::Fit),
-        Some(other) => Err(invalid(format!("collision must be one of 'primitives', 'fit' or None, got '{other:.60}'"))),
+        Some("hulls") => Ok(CollisionShapes::Hulls),
+        Some(other) => {
+            Err(invalid(format!("collision must be one of 'primitives', 'fit', 'hulls' or None, got '{other:.60}'")))
+        }
     }
 }
 

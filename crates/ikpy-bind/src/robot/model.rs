@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use ikcore::load::read_link_mesh;
 use ikcore::robot::Robot;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -14,6 +15,8 @@ use crate::convert::{copied, counted, row};
 use crate::error::raise;
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
+use crate::monitor::on_a_thread;
+use crate::obstacle::wrapped;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 
@@ -158,8 +161,21 @@ impl PyRobot {
         fits.map(|fit| (fit.link.clone(), fit.file.clone(), fit.volume_ratio, fit.largest_distance)).collect()
     }
 
-    /// Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
-    /// meshes.
+    /// Reads the meshes of the collision shapes whose files were found when the robot was loaded from a URDF file, each (link,
+    /// `obstacles.Mesh` in the frame of the link).
+    ///
+    /// Raises:
+    ///     InvalidInputError: a file that is no longer there, or cannot be read.
+    fn collision_meshes(&self, py: Python<'_>) -> PyResult<Vec<(String, Py<PyAny>)>> {
+        let robot = Arc::clone(&self.core);
+        let read =
+            on_a_thread(py, move || robot.meshes().iter().map(read_link_mesh).collect::<ikcore::Result<Vec<_>>>())?;
+        let links = self.core.meshes().iter().map(|mesh| mesh.link.clone());
+        links.zip(read).map(|(link, mesh)| Ok((link, wrapped(py, &mesh)?))).collect()
+    }
+
+    /// Collision shapes that did not become `bodies`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` and
+    /// `"hulls"` read meshes.
     #[getter]
     fn unread_collision_shapes(&self) -> Vec<String> {
         self.core.unread_collision_shapes().to_vec()

@@ -57,8 +57,7 @@ impl PyRobot {
     ///
     /// Args:
     ///     link: the link that carries it.
-    ///     shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`; the body is the capsule that
-    ///         encloses it.
+    ///     shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`.
     ///     touch: links that it may touch, besides those that move with `link`.
     ///     name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
     ///

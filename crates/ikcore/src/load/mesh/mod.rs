@@ -10,8 +10,11 @@ mod stl;
 
 use std::path::Path;
 
+use nalgebra::Point3;
+
 use crate::error::{Error, Result, shortened};
-use crate::shape::Shape;
+use crate::robot::LinkMesh;
+use crate::shape::{Geometry, Shape};
 
 /// Files larger than this (bytes) are refused.
 const LARGEST: u64 = 1 << 30;
@@ -23,6 +26,17 @@ const LARGEST: u64 = 1 << 30;
 /// [`Error::Unreadable`] names the file and says what is wrong with it.
 pub fn read_mesh(path: &Path, scale: [f64; 3]) -> Result<Shape> {
     parse_mesh(&path.display().to_string(), &read_bytes(path)?, scale)
+}
+
+/// Reads the mesh of a link, in the frame of the link.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_link_mesh(mesh: &LinkMesh) -> Result<Shape> {
+    let shape = read_mesh(Path::new(&mesh.path), mesh.scale)?;
+    let Geometry::Mesh(triangles) = shape.geometry() else { return Ok(shape) };
+    let vertices = triangles.vertices().iter().map(|vertex| (mesh.origin * Point3::from(*vertex)).coords.into());
+    Shape::mesh(vertices.collect(), triangles.faces().to_vec())
 }
 
 /// The content of a mesh file.
@@ -68,7 +82,6 @@ fn as_text(bytes: &[u8]) -> std::result::Result<String, String> {
 mod tests {
     use super::parsed::{Parsed, Triangles};
     use super::*;
-    use crate::shape::Geometry;
 
     fn parsed(name: &str, text: &str) -> Parsed {
         let shape = parse_mesh(name, text.as_bytes(), [1.0; 3]).map_err(|error| error.to_string())?;

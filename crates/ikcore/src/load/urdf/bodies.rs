@@ -1,15 +1,17 @@
 //! Collision shapes of a URDF as bodies of a robot.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
 use super::document::Document;
-use super::link_capsules::CollisionMesh;
+use super::link_capsules::{CollisionMesh, Primitive};
 use super::package::Packages;
 use crate::error::{Error, Result, shortened};
 use crate::load::cover_cache::covered_mesh;
-use crate::robot::{Bodies, Body, BodySource, LinkCapsule, MeshFit, Robot};
+use crate::load::mesh::read_mesh;
+use crate::robot::{Bodies, Body, BodySource, LinkCapsule, LinkMesh, MeshFit, Robot};
+use crate::shape::Geometry;
 
 /// What becomes of the collision shapes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,6 +21,8 @@ pub enum CollisionShapes {
     Primitives,
     /// Meshes are read too, and covered by few capsules.
     Fit,
+    /// Meshes become their convex hulls; spheres, cylinders, capsules and boxes stay as they are.
+    Hulls,
     /// Nothing is read.
     Ignored,
 }
@@ -28,32 +32,71 @@ const MOST: usize = 6;
 
 /// The bodies of all links of `robot`.
 pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, packages: &Packages) -> Result<Bodies> {
-    let (mut list, mut unread, mut fits) = (vec![], vec![], vec![]);
+    let mut bodies = Bodies::default();
     if wanted == CollisionShapes::Ignored {
-        return Ok(Bodies::default());
+        return Ok(bodies);
     }
     for link in robot.all_link_names().filter_map(|name| document.capsules.get(name)) {
-        for capsule in &link.capsules {
-            list.push(Body::from_capsule(capsule.clone(), BodySource::Primitive)?);
+        for Primitive { capsule, exact } in &link.primitives {
+            bodies.push(match wanted {
+                CollisionShapes::Hulls => {
+                    Body { link: capsule.link.clone(), shape: exact.clone(), source: BodySource::Primitive }
+                }
+                _ => Body::from_capsule(capsule.clone(), BodySource::Primitive)?,
+            });
         }
         for shape in &link.unread {
-            match &shape.mesh {
-                Some(mesh) if wanted == CollisionShapes::Fit => {
-                    let (bodies, fit) = fitted(mesh, packages)?;
-                    list.extend(bodies);
-                    fits.push(fit);
+            let path = shape.mesh.as_ref().map(|mesh| found(mesh, packages));
+            if let (Some(mesh), Some(Ok(path))) = (&shape.mesh, &path)
+                && packages.of_a_file()
+            {
+                bodies.note_mesh(mesh.at(path));
+            }
+            match (&shape.mesh, path) {
+                (Some(mesh), Some(path)) if wanted != CollisionShapes::Primitives => {
+                    add_mesh(&mut bodies, mesh, &path?, wanted)?;
                 }
-                _ => unread.push(shape.name.clone()),
+                _ => bodies.note_unread(shape.name.clone()),
             }
         }
     }
-    Ok(Bodies::new(list, unread, fits))
+    Ok(bodies)
+}
+
+impl CollisionMesh {
+    /// The mesh in the file at `path`.
+    fn at(&self, path: &Path) -> LinkMesh {
+        let path = path.display().to_string();
+        LinkMesh { link: self.link.clone(), path, scale: self.scale, origin: self.origin }
+    }
+}
+
+/// Adds the hull of a mesh, or the capsules that cover it.
+fn add_mesh(bodies: &mut Bodies, mesh: &CollisionMesh, path: &Path, wanted: CollisionShapes) -> Result<()> {
+    let hull = if wanted == CollisionShapes::Hulls { hull(mesh, path)? } else { None };
+    if let Some(hull) = hull {
+        bodies.push(hull);
+        return Ok(());
+    }
+    let (capsules, fit) = fitted(mesh, path)?;
+    capsules.into_iter().for_each(|body| bodies.push(body));
+    bodies.note_fit(fit);
+    Ok(())
+}
+
+/// The convex hull of a mesh; `None` for a mesh in a plane, which has none.
+fn hull(mesh: &CollisionMesh, path: &Path) -> Result<Option<Body>> {
+    let CollisionMesh { link, file, scale, origin } = mesh;
+    let shape = read_mesh(path, *scale)?;
+    let Geometry::Mesh(triangles) = shape.geometry() else { return Ok(None) };
+    let body = |shape| Body { link: link.clone(), shape, source: BodySource::Mesh(file.clone()) };
+    Ok(triangles.convex_hull(origin).map(body))
 }
 
 /// Capsules that cover a mesh, and how well.
-fn fitted(mesh: &CollisionMesh, packages: &Packages) -> Result<(Vec<Body>, MeshFit)> {
+fn fitted(mesh: &CollisionMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
     let CollisionMesh { link, file, scale, origin } = mesh;
-    let cover = covered_mesh(&found(mesh, packages)?, *scale, MOST)?;
+    let cover = covered_mesh(path, *scale, MOST)?;
     let bodies = cover.shapes.iter().map(|shape| {
         let (a, b, radius) = shape.enclosing_capsule();
         let [a, b] = [a, b].map(|end| (origin * Point3::from(end)).coords.into());

@@ -1,4 +1,4 @@
-//! Collision shapes of a link as capsules that enclose them.
+//! Collision shapes of a link: as they are, and as capsules that enclose them.
 
 use nalgebra::{Point3, Vector3};
 use roxmltree::Node;
@@ -6,13 +6,23 @@ use roxmltree::Node;
 use super::xml;
 use crate::math::{Pose, pose};
 use crate::robot::LinkCapsule;
+use crate::shape::Shape;
 
 /// The collision shapes of one link.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LinkCapsules {
-    pub(super) capsules: Vec<LinkCapsule>,
+    pub(super) primitives: Vec<Primitive>,
     /// Shapes without a capsule.
     pub(super) unread: Vec<UnreadShape>,
+}
+
+/// A sphere, box, cylinder or capsule.
+#[derive(Debug, Clone)]
+pub(super) struct Primitive {
+    /// The capsule that encloses it.
+    pub(super) capsule: LinkCapsule,
+    /// The shape itself.
+    pub(super) exact: Shape,
 }
 
 /// A collision shape that did not become a capsule.
@@ -41,11 +51,8 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
         let geometry = xml::children(collision, "geometry").next();
         let Some(shape) = geometry.and_then(|geometry| geometry.first_element_child()) else { continue };
         let tag = shape.tag_name().name();
-        match origin(collision).zip(axis(shape)) {
-            Some((origin, (half, radius))) => {
-                let end = |sign: f64| (origin * Point3::from(sign * half)).coords.into();
-                read.capsules.push(LinkCapsule { link: name.into(), a: end(-1.0), b: end(1.0), radius });
-            }
+        match origin(collision).and_then(|origin| primitive(name, &origin, shape)) {
+            Some(primitive) => read.primitives.push(primitive),
             None => {
                 let mesh = mesh(name, collision, shape);
                 read.unread.push(UnreadShape { name: format!("a {tag} of link '{name}'"), mesh });
@@ -53,6 +60,19 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
         }
     }
     read
+}
+
+/// A shape at `origin` in its link; `None` for unknown shapes, and for sizes that cannot be read.
+fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primitive> {
+    let (half, radius) = axis(shape)?;
+    let [a, b] = [-1.0, 1.0].map(|sign| (origin * Point3::from(sign * half)).coords.into());
+    let (center, turn) = (origin.translation.vector.into(), origin.rotation);
+    let exact = match shape.tag_name().name() {
+        "box" => Shape::cuboid(center, xml::vector(shape, "size", "size").ok()??, Some(*turn.matrix())),
+        "cylinder" => Shape::cylinder(center, (turn * Vector3::z()).into(), radius, 2.0 * half.z),
+        _ => Shape::swept_ball(a, b, radius),
+    };
+    Some(Primitive { capsule: LinkCapsule { link: link.into(), a, b, radius }, exact: exact.ok()? })
 }
 
 /// A mesh with its place; `None` for other shapes, and for a mesh whose attributes cannot be read.

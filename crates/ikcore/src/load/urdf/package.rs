@@ -21,6 +21,11 @@ impl Packages {
         Self { directory: directory.unwrap_or_default(), roots }
     }
 
+    /// Whether the URDF is a file: those that it names will be there later too.
+    pub(super) fn of_a_file(&self) -> bool {
+        !self.directory.as_os_str().is_empty()
+    }
+
     /// The file, or where it was looked for.
     pub(super) fn find(&self, filename: &str) -> Result<PathBuf, Vec<PathBuf>> {
         let package = ["package://", "model://"].iter().find_map(|scheme| filename.strip_prefix(scheme));

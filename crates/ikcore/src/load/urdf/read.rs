@@ -51,9 +51,9 @@ impl Robot {
     /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
     /// unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
-    /// Collision shapes of all links become [capsules](Robot::capsules) that enclose them: exact for spheres, with
-    /// protruding caps for cylinders and boxes. Meshes are not read unless [`CollisionShapes::Fit`] says so;
-    /// [`Robot::unread_collision_shapes`] names them.
+    /// Collision shapes of all links become capsules that enclose them ([`Robot::bodies`]): exact for spheres, with
+    /// protruding caps for cylinders and boxes. Meshes are not read unless [`CollisionShapes::Fit`] or
+    /// [`CollisionShapes::Hulls`] says so; [`Robot::unread_collision_shapes`] names them.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;

@@ -37,6 +37,14 @@ impl Mesh {
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for coordinates that are too large for a volume.
     pub fn cover(&self, most: usize) -> Result<Cover> {
+        let (volume, shapes) = self.covering(most)?;
+        let volume_ratio = if self.is_closed() { volume / self.volume().abs() } else { f64::NAN };
+        let largest_distance = tightness::largest_distance(self, &shapes);
+        Ok(Cover { shapes, volume_ratio, largest_distance })
+    }
+
+    /// The shapes of [`cover`](Self::cover), and their volume (m^3).
+    fn covering(&self, most: usize) -> Result<(f64, Vec<Shape>)> {
         let mut pieces = vec![Piece::of(CoveredPart::of(self))];
         // The next cut of each piece is found once.
         let mut cuts = vec![pieces[0].best_cut()];
@@ -59,10 +67,7 @@ impl Mesh {
             cuts.push(second.best_cut());
             pieces.push(second);
         }
-        let (volume, shapes) = best;
-        let volume_ratio = if self.is_closed() { volume / self.volume().abs() } else { f64::NAN };
-        let largest_distance = tightness::largest_distance(self, &shapes);
-        Ok(Cover { shapes, volume_ratio, largest_distance })
+        Ok(best)
     }
 }
 
@@ -133,8 +138,8 @@ mod tests {
         let mut rng = rng::stream(1, 0);
         for body in bodies(&mut rng) {
             for most in [1, 2, 6] {
-                let cover = as_mesh(&body).cover(most).unwrap();
-                assert!((1..=most).contains(&cover.shapes.len()));
+                let (_, cover) = as_mesh(&body).covering(most).unwrap();
+                assert!((1..=most).contains(&cover.len()));
                 for i in 0..as_mesh(&body).faces().len() {
                     let [a, b, c] = as_mesh(&body).triangle(i);
                     for _ in 0..20 {
@@ -154,8 +159,8 @@ mod tests {
         }
     }
 
-    fn is_held(cover: &Cover, point: &Vector3<f64>) -> bool {
-        cover.shapes.iter().any(|shape| shape.geometry().tangent(point).value <= 0.0)
+    fn is_held(cover: &[Shape], point: &Vector3<f64>) -> bool {
+        cover.iter().any(|shape| shape.geometry().tangent(point).value <= 0.0)
     }
 
     #[test]
@@ -167,7 +172,7 @@ mod tests {
             for _ in 0..20_000 {
                 let ball = body.bounding_ball();
                 let point = Vector3::from_fn(|k, _| ball.center[k] + 1.2 * rng.uniform_in(-ball.radius, ball.radius));
-                if is_held(&cover, &point) {
+                if is_held(&cover.shapes, &point) {
                     farthest = farthest.max(as_mesh(&body).tangent(&point).value);
                 }
             }
