@@ -13,31 +13,22 @@ const SCANNED: usize = 2048;
 /// Values of the parameter between two looks at the monitor.
 const VALUES_BETWEEN_LOOKS: usize = 64;
 
-/// What the closed form yields.
-pub(super) enum BranchOutcome {
-    /// A clear solution.
-    Clear(Point),
-    /// No branch inside the limits is clear.
-    Blocked(Exhausted),
-    /// The closed form does not apply, or no branch is inside the limits.
-    Open,
-}
+/// A clear solution, or why no branch is clear; `None` where the closed form does not apply, or no branch is inside the limits.
+pub(super) type BranchOutcome = Option<Result<Point, Exhausted>>;
 
 impl ClearSearch<'_, '_, '_> {
     /// The preferred one of the clear branches; of a redundant arm one at the first value of its parameter that has one.
     pub(super) fn by_branches(&mut self, preference: &Preference) -> BranchOutcome {
         let (context, target) = (self.attempt.context, self.attempt.problem.target());
-        let Target::Pose(pose) = target else { return BranchOutcome::Open };
+        let Target::Pose(pose) = target else { return None };
         if !context.asks_for_pose(target) || self.attempt.budget.left() < LEAST_BUDGET {
-            return BranchOutcome::Open;
+            return None;
         }
         let robot = context.robot();
         match (robot.solves_at_once(), robot.family(pose)) {
             (Some(true), Some(family)) => self.of_family(&family, preference),
-            (Some(_), None) => {
-                robot.branches(pose).map_or(BranchOutcome::Open, |all| self.of_branches(&all, preference))
-            }
-            _ => BranchOutcome::Open,
+            (Some(_), None) => self.of_branches(&robot.branches(pose)?, preference),
+            _ => None,
         }
     }
 
@@ -45,10 +36,8 @@ impl ClearSearch<'_, '_, '_> {
     fn of_branches(&mut self, branches: &ArmBranches, preference: &Preference) -> BranchOutcome {
         self.attempt.budget.evaluations += branches.evaluations;
         match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
-            Some(q) => BranchOutcome::Clear(q),
-            None if self.has_candidates() && branches.complete && !branches.singular => {
-                BranchOutcome::Blocked(Exhausted::All)
-            }
+            Some(q) => Some(Ok(q)),
+            None if self.has_candidates() && branches.complete && !branches.singular => Some(Err(Exhausted::All)),
             None => self.clear_by_pushing(),
         }
     }
@@ -60,13 +49,13 @@ impl ClearSearch<'_, '_, '_> {
             let branches = family.branches_at(value);
             self.attempt.budget.evaluations += branches.evaluations;
             if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
-                return BranchOutcome::Clear(q);
+                return Some(Ok(q));
             }
             if self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
                 break;
             }
             if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
-                return BranchOutcome::Blocked(Exhausted::Interrupted);
+                return Some(Err(Exhausted::Interrupted));
             }
         }
         self.clear_by_pushing()
@@ -75,9 +64,9 @@ impl ClearSearch<'_, '_, '_> {
     /// Where no branch is clear.
     fn clear_by_pushing(&mut self) -> BranchOutcome {
         match self.pushed_candidate() {
-            Some(q) => BranchOutcome::Clear(q),
-            None if self.has_candidates() => BranchOutcome::Blocked(Exhausted::Tried),
-            None => BranchOutcome::Open,
+            Some(q) => Some(Ok(q)),
+            None if self.has_candidates() => Some(Err(Exhausted::Tried)),
+            None => None,
         }
     }
 

@@ -25,6 +25,9 @@ pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     push: Goals,
 }
 
+/// A clear solution, or the result where none is found.
+pub(super) type Found = Result<Point, Box<Solution>>;
+
 /// Why no solution is clear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ik) enum Exhausted {
@@ -101,7 +104,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     }
 
     /// The result where no solution is clear: the candidate least deep in collision.
-    pub fn in_collision(&self, exhausted: Exhausted) -> Option<Solution> {
+    pub fn in_collision(&self, exhausted: Exhausted) -> Option<Box<Solution>> {
         let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
         let margin = self.space.margin();
         let said =
@@ -128,10 +131,10 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         };
         let status = if exhausted == Exhausted::Interrupted { Status::Interrupted } else { Status::InCollision };
         let solution = self.attempt.solution(status, q);
-        Some(Solution {
+        Some(Box::new(Solution {
             obstruction,
             nearest: Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() })),
             ..solution
-        })
+        }))
     }
 }

@@ -1,7 +1,6 @@
 //! A solution that is clear, as `solve` returns it.
 
-use super::branches::BranchOutcome;
-use super::clear_search::{ClearSearch, Exhausted};
+use super::clear_search::{ClearSearch, Exhausted, Found};
 use crate::ik::attempt::Attempt;
 use crate::ik::first_branch::by_closed_form;
 use crate::ik::preference::Preference;
@@ -29,7 +28,7 @@ pub(in crate::ik) fn clear_solution<'p>(
         (_, start) => search.first(start).map(|q| search.improved(q, start)),
     };
     match found {
-        Err(solution) => solution,
+        Err(solution) => *solution,
         Ok(q) => {
             let nearest = Some(Box::new(Nearest::at(space, &q)));
             Solution { nearest, ..attempt.solution(Status::Solved, q) }
@@ -44,12 +43,12 @@ pub(in crate::ik) fn made_clear<'p>(
     solution: Solution,
 ) -> Solution {
     let checked = ClearSearch::new(attempt, space).checked(solution);
-    checked.map_or_else(|blocked| blocked, |q| attempt.solution(Status::Solved, q))
+    checked.map_or_else(|blocked| *blocked, |q| attempt.solution(Status::Solved, q))
 }
 
 impl ClearSearch<'_, '_, '_> {
     /// The first clear solution; an error is the result where none is found.
-    fn first(&mut self, start: Option<&[f64]>) -> Result<Point, Solution> {
+    fn first(&mut self, start: Option<&[f64]>) -> Found {
         if let Some(start) = start
             && let Some(q) = self.near_start(start)
         {
@@ -57,13 +56,13 @@ impl ClearSearch<'_, '_, '_> {
         }
         let context = self.attempt.context;
         match self.by_branches(&Preference::new(context, start)) {
-            BranchOutcome::Clear(q) => return Ok(q),
-            BranchOutcome::Blocked(exhausted) => {
+            Some(Ok(q)) => return Ok(q),
+            Some(Err(exhausted)) => {
                 if let Some(solution) = self.in_collision(exhausted) {
                     return Err(solution);
                 }
             }
-            BranchOutcome::Open => {
+            None => {
                 if let Some(solution) = by_closed_form(self.attempt, start) {
                     return self.checked(solution);
                 }
@@ -74,11 +73,12 @@ impl ClearSearch<'_, '_, '_> {
     }
 
     /// The configuration of `solution` if it is clear, or one near it on its self-motion.
-    fn checked(&mut self, solution: Solution) -> Result<Point, Solution> {
+    fn checked(&mut self, solution: Solution) -> Found {
         if solution.status != Status::Solved {
-            return Err(solution);
+            return Err(Box::new(solution));
         }
-        self.cleared(solution.q.clone()).ok_or_else(|| self.in_collision(Exhausted::Tried).unwrap_or(solution))
+        let found = self.cleared(solution.q.clone());
+        found.ok_or_else(|| self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(solution)))
     }
 
     /// A clear solution that one descent from `start` leads to.
@@ -96,17 +96,17 @@ impl ClearSearch<'_, '_, '_> {
     }
 
     /// The clear solution nearest to `start`: of the branches of an arm that is not redundant, else of those found.
-    fn nearest_to(&mut self, start: &[f64]) -> Result<Point, Solution> {
+    fn nearest_to(&mut self, start: &[f64]) -> Found {
         let context = self.attempt.context;
         if context.robot().dof() <= context.robot().task_rank().pose {
             match self.by_branches(&Preference::new(context, Some(start))) {
-                BranchOutcome::Clear(q) => return Ok(q),
-                BranchOutcome::Blocked(exhausted) => {
+                Some(Ok(q)) => return Ok(q),
+                Some(Err(exhausted)) => {
                     if let Some(solution) = self.in_collision(exhausted) {
                         return Err(solution);
                     }
                 }
-                BranchOutcome::Open => {}
+                None => {}
             }
         }
         let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };

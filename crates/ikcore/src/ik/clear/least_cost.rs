@@ -1,7 +1,6 @@
 //! The clear solution with the least cost of goals, of those found.
 
-use super::clear_search::{ClearSearch, Exhausted};
-use crate::ik::solution::Solution;
+use super::clear_search::{ClearSearch, Exhausted, Found};
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Goals;
@@ -15,7 +14,7 @@ const SAME: f64 = 1e-9;
 impl ClearSearch<'_, '_, '_> {
     /// Searches from `start`, or an indexed configuration, then from other starts. Each solution is made clear, then descends on
     /// `goals` inside the clear space.
-    pub(super) fn least_cost(&mut self, goals: &mut Goals, start: Option<&[f64]>) -> Result<Point, Solution> {
+    pub(super) fn least_cost(&mut self, goals: &mut Goals, start: Option<&[f64]>) -> Found {
         let context = self.attempt.context;
         let mut best: Option<(f64, Point)> = None;
         let mut x0 = self.attempt.first_start(start);
@@ -23,8 +22,8 @@ impl ClearSearch<'_, '_, '_> {
         while no_better < PATIENCE {
             let solution = self.attempt.solve_from(&x0);
             if solution.status != Status::Solved {
-                return best
-                    .map_or_else(|| Err(self.in_collision(Exhausted::Tried).unwrap_or(solution)), |(_, q)| Ok(q));
+                let missed = || self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(solution));
+                return best.map(|(_, q)| q).ok_or_else(missed);
             }
             no_better += 1;
             if let Some(mut q) = self.cleared(solution.q) {
@@ -45,7 +44,7 @@ impl ClearSearch<'_, '_, '_> {
         match (best, self.in_collision(Exhausted::Tried)) {
             (Some((_, q)), _) => Ok(q),
             (None, Some(blocked)) => Err(blocked),
-            (None, None) => Err(self.attempt.explained(Status::Stalled, x0)),
+            (None, None) => Err(Box::new(self.attempt.explained(Status::Stalled, x0))),
         }
     }
 }
