@@ -80,11 +80,11 @@ def load_chains(places: Iterable[Path], scratch: Path) -> list[Chain]:
         for urdf in files:
             index = urdf.with_name("robots.json")
             ends = json.loads(index.read_text()).get(urdf.stem, {}) if index.exists() else {}
-            chains.append(_cut(urdf, ends.get("base"), ends.get("tip"), scratch))
+            chains.append(cut(urdf, ends.get("base"), ends.get("tip"), scratch))
     return chains
 
 
-def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
+def cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
     """Write the chain from base to tip alone, without shapes, continuous joints as one turn about zero.
 
     Libraries differ in how they choose a tip, order the joints of a tree and draw restarts for a joint without limits.

@@ -542,6 +542,7 @@ class Status(IntEnum):
     - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
     - `OUTSIDE_LIMITS`: The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.
     - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
+    - `IN_COLLISION`: The target is reached, but nearer than the margin to an obstacle, or with two links nearer to each other.
     """
 
     SOLVED = 0
@@ -558,6 +559,7 @@ class Status(IntEnum):
     BELOW_THRESHOLD = 11
     OUTSIDE_LIMITS = 12
     HELD_IN_REGION = 13
+    IN_COLLISION = 14
 
 @final
 class APPS:
@@ -1350,8 +1352,8 @@ class Pointing(Task):
 
 @disjoint_base
 class Goal:
-    """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability` or
-    `LinkManipulability`.
+    """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
+    `LinkManipulability` or `Clearance`.
     """
 
     @property
@@ -1406,6 +1408,20 @@ class LinkManipulability(Goal):
 
     def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
+class Clearance(Goal):
+    """Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of bodies
+    whose distance d is below `up_to`. For calls with `obstacles=` or `self_collision=True`, whose margin is kept besides.
+
+    Args:
+        weight: weight relative to other goals.
+        up_to: distance beyond which a pair no longer counts (m).
+    """
+
+    def __new__(cls, *, weight: float = 1.0, up_to: float = 0.1) -> Clearance: ...
+    @property
+    def up_to(self) -> float:
+        """Distance beyond which a pair no longer counts (m)."""
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
@@ -1420,6 +1436,9 @@ def solve(
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution:
@@ -1445,14 +1464,20 @@ def solve(
             when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
         limits: position limits; None: the robot's.
+        obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
+            links alone. None: nothing is checked.
+        margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
         seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
-        A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found.
+        A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With obstacles a
+        solution counts as solved only if it is clear by the margin; if none is found, its status is IN_COLLISION, and
+        `message` names the two bodies and says whether the hand itself is in the way.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
+        InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
         LimitError: a start outside the limits.
     """
 
@@ -1488,6 +1513,14 @@ class Solution:
     def rotation_error(self) -> float:
         """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
     @property
+    def clearance(self) -> float:
+        """Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
+        deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+        """
+    @property
+    def nearest(self) -> Nearest | None:
+        """The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch."""
+    @property
     def iterations(self) -> int:
         """Iterations over all starts."""
     @property
@@ -1508,6 +1541,9 @@ def solve_all(
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     limits: Limits | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> SolutionSet:
@@ -1535,6 +1571,10 @@ def solve_all(
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         limits: position limits; None: the robot's.
+        obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
+            links alone. None: nothing is checked.
+        margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
         seed: seed of the random draws; the same seed gives the same bits.
 
@@ -1661,6 +1701,9 @@ def solve_batch(
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> BatchSolution:
@@ -1684,6 +1727,7 @@ def solve_batch(
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         goals, prefer: as for `solve`.
         limits: position limits; None: the robot's.
+        obstacles, margin, self_collision: as for `solve`.
         stop: budgets of each target; None: as for `solve`.
         seed: seed of the random draws; the same seed gives the same bits.
 
@@ -1719,6 +1763,9 @@ class BatchSolution:
     @property
     def rotation_error(self) -> _Array:
         """Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free."""
+    @property
+    def clearance(self) -> _Array:
+        """Smallest distances to obstacles or between links (m,) (m), as in `Solution.clearance`."""
     @property
     def iterations(self) -> NDArray[np.int64]:
         """Iterations over all starts (m,)."""

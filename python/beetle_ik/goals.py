@@ -1,5 +1,5 @@
 """Secondary objectives for redundant arms: what the joints do in the null space of the task."""
 
-from ._core import Centring, Goal, LinkManipulability, Manipulability, Posture
+from ._core import Centring, Clearance, Goal, LinkManipulability, Manipulability, Posture
 
-__all__ = ["Centring", "Goal", "LinkManipulability", "Manipulability", "Posture"]
+__all__ = ["Centring", "Clearance", "Goal", "LinkManipulability", "Manipulability", "Posture"]

@@ -171,7 +171,7 @@ fn the_best_is_at_least_as_good_as_any() {
             let cost = |prefer, solver| {
                 let options = SolveOptions { goals: goals.clone(), prefer, solver, ..SolveOptions::default() };
                 let found = solve(&arm, &target, &options, &mut Unattended).unwrap();
-                Goals::new(&goals, &arm, &bounds).cost(&arm, &found.q, &mut [0.0; 7])
+                Goals::new(&goals, &arm, &bounds).cost(&arm, None, &found.q, &mut [0.0; 7])
             };
             let (any, best) = (cost(Prefer::Any, None), cost(Prefer::Best, None));
             assert!(best <= any + 1e-9, "{name}: {best} {any}");

@@ -10,6 +10,7 @@ mod batch;
 mod best_posture;
 mod choice;
 mod circle_posture;
+mod clear;
 mod closed_form;
 mod contract;
 mod ease;

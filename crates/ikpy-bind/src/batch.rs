@@ -43,6 +43,9 @@ pub struct PyBatchSolution {
     /// Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free.
     #[pyo3(get)]
     rotation_error: Py<PyArray1<f64>>,
+    /// Smallest distances to obstacles or between links (m,) (m), as in `Solution.clearance`.
+    #[pyo3(get)]
+    clearance: Py<PyArray1<f64>>,
     /// Iterations over all starts (m,).
     #[pyo3(get)]
     iterations: Py<PyArray1<i64>>,
@@ -127,6 +130,7 @@ impl PyBatchSolution {
             status: column(py, &items, |item| item.status as u8),
             position_error: column(py, &items, |item| item.error.position),
             rotation_error: column(py, &items, |item| item.error.rotation),
+            clearance: column(py, &items, BatchItem::clearance),
             iterations: column(py, &items, |item| item.iterations as i64),
             restarts: column(py, &items, |item| item.restarts as i64),
             evaluations: column(py, &items, |item| item.evaluations as i64),
@@ -169,6 +173,7 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     goals, prefer: as for `solve`.
 ///     limits: position limits; None: the robot's.
+///     obstacles, margin, self_collision: as for `solve`.
 ///     stop: budgets of each target; None: as for `solve`.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -181,7 +186,7 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 #[pyfunction]
 #[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6, goals=None, prefer="any",
-                    limits=None, stop=None, seed=0))]
+                    limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
@@ -198,6 +203,9 @@ pub fn solve_batch(
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PyBatchSolution> {
@@ -211,7 +219,19 @@ pub fn solve_batch(
         None => (None, None),
     };
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked = SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals, prefer, stop, seed };
+    let asked = SolveArguments {
+        task,
+        solver,
+        position_tolerance,
+        rotation_tolerance,
+        goals,
+        prefer,
+        obstacles,
+        margin,
+        self_collision,
+        stop,
+        seed,
+    };
     let options = BatchOptions {
         each: asked.read(start_of_all, resolved)?,
         starts: start_of_each,

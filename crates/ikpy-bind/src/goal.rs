@@ -17,11 +17,12 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPosture>()?;
     module.add_class::<PyCentring>()?;
     module.add_class::<PyManipulability>()?;
-    module.add_class::<PyLinkManipulability>()
+    module.add_class::<PyLinkManipulability>()?;
+    module.add_class::<PyClearance>()
 }
 
-/// A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability` or
-/// `LinkManipulability`.
+/// A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
+/// `LinkManipulability` or `Clearance`.
 #[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyGoal {
@@ -47,6 +48,7 @@ impl PyGoal {
             Goal::LinkManipulability { motion, .. } => {
                 format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
             }
+            Goal::Clearance { up_to, .. } => format!("goals.Clearance(weight={weight:?}, up_to={up_to:?})"),
         }
     }
 
@@ -64,6 +66,10 @@ impl PyGoal {
                 options.set_item("motion", motion.name())?;
                 PyTuple::empty(py)
             }
+            Goal::Clearance { up_to, .. } => {
+                options.set_item("up_to", *up_to)?;
+                PyTuple::empty(py)
+            }
         };
         Ok((arguments, options))
     }
@@ -74,7 +80,7 @@ fn made<C>(core: Goal, class: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyGoal>,
 {
-    core.validate_weight().map_err(raise)?;
+    core.validate_numbers().map_err(raise)?;
     Ok(PyClassInitializer::from(PyGoal { core }).add_subclass(class))
 }
 
@@ -155,6 +161,33 @@ impl PyLinkManipulability {
     fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
         let motion = motion.parse::<Motion>().map_err(raise)?;
         made(Goal::LinkManipulability { motion, weight }, Self)
+    }
+}
+
+/// Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of bodies
+/// whose distance d is below `up_to`. For calls with `obstacles=` or `self_collision=True`, whose margin is kept besides.
+///
+/// Args:
+///     weight: weight relative to other goals.
+///     up_to: distance beyond which a pair no longer counts (m).
+#[pyclass(name = "Clearance", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyClearance;
+
+#[pymethods]
+impl PyClearance {
+    #[new]
+    #[pyo3(signature = (*, weight=1.0, up_to=0.1))]
+    fn new(weight: f64, up_to: f64) -> PyResult<PyClassInitializer<Self>> {
+        made(Goal::Clearance { up_to, weight }, Self)
+    }
+
+    /// Distance beyond which a pair no longer counts (m).
+    #[getter]
+    fn up_to(self_: PyRef<'_, Self>) -> f64 {
+        match self_.as_super().core {
+            Goal::Clearance { up_to, .. } => up_to,
+            _ => f64::NAN,
+        }
     }
 }
 

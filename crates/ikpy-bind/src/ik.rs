@@ -11,6 +11,7 @@ use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
+use crate::obstacle::PyNearest;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
@@ -56,6 +57,19 @@ impl PySolution {
     #[getter]
     fn rotation_error(&self) -> f64 {
         self.core.error.rotation
+    }
+
+    /// Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
+    /// deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    #[getter]
+    fn clearance(&self) -> f64 {
+        self.core.clearance()
+    }
+
+    /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    #[getter]
+    fn nearest(&self) -> Option<PyNearest> {
+        self.core.nearest.as_ref()?.bodies.clone().map(PyNearest::from)
     }
 
     /// Iterations over all starts.
@@ -114,18 +128,25 @@ impl PySolution {
 ///         when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
 ///         traced once instead, including the parts beyond joint limits.
 ///     limits: position limits; None: the robot's.
+///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
+///         links alone. None: nothing is checked.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found.
+///     A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With obstacles a
+///     solution counts as solved only if it is clear by the margin; if none is found, its status is IN_COLLISION, and
+///     `message` names the two bodies and says whether the hand itself is in the way.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
+///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-6,
-                    rotation_tolerance=1e-6, goals=None, prefer="any", limits=None, stop=None, seed=0))]
+                    rotation_tolerance=1e-6, goals=None, prefer="any", limits=None, obstacles=None, margin=None, self_collision=None,
+                    stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve(
     py: Python<'_>,
@@ -139,12 +160,27 @@ pub fn solve(
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
     let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked = SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals, prefer, stop, seed };
+    let asked = SolveArguments {
+        task,
+        solver,
+        position_tolerance,
+        rotation_tolerance,
+        goals,
+        prefer,
+        obstacles,
+        margin,
+        self_collision,
+        stop,
+        seed,
+    };
     let options = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let core = watched(py, None, |watcher| ik::solve(&robot.core, &target, &options, watcher))?;
     Ok(PySolution::new(py, core, in_force))

@@ -180,6 +180,10 @@ impl Unreached {
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     limits: position limits; None: the robot's.
+///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
+///         links alone. None: nothing is checked.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -192,7 +196,7 @@ impl Unreached {
 ///     LimitError: a start outside the limits.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
     py: Python<'_>,
@@ -208,6 +212,9 @@ pub fn solve_all(
     position_tolerance: f64,
     rotation_tolerance: f64,
     limits: Option<&PyLimits>,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolutionSet> {
@@ -215,8 +222,19 @@ pub fn solve_all(
     let owner = robot;
     let robot = owner.get();
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked =
-        SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
+    let asked = SolveArguments {
+        task,
+        solver,
+        position_tolerance,
+        rotation_tolerance,
+        goals: None,
+        prefer: "any",
+        obstacles,
+        margin,
+        self_collision,
+        stop,
+        seed,
+    };
     let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;

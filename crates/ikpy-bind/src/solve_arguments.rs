@@ -2,6 +2,7 @@
 
 use ikcore::ik::SolveOptions;
 use ikcore::limits::Limits;
+use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stop;
 use ikcore::task::Tolerance;
 use pyo3::prelude::*;
@@ -9,6 +10,7 @@ use pyo3::prelude::*;
 use crate::convert::count;
 use crate::error::raise;
 use crate::goal::read_goals;
+use crate::obstacle::Obstacles;
 use crate::solver::{PyStop, any_solver};
 use crate::task::read_task;
 
@@ -20,6 +22,9 @@ pub struct SolveArguments<'a, 'py> {
     pub rotation_tolerance: f64,
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub prefer: &'a str,
+    pub obstacles: Option<&'a Bound<'py, PyAny>>,
+    pub margin: Option<f64>,
+    pub self_collision: Option<bool>,
     pub stop: Option<&'a PyStop>,
     pub seed: i128,
 }
@@ -35,6 +40,11 @@ impl SolveArguments<'_, '_> {
             start,
             tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
             limits,
+            surroundings: Surroundings {
+                obstacles: self.obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?,
+                margin: self.margin,
+                self_collision: self.self_collision,
+            },
             stop: self.stop.map_or(Stop::default(), PyStop::core),
             seed: count("seed", self.seed)?,
         })

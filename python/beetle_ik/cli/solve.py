@@ -1,15 +1,19 @@
 """`beetle-ik solve`: inverse kinematics of one target."""
 
+import math
 from typing import Annotated, Any
 
 import typer
 
-from .. import Robot, Solution, SolutionSet, Stop, pose, solve_all
+from .. import Robot, Scene, Solution, SolutionSet, Stop, pose, solve_all
 from .. import solve as solve_target
 from .options import (
     AsJson,
     BaseLink,
+    LinkRadius,
+    Margin,
     RobotName,
+    SceneFile,
     Seed,
     SolverName,
     Start,
@@ -38,17 +42,22 @@ def solve(
     every: Annotated[
         bool, typer.Option("--all", help="All solutions, nearest to the start first, and whether any is missing.")
     ] = False,
+    scene: SceneFile = None,
+    margin: Margin = None,
+    link_radius: LinkRadius = None,
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
     """Inverse kinematics: joint positions for a position or a pose of the tip."""
-    arm = load_robot(robot, urdf, base, tip)
+    arm = load_robot(robot, urdf, base, tip, link_radius)
     point = numbers("--position", position, 3)
     target = point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3))
     options: dict[str, Any] = {
         "start": None if start is None else numbers("--start", start),
+        "obstacles": None if scene is None else Scene.load(scene),
+        "margin": margin,
         "solver": None if solver is None else make_solver(solver),
         "position_tolerance": position_tolerance,
         "rotation_tolerance": rotation_tolerance,
@@ -92,6 +101,7 @@ def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> No
             "message",
             "position_error",
             "rotation_error",
+            "clearance",
             "iterations",
             "restarts",
             "evaluations",
@@ -100,11 +110,13 @@ def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> No
         print_json(status | {field: getattr(solution, field) for field in fields})
         return
     rotation = [("rotation error [rad]", f"{solution.rotation_error:.3g}")] if oriented else []
+    clearance = [] if math.isnan(solution.clearance) else [("clearance [m]", f"{solution.clearance:.3g}")]
     print_pairs(
         f"{robot.name}: {solution.message}",
         [
             ("position error [m]", f"{solution.position_error:.3g}"),
             *rotation,
+            *clearance,
             ("evaluations", str(solution.evaluations)),
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ik::Solution;
+use crate::ik::{Nearest, Solution};
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
@@ -18,6 +18,8 @@ pub struct BatchItem {
     pub error: TipError,
     /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
+    /// The nearest two bodies, if obstacles or the robot's own links were to be kept clear of.
+    pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
     pub iterations: usize,
     /// Starts beyond the first.
@@ -30,23 +32,48 @@ pub struct BatchItem {
 
 impl From<Solution> for BatchItem {
     fn from(solution: Solution) -> Self {
-        let Solution { q: _, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
-        Self { status, error, obstruction, iterations, restarts, evaluations, elapsed }
+        let Solution { q: _, status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed } =
+            solution;
+        Self { status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed }
     }
 }
 
 impl BatchItem {
+    /// The smallest distance (m), as in [`Solution::clearance`].
+    pub fn clearance(&self) -> f64 {
+        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
+    }
+
     /// An item that was not solved.
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
         let obstruction = String::new();
-        Self { status, error, obstruction, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
+        Self {
+            status,
+            error,
+            obstruction,
+            nearest: None,
+            iterations: 0,
+            restarts: 0,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+        }
     }
 
     /// Combines the item with its configuration.
     pub fn solution(&self, q: &[f64]) -> Solution {
-        let Self { status, error, obstruction, iterations, restarts, evaluations, elapsed } = self.clone();
-        Solution { q: Point::from_slice(q), status, error, obstruction, iterations, restarts, evaluations, elapsed }
+        let Self { status, error, obstruction, nearest, iterations, restarts, evaluations, elapsed } = self.clone();
+        Solution {
+            q: Point::from_slice(q),
+            status,
+            error,
+            obstruction,
+            nearest,
+            iterations,
+            restarts,
+            evaluations,
+            elapsed,
+        }
     }
 }
 

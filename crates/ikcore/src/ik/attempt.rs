@@ -155,6 +155,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             problem: self.problem,
             goals,
             bounds: self.context.bounds(),
+            space: self.context.space(),
             evaluations: 0,
             max_evaluations: self.budget.left(),
         };
@@ -190,6 +191,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             status,
             error: error.into(),
             obstruction: String::new(),
+            nearest: None,
             iterations: self.budget.iterations,
             restarts: self.budget.restarts,
             evaluations: self.budget.evaluations,

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
 use crate::objective::{Bounds, Objective, Point};
+use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
@@ -38,6 +39,8 @@ pub(crate) struct SolveContext<'a> {
     bounds: Bounds,
     /// The preference of queries without a start, made when first asked for.
     central: OnceLock<Preference>,
+    /// Where solutions must be; boxed to keep the context small.
+    space: Option<Box<ClearSpace<'a>>>,
 }
 
 impl<'a> SolveContext<'a> {
@@ -51,7 +54,8 @@ impl<'a> SolveContext<'a> {
         options.task.as_ref().map_or(Ok(()), Task::validate)?;
         let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
         criterion.validate()?;
-        options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
+        let space = options.surroundings.clear_space(robot)?.map(Box::new);
+        options.goals.iter().try_for_each(|goal| goal.validate(robot, space.is_some()))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
             return Err(Error::Contradiction {
                 problem: "prefer=\"nearest\" takes no goals: the distance to the start is its goal".into(),
@@ -63,7 +67,7 @@ impl<'a> SolveContext<'a> {
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
-        Ok(Self { robot, with_tool, options, criterion, goals, bounds, central: OnceLock::new() })
+        Ok(Self { robot, with_tool, options, criterion, goals, bounds, central: OnceLock::new(), space })
     }
 
     pub(super) fn robot(&self) -> &Robot {
@@ -78,6 +82,16 @@ impl<'a> SolveContext<'a> {
         &self.goals
     }
 
+    /// Where solutions must be, if anything is to be kept clear of.
+    pub(super) fn space(&self) -> Option<&ClearSpace<'a>> {
+        self.space.as_deref()
+    }
+
+    /// Whether the target fixes the pose of the tip.
+    pub(super) fn fixes_pose(&self, target: &Target) -> bool {
+        matches!(target, Target::Pose(_)) && self.criterion.components.is_none() && self.criterion.region.is_none()
+    }
+
     pub(super) fn options(&self) -> &SolveOptions {
         self.options
     }
@@ -90,8 +104,7 @@ impl<'a> SolveContext<'a> {
 
     /// Whether only pose and limits define a solution, goals aside, and the choice of solver is ours.
     pub(super) fn asks_for_pose(&self, target: &Target) -> bool {
-        let plain = self.criterion.components.is_none() && self.criterion.region.is_none();
-        matches!(target, Target::Pose(_)) && plain && self.options.solver.is_none()
+        self.fixes_pose(target) && self.options.solver.is_none()
     }
 
     /// The same without goals.

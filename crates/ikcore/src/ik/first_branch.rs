@@ -14,7 +14,7 @@ use crate::task::Target;
 const SCANNED: usize = 128;
 
 /// Budgets of fewer evaluations are left to the search.
-const LEAST_BUDGET: usize = 500;
+pub(super) const LEAST_BUDGET: usize = 500;
 
 /// Descents towards a pose that is proven to be out of reach: eight would come nearer by 1 % (UR5e, measured) in four times the time.
 const APPROACHES_OF_PROVEN: usize = 2;

@@ -7,6 +7,7 @@
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::dot;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
+use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::task::Goals;
@@ -30,6 +31,8 @@ pub(super) struct GoalDescent<'a, 'p> {
     pub problem: &'a mut Problem<'p>,
     pub goals: &'a mut Goals,
     pub bounds: &'a Bounds,
+    /// Where the goals measure clearances. A descent that begins in there stays.
+    pub space: Option<&'a ClearSpace<'p>>,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
     pub max_evaluations: usize,
@@ -46,20 +49,22 @@ impl GoalDescent<'_, '_> {
     /// Moves `q`, at or near a solution, to the nearest optimum of the goals; false if there is no solution nearby.
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
+        let within = self.space.filter(|space| space.holds(&begin.q));
         let was_solved = self.problem.assess(q).score.solved;
         if self.max_evaluations < MOST_CORRECTIONS || !self.correct(q) {
             *q = begin.q;
             return was_solved;
         }
         let exact = self.place(q.clone());
-        let end = self.follow_slope(exact);
+        let end = self.follow_slope(exact, within);
         // After the exact correction, an arm that could not move may have lost the gain it had within the tolerance.
-        *q = if end.cost < begin.cost || !was_solved { end.q } else { begin.q };
+        let keeps = |q: &[f64]| within.is_none_or(|space| space.holds(q));
+        *q = if (end.cost < begin.cost || !was_solved) && keeps(&end.q) { end.q } else { begin.q };
         true
     }
 
-    /// Descends from `here` until the slope vanishes.
-    fn follow_slope(&mut self, mut here: TaskPoint) -> TaskPoint {
+    /// Descends from `here` until the slope vanishes, inside `within`.
+    fn follow_slope(&mut self, mut here: TaskPoint, within: Option<&ClearSpace<'_>>) -> TaskPoint {
         let mut linearization = Linearization::default();
         let mut rate = f64::INFINITY;
         // The last step and its slope, from which the next rate is estimated.
@@ -75,7 +80,9 @@ impl GoalDescent<'_, '_> {
                 rate = if bend > 0.0 { dot(&step, &step) / bend } else { f64::INFINITY };
             }
             rate = rate.min(LONGEST / largest(&slope));
-            let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate) else { break };
+            let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate, within) else {
+                break;
+            };
             last = Some((difference(&there.q, &here.q), slope));
             here = there;
         }
@@ -90,12 +97,13 @@ impl GoalDescent<'_, '_> {
         at: &Linearization,
         slope: &[f64],
         rate: &mut f64,
+        within: Option<&ClearSpace<'_>>,
     ) -> Option<TaskPoint> {
         while *rate * largest(slope) > SHORTEST && self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let mut q = self.near(at, here, slope, *rate);
             if self.correct(&mut q) {
                 let there = self.place(q);
-                if there.cost < here.cost {
+                if there.cost < here.cost && within.is_none_or(|space| space.holds(&there.q)) {
                     return Some(there);
                 }
             }
@@ -154,7 +162,7 @@ impl GoalDescent<'_, '_> {
 
     fn place(&mut self, q: Point) -> TaskPoint {
         let mut gradient = q.clone();
-        let cost = self.goals.cost(self.robot, &q, &mut gradient);
+        let cost = self.goals.cost(self.robot, self.space, &q, &mut gradient);
         TaskPoint { q, cost, gradient }
     }
 }

@@ -10,6 +10,7 @@ mod all_branches;
 mod attempt;
 mod best;
 mod budget;
+mod clear;
 mod context;
 mod first_branch;
 mod goal_descent;
@@ -25,7 +26,7 @@ mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
 pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
-pub use solution::Solution;
+pub use solution::{Nearest, Solution};
 pub use solutions::{SolutionView, Solutions};
 pub use solve::solve;
 pub(crate) use solve::solve_query;

@@ -76,6 +76,15 @@ impl Preference {
         self.joints.iter().zip(best?).map(|(joint, q)| joint.turned(*q)).collect()
     }
 
+    /// Those of `configurations` that are inside the limits, at their whole turns nearest to the reference, preferred ones first.
+    pub fn ordered<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> SmallVec<[Point; 8]> {
+        let inside = configurations.filter_map(|q| self.cost(q).map(|cost| (cost, q)));
+        let mut inside: SmallVec<[(f64, &[f64]); 16]> = inside.collect();
+        inside.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let turned = |q: &[f64]| self.0.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
+        inside.iter().filter_map(|(_, q)| turned(q)).collect()
+    }
+
     /// The weighted squared distance from the reference; None outside the limits.
     #[inline]
     fn cost(&self, q: &[f64]) -> Option<f64> {

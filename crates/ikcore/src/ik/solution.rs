@@ -5,8 +5,10 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::objective::Point;
+use crate::obstacle::{ClearSpace, NearestContact};
 use crate::solver::Status;
 use crate::task::TipError;
+use crate::wording::number;
 
 /// The best configuration found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,6 +21,8 @@ pub struct Solution {
     pub error: TipError,
     /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
+    /// The nearest two bodies at `q`, if obstacles or the robot's own links were to be kept clear of.
+    pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
     pub iterations: usize,
     /// Starts beyond the first.
@@ -29,7 +33,34 @@ pub struct Solution {
     pub elapsed: Duration,
 }
 
+/// What is nearest to what at a configuration, where that was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Nearest {
+    /// The two bodies; `None` if no two can touch.
+    pub bodies: Option<NearestContact>,
+    /// The first obstacle that is a mesh which is not closed: its inside is not known.
+    pub open_mesh: Option<usize>,
+}
+
+impl Nearest {
+    /// At `q` in `space`.
+    pub(super) fn at(space: &ClearSpace<'_>, q: &[f64]) -> Self {
+        Self { bodies: space.nearest(q), open_mesh: space.first_open_mesh() }
+    }
+
+    /// The smallest distance (m); infinite if nothing can touch.
+    pub fn clearance(&self) -> f64 {
+        self.bodies.as_ref().map_or(f64::INFINITY, |bodies| bodies.contact.distance)
+    }
+}
+
 impl Solution {
+    /// The smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
+    /// checked.
+    pub fn clearance(&self) -> f64 {
+        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
+    }
+
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let Self { error, obstruction, status, .. } = self;
@@ -37,7 +68,8 @@ impl Solution {
             return format!("not solved: {}", status.advice());
         }
         let ended = match status {
-            Status::Solved => return format!("solved to {error}"),
+            Status::Solved => return format!("solved to {error}{}", self.kept_clear()),
+            Status::InCollision => return format!("reached to {error}, but {obstruction}: {}", status.advice()),
             Status::Improved => return format!("below the requested value, {error} away"),
             Status::OutOfReach => "as near as possible,",
             Status::BelowThreshold => "error_threshold met,",
@@ -50,5 +82,18 @@ impl Solution {
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
         format!("{ended} {error} away{why}: {}", status.advice())
+    }
+
+    /// The clearance, as the end of a sentence; empty if nothing was checked.
+    fn kept_clear(&self) -> String {
+        let Some(nearest) = &self.nearest else { return String::new() };
+        let clear = match nearest.bodies {
+            None => ", with nothing to touch".into(),
+            Some(_) => format!(", {} m clear of everything", number(nearest.clearance())),
+        };
+        match nearest.open_mesh {
+            None => clear,
+            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
+        }
     }
 }

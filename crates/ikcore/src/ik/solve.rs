@@ -2,6 +2,7 @@
 
 use super::attempt::Attempt;
 use super::best::best_solution;
+use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
 use super::nearest::nearest_solution;
@@ -48,6 +49,7 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
     let mut rng = rng::stream(context.options().seed, query.stream);
     let mut attempt = Attempt::new(context, &mut problem, &mut rng, monitor);
     let solution = match (context.options().prefer, query.start) {
+        (_, start) if let Some(space) = context.space() => clear_solution(&mut attempt, space, start),
         (Prefer::Nearest, Some(start)) => nearest_solution(&mut attempt, start),
         (Prefer::Best, start) => best_solution(&mut attempt, start),
         (_, start) => first_solution(&mut attempt, start),

@@ -6,13 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use super::all_branches::{AllBranches, all_branches};
 use super::attempt::{APPROACHES, Attempt};
+use super::clear::{clear_solution, made_clear};
 use super::context::SolveContext;
-use super::solution::Solution;
+use super::solution::{Nearest, Solution};
 use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
 use super::whole_turns::{all_turns, bring_near, count_of_turns};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Point};
+use crate::obstacle::ClearSpace;
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -56,6 +58,8 @@ impl Default for AllOptions {
 pub struct SolutionSet {
     /// The solutions, nearest to the start first; without a start in the order of discovery.
     pub solutions: Solutions,
+    /// The nearest two bodies at each solution, if obstacles or the robot's own links were to be kept clear of.
+    pub nearest: Option<Vec<Nearest>>,
     /// Why there is no solution, where that is proven. [`nearest_miss`] then finds a configuration near the target.
     pub obstruction: Option<String>,
     /// The best miss of a search that found no solution.
@@ -105,6 +109,7 @@ impl SolutionSet {
     fn of(solutions: Solutions) -> Self {
         Self {
             solutions,
+            nearest: None,
             obstruction: None,
             miss: None,
             complete: false,
@@ -124,6 +129,7 @@ impl SolutionSet {
             status: Status::Solved,
             error,
             obstruction: String::new(),
+            nearest: self.nearest.as_ref().and_then(|nearest| nearest.get(i).cloned()).map(Box::new),
             iterations: self.iterations,
             restarts: self.restarts,
             evaluations: self.evaluations,
@@ -167,6 +173,9 @@ pub fn solve_all(
         Some(branches) => by_closed_form(&attempt, branches, *separation),
         None => search(&mut attempt, start, &reference, limit, separation.unwrap_or(APART)),
     };
+    if let Some(space) = context.space() {
+        require_clear(&mut found, &mut attempt, space, start);
+    }
     if *turns {
         found.solutions = at_all_turns(&context, &found.solutions)?;
     }
@@ -175,9 +184,33 @@ pub fn solve_all(
     }
     found.complete &= found.solutions.len() <= limit;
     found.solutions.truncate(limit);
+    if let Some(space) = context.space() {
+        // Whole turns may have rounded a solution out of the clear space.
+        found.solutions = found.solutions.filtered(|_, q| space.holds(q));
+        found.nearest = Some(found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
+    }
     (found.iterations, found.restarts) = (attempt.budget.iterations, attempt.budget.restarts);
     (found.evaluations, found.elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
     Ok(found)
+}
+
+/// Keeps the clear solutions of a closed form. If there is none, finds one, or says what is in the way.
+fn require_clear<'p>(
+    found: &mut SolutionSet,
+    attempt: &mut Attempt<'_, 'p>,
+    space: &'p ClearSpace<'p>,
+    start: Option<&[f64]>,
+) {
+    let any = !found.solutions.is_empty();
+    found.solutions = found.solutions.filtered(|_, q| space.holds(q));
+    if any && found.solutions.is_empty() && !found.interrupted {
+        let solution = clear_solution(attempt, space, start);
+        found.complete &= solution.status == Status::InCollision;
+        match solution.status {
+            Status::Solved => found.solutions.push(&solution.q, solution.error),
+            _ => found.miss = Some(Box::new(solution)),
+        }
+    }
 }
 
 /// The nearest of a few descents towards a target that [`solve_all`] proves to be out of reach.
@@ -228,26 +261,32 @@ fn search(
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let mut x0 = attempt.first_start(start);
     let (mut solutions, mut known) = (Solutions::new(robot.dof()), 0);
-    let mut interrupted = false;
+    let (mut interrupted, mut blocked) = (false, None);
     let last = loop {
         let found = attempt.solve_from(&x0);
         let mut solution = attempt.mark_held_in_region(found);
         if solution.status != Status::Solved {
-            break Some(solution);
+            break blocked.or(Some(solution));
+        }
+        if let Some(space) = attempt.context.space() {
+            solution = made_clear(attempt, space, solution);
         }
         bring_near(robot, bounds, reference, &mut solution.q);
-        if is_known(robot, &solutions, &solution.q, separation) {
+        if solution.status != Status::Solved || is_known(robot, &solutions, &solution.q, separation) {
             known += 1;
         } else {
             known = 0;
             solutions.push(&solution.q, solution.error);
+        }
+        if solution.status != Status::Solved {
+            blocked = Some(solution);
         }
         // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
         let enough = start.is_none() && solutions.len() == limit;
         // Runs may be too short to poll the monitor.
         interrupted = !attempt.monitor.keep_going();
         if interrupted || known == PATIENCE || enough || attempt.budget.is_spent() {
-            break None;
+            break blocked;
         }
         attempt.next_start(&mut x0);
     };

@@ -1,6 +1,7 @@
 //! Options of `solve`.
 
 use crate::limits::Limits;
+use crate::obstacle::Surroundings;
 use crate::solver::{AnySolver, Stop};
 use crate::task::{Goal, Task, Tolerance};
 use crate::wording::words;
@@ -37,6 +38,8 @@ pub struct SolveOptions {
     pub tolerance: Tolerance,
     /// Position limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
+    /// What solutions keep clear of. By default nothing is checked.
+    pub surroundings: Surroundings,
     /// Budgets.
     pub stop: Stop,
     /// Seed of the random draws; the same seed gives the same bits. Most targets are solved without a random draw, and

@@ -19,10 +19,30 @@ pub(super) struct BodyGroups {
     /// Group, block and lane of each body.
     places: Vec<[usize; 3]>,
     pairs: Vec<GroupPair>,
-    /// Finds the obstacles near a ball, if there are many.
-    index: Option<ShapeIndex>,
     /// Whether some bodies are no capsules.
     solids: bool,
+}
+
+/// What the bodies are to keep clear of.
+#[derive(Debug, Clone)]
+pub(super) struct Others<'a> {
+    pub obstacles: &'a [Shape],
+    /// Finds the obstacles near a ball, if there are many.
+    index: Option<ShapeIndex>,
+    /// The bodies of the robot itself, in the pairs that must not touch.
+    pub itself: bool,
+}
+
+impl<'a> Others<'a> {
+    /// `obstacles`, and the robot itself.
+    pub fn new(obstacles: &'a [Shape]) -> Self {
+        Self { obstacles, index: ShapeIndex::of_many(obstacles), itself: true }
+    }
+
+    /// Whether one configuration at a time is faster: obstacles are then found by a tree.
+    pub fn has_index(&self) -> bool {
+        self.index.is_some()
+    }
 }
 
 /// All bodies of one moving element, in its frame.
@@ -62,8 +82,9 @@ type Placed = SmallVec<[BodyBlock; BLOCKS]>;
 type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
 
 impl BodyGroups {
-    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`: the scene has done so.
-    pub fn new(carried: &[Carried], obstacles: &[Shape]) -> Self {
+    /// Groups of `carried`, of which these pairs must not touch. Bodies that no joint moves are not compared with obstacles: the
+    /// scene has done so.
+    pub fn new(carried: &[Carried], pairs: &[[usize; 2]]) -> Self {
         let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
         stages.sort_unstable_by(|one, other| other.cmp(one));
         stages.dedup();
@@ -80,19 +101,11 @@ impl BodyGroups {
             groups.push(Group::new(stage, bodies, carried));
         }
         let solids = carried.iter().any(|body| body.solid.is_some());
-        Self { groups, places, pairs: vec![], index: ShapeIndex::of_many(obstacles), solids }
-    }
-
-    /// Forbids these pairs of bodies to touch, given by their indices in `carried`.
-    pub fn forbid_contacts(&mut self, pairs: impl Iterator<Item = [usize; 2]>) {
+        let mut all = Self { groups, places, pairs: vec![], solids };
         for [near, far] in pairs {
-            self.forbid(self.places[near], self.places[far]);
+            all.forbid(all.places[*near], all.places[*far]);
         }
-    }
-
-    /// Allows all bodies to touch each other.
-    pub fn allow_contacts(&mut self) {
-        self.pairs.clear();
+        all
     }
 
     fn forbid(&mut self, [near, block, lane]: [usize; 3], [far, far_block, far_lane]: [usize; 3]) {
@@ -111,8 +124,8 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
-        are_clear(self, carried, frames, obstacles, margin)
+    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], others: &Others<'_>, margin: f64) -> bool {
+        are_clear(self, carried, frames, others, margin)
     }
 
     /// Whether some bodies are no capsules: [`four_are_clear`](Self::four_are_clear) would see the capsules around them.
@@ -120,14 +133,40 @@ impl BodyGroups {
         self.solids
     }
 
-    /// Whether one configuration at a time is faster: obstacles are then found by a tree.
-    pub fn has_index(&self) -> bool {
-        self.index.is_some()
+    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
+    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], others: &Others<'_>, margin: f64) -> F64x4 {
+        four_are_clear(self, frames, others, margin)
     }
 
-    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
-    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
-        four_are_clear(self, frames, obstacles, margin)
+    /// How many groups there are.
+    pub fn count(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The group of a body.
+    pub fn group_of(&self, body: usize) -> usize {
+        self.places[body][0]
+    }
+
+    /// The bodies of a group.
+    pub fn bodies_of(&self, group: usize) -> &[usize] {
+        &self.groups[group].bodies
+    }
+
+    /// Whether a joint moves a group.
+    pub fn is_moving(&self, group: usize) -> bool {
+        self.groups[group].stages > 0
+    }
+
+    /// Centre and radius (m) of a ball that holds a group, with the moving elements at `frames`.
+    pub fn ball(&self, group: usize, frames: &[Frame]) -> (Vector3<f64>, f64) {
+        let Group { stages, center, radius, .. } = &self.groups[group];
+        (frames[*stages].place::<NoFma>(center).into(), *radius)
+    }
+
+    /// The pairs of groups that must keep clear.
+    fn pairs_of(&self, others: &Others<'_>) -> &[GroupPair] {
+        if others.itself { &self.pairs } else { &[] }
     }
 
     /// Whether the bodies of the lanes that are not `clear` by their capsules are `clear_of` an obstacle by their shapes.
@@ -262,9 +301,10 @@ by_instructions! {
         all: &BodyGroups,
         carried: &[Carried],
         frames: &[Frame],
-        obstacles: &[Shape],
+        others: &Others<'_>,
         margin: f64,
     ) -> bool {
+        let obstacles = others.obstacles;
         let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -274,7 +314,7 @@ by_instructions! {
         // For each group the obstacles that its ball is near to.
         let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
         let moving = |group: usize| all.groups[group].stages > 0;
-        match &all.index {
+        match &others.index {
             Some(index) => {
                 for group in (0..all.groups.len()).filter(|group| moving(*group)) {
                     let (center, radius) = ball(group);
@@ -313,7 +353,7 @@ by_instructions! {
                 }
             }
         }
-        for pair in &all.pairs {
+        for pair in all.pairs_of(others) {
             let ((near, near_radius), (far, far_radius)) = (ball(pair.near), ball(pair.far));
             let enough = near_radius + far_radius + margin;
             if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
@@ -334,7 +374,8 @@ by_instructions! {
 }
 
 by_instructions! {
-    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
+    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], others: &Others<'_>, margin: f64) -> F64x4 {
+        let obstacles = others.obstacles;
         let mut clear = F64x4::splat(1.0);
         let at = |group: &Group| frames[group.stages];
         // Lanes that are not clear no longer matter.
@@ -358,7 +399,7 @@ by_instructions! {
                 }
             }
         }
-        for pair in &all.pairs {
+        for pair in all.pairs_of(others) {
             let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
             let (near_at, far_at) = (at(near), at(far));
             let one = BodyBlock::ball_at::<A>(&near_at, &near.center, near.radius);

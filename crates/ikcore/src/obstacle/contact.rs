@@ -2,17 +2,21 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
+use crate::wording::number;
+
 /// The body that a link is near.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Neighbor {
     /// The obstacle of this index, and its kind.
-    Obstacle(usize, &'static str),
+    Obstacle(usize, String),
     /// Another link.
     Link(String),
 }
 
 /// A link, the body it is near, and their distance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// The link.
     pub link: String,
@@ -23,7 +27,7 @@ pub struct Contact {
 }
 
 /// A contact with its place, in the frame of the robot's base.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NearestContact {
     /// The two bodies and their distance.
     pub contact: Contact,
@@ -34,6 +38,17 @@ pub struct NearestContact {
     pub normal: [f64; 3],
     /// Derivative of the distance by each joint (n,) (m/rad, m/m).
     pub gradient: Vec<f64>,
+}
+
+impl Contact {
+    /// How deep the link is in the other body, or how little of `kept` (m) is left: "0.01 m inside", "only 0.1 m (of a margin of
+    /// 0.2 m) from".
+    pub(crate) fn depth(&self, kept: f64) -> String {
+        if self.distance < 0.0 {
+            return format!("{} m inside", number(-self.distance));
+        }
+        format!("only {} m (of a margin of {} m) from", number(self.distance), number(kept))
+    }
 }
 
 impl fmt::Display for Neighbor {

@@ -4,18 +4,29 @@
 //! |---|---|
 //! | `placement` | where the bodies of a robot are at a configuration |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
+//! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
+//! | `body_model` | bodies, groups and pairs of a robot, made once |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
+//! | `near_pairs` | the nearest pairs |
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
 //! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
 
 mod body_groups;
+mod body_model;
+mod clear_space;
 mod contact;
 mod link_displacement;
+mod near_pairs;
 mod placement;
 mod scene;
+mod surroundings;
 mod sweep;
 
+pub(crate) use clear_space::Blocked;
+pub use clear_space::ClearSpace;
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use scene::Scene;
+pub use surroundings::Surroundings;
+pub(crate) use surroundings::kept_margin;
 pub use sweep::{Edge, JointMotion, Sweep, TooNear};

@@ -1,8 +1,11 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
-use super::body_groups::BodyGroups;
+use super::body_groups::Others;
+use super::body_model::{BodyModel, BodyPair};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
 use super::placement::Placement;
@@ -13,15 +16,6 @@ use crate::robot::{Carried, Joint, Robot};
 use crate::shape::{PlacedBody, Shape};
 use crate::wording::listed;
 
-/// Two things that could touch.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum BodyPair {
-    /// A body and an obstacle.
-    Obstacle { body: usize, obstacle: usize },
-    /// Two bodies of the robot; `near` is nearer to the base.
-    Bodies { near: usize, far: usize },
-}
-
 /// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
 /// All bodies are tested against the obstacles, those of the base and of held links too. Links are tested against each other in
@@ -29,17 +23,11 @@ pub(super) enum BodyPair {
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
-    carried: Vec<Carried>,
-    groups: BodyGroups,
-    obstacles: &'a [Shape],
-    /// Pairs whose distance changes with the joints.
-    pub(super) pairs: Vec<BodyPair>,
+    pub(super) bodies: Arc<BodyModel>,
+    pub(super) others: Others<'a>,
     /// Of the bodies that no joint moves the nearest to an obstacle, at this distance (m).
     pub(super) fixed: Option<(f64, BodyPair)>,
 }
-
-/// Distances that differ by less (m) are equal but for rounding.
-const EQUALLY_NEAR: f64 = 1e-9;
 
 impl<'a> Scene<'a> {
     /// # Errors
@@ -59,33 +47,35 @@ impl<'a> Scene<'a> {
             );
             return Err(Error::InvalidObstacle { problem });
         }
-        let carried = robot.carried_bodies();
-        let groups = BodyGroups::new(&carried, obstacles);
-        let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![], fixed: None };
-        scene.pairs = scene.self_pairs();
-        scene.groups.forbid_contacts(scene.pairs.iter().filter_map(|pair| match pair {
-            BodyPair::Bodies { near, far } => Some([*near, *far]),
-            BodyPair::Obstacle { .. } => None,
-        }));
-        let (moving, fixed): (Vec<_>, Vec<_>) = scene.with_obstacles().partition(|pair| scene.carriers_of(*pair).1 > 0);
-        scene.pairs.extend(moving);
-        // Bodies that no joint moves are in the same place at any configuration.
-        let somewhere = scene.place(&vec![0.0; robot.dof()]);
-        scene.fixed = scene.nearest_of(&fixed, &somewhere, None);
+        let bodies = BodyModel::of(robot);
+        let mut scene = Self { robot, bodies, others: Others::new(obstacles), fixed: None };
+        scene.fixed = scene.nearest_fixed();
         Ok(scene)
     }
 
-    /// Each body with each obstacle.
-    fn with_obstacles(&self) -> impl Iterator<Item = BodyPair> + use<> {
-        let count = self.obstacles.len();
+    /// The nearest pair of an obstacle and a body that no joint moves, which is in the same place at any configuration.
+    fn nearest_fixed(&self) -> Option<(f64, BodyPair)> {
+        let pairs = self.with_obstacles(|body| body.stages == 0);
+        pairs.clone().next()?;
+        self.nearest_of(pairs, &self.place(&vec![0.0; self.robot.dof()]))
+    }
+
+    /// Each of the bodies that are `wanted` with each obstacle.
+    fn with_obstacles(&self, wanted: impl Fn(&Carried) -> bool + Clone) -> impl Iterator<Item = BodyPair> + Clone {
+        let count = self.others.obstacles.len();
         let with_each = move |body| (0..count).map(move |obstacle| BodyPair::Obstacle { body, obstacle });
-        (0..self.carried.len()).flat_map(with_each)
+        (0..self.bodies.carried.len()).filter(move |i| wanted(&self.bodies.carried[*i])).flat_map(with_each)
+    }
+
+    /// Pairs whose distance changes with the joints: of links, then of links and obstacles.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = BodyPair> + Clone {
+        let links: &[BodyPair] = if self.others.itself { &self.bodies.pairs } else { &[] };
+        links.iter().copied().chain(self.with_obstacles(|body| body.stages > 0))
     }
 
     /// The same scene, but links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
-        self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
-        self.groups.allow_contacts();
+        self.others.itself = false;
         self
     }
 
@@ -103,25 +93,10 @@ impl<'a> Scene<'a> {
         Ok(self.nearest_pair(&self.place(q)).map(|(distance, pair)| self.contact(pair, distance)))
     }
 
-    fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
-        self.nearest_of(&self.pairs, placement, self.fixed)
-    }
-
-    /// The nearest of `pairs`, unless `nearest` is nearer.
-    fn nearest_of(
-        &self,
-        pairs: &[BodyPair],
-        placement: &Placement,
-        mut nearest: Option<(f64, BodyPair)>,
-    ) -> Option<(f64, BodyPair)> {
-        for pair in pairs {
-            let (least, first) = nearest.unwrap_or((f64::INFINITY, *pair));
-            let distance = self.distance(*pair, placement, least);
-            // Of pairs that are equally near, the first counts.
-            let nearer = if distance < least - EQUALLY_NEAR { *pair } else { first };
-            nearest = Some((distance.min(least), nearer));
-        }
-        nearest
+    /// The nearest of `pairs`.
+    fn nearest_of(&self, pairs: impl Iterator<Item = BodyPair>, placement: &Placement) -> Option<(f64, BodyPair)> {
+        let distances = pairs.map(|pair| (self.distance(pair, placement, f64::INFINITY), pair));
+        distances.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
     /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
@@ -149,23 +124,52 @@ impl<'a> Scene<'a> {
         self.robot.check("joint angles", q)?;
         let placement = self.place(q);
         let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
-        let (point, normal) = match pair {
-            BodyPair::Obstacle { body, obstacle } => {
-                self.obstacles[obstacle].nearest_to_body(&self.placed(body, &placement))
-            }
-            BodyPair::Bodies { near, far } => self.placed(far, &placement).nearest_to(&self.placed(near, &placement)),
-        };
         let mut gradient = vec![0.0; self.robot.dof()];
-        let (below, own, other) = self.carriers_of(pair);
-        let sides = [(own, 1.0), (other, -1.0)];
-        for (frame, sign) in sides {
-            for (moved, motion) in self.robot.carriers(frame, below) {
-                let velocity = motion.velocity(&placement.frames[moved], &point.into());
-                gradient[motion.joint] += sign * normal.dot(&Vector3::from(velocity));
-            }
-        }
+        let [point, normal] = self.add_gradient(pair, &placement, 1.0, &mut gradient);
         let contact = self.contact(pair, distance);
         Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
+    }
+
+    /// Adds `factor` times the derivative of a pair's distance by the joints. Returns the point of the link that is nearest to the
+    /// other body, and the normal there.
+    pub(super) fn add_gradient(
+        &self,
+        pair: BodyPair,
+        placement: &Placement,
+        factor: f64,
+        gradient: &mut [f64],
+    ) -> [Vector3<f64>; 2] {
+        let (point, normal) = match pair {
+            BodyPair::Obstacle { body, obstacle } => {
+                self.others.obstacles[obstacle].nearest_to_body(&self.placed(body, placement))
+            }
+            BodyPair::Bodies { near, far, .. } => self.placed(far, placement).nearest_to(&self.placed(near, placement)),
+        };
+        let (below, own, other) = self.carriers_of(pair);
+        for (frame, factor) in [(own, factor), (other, -factor)] {
+            for (moved, motion) in self.robot.carriers(frame, below) {
+                let velocity = motion.velocity(&placement.frames[moved], &point.into());
+                gradient[motion.joint] += factor * normal.dot(&Vector3::from(velocity));
+            }
+        }
+        [point, normal]
+    }
+
+    /// The nearest obstacle and body that no joint moves; `None` if there is none.
+    pub(super) fn nearest_fixed_contact(&self) -> Option<Contact> {
+        self.fixed.map(|(distance, pair)| self.contact(pair, distance))
+    }
+
+    /// The nearest pair of which one body is fixed to the tip, and the other does not move; `None` if there is none.
+    pub(super) fn nearest_of_hand(&self, q: &[f64]) -> Option<Contact> {
+        let placement = self.place(q);
+        let hand = self.robot.tip_frame_number();
+        let is_hand = |pair: &BodyPair| {
+            let (_, own, other) = self.carriers_of(*pair);
+            own == hand && other == 0
+        };
+        let nearest = self.nearest_of(self.pairs().filter(is_hand), &placement);
+        nearest.map(|(distance, pair)| self.contact(pair, distance))
     }
 
     /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
@@ -176,7 +180,7 @@ impl<'a> Scene<'a> {
         }
         let mut frames = self.robot.frame_buffer();
         self.robot.write_frames(q, &mut frames);
-        self.groups.are_clear(&self.carried, &frames, self.obstacles, margin)
+        self.bodies.groups.are_clear(&self.bodies.carried, &frames, &self.others, margin)
     }
 
     /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
@@ -192,7 +196,7 @@ impl<'a> Scene<'a> {
         if !self.fixed_are_clear(margin) {
             return Ok(vec![false; qs.len() / n]);
         }
-        if self.groups.has_index() || self.groups.has_solids() {
+        if self.others.has_index() || self.bodies.groups.has_solids() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
         let mut clear = Vec::with_capacity(qs.len() / n);
@@ -204,7 +208,7 @@ impl<'a> Scene<'a> {
                 *values = F64x4(std::array::from_fn(|lane| four[lane.min(count - 1) * n + joint]));
             }
             self.robot.write_frames_four(&lanes, &mut frames);
-            let lanes = self.groups.four_are_clear(&frames, self.obstacles, margin).0;
+            let lanes = self.bodies.groups.four_are_clear(&frames, &self.others, margin).0;
             clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
         }
         Ok(clear)
@@ -217,29 +221,31 @@ impl<'a> Scene<'a> {
 
     /// The contact of a pair that is `distance` apart (m).
     pub(super) fn contact(&self, pair: BodyPair, distance: f64) -> Contact {
-        let link = |body: usize| self.carried[body].link.clone();
+        let link = |body: usize| self.bodies.carried[body].link.clone();
         match pair {
             BodyPair::Obstacle { body, obstacle } => {
-                let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
+                let other = Neighbor::Obstacle(obstacle, self.others.obstacles[obstacle].name().into());
                 Contact { link: link(body), other, distance }
             }
-            BodyPair::Bodies { near, far } => Contact { link: link(far), other: Neighbor::Link(link(near)), distance },
+            BodyPair::Bodies { near, far, .. } => {
+                Contact { link: link(far), other: Neighbor::Link(link(near)), distance }
+            }
         }
     }
 
     pub(super) fn place(&self, q: &[f64]) -> Placement {
-        let mut placement = Placement::of(self.robot, self.carried.len());
+        let mut placement = Placement::of(self.robot, self.bodies.carried.len());
         self.place_into(q, &mut placement);
         placement
     }
 
     pub(super) fn place_into(&self, q: &[f64], placement: &mut Placement) {
-        placement.update(self.robot, &self.carried, q);
+        placement.update(self.robot, &self.bodies.carried, q);
     }
 
     #[inline]
     fn placed<'b>(&'b self, body: usize, placement: &'b Placement) -> PlacedBody<'b> {
-        let carried = &self.carried[body];
+        let carried = &self.bodies.carried[body];
         carried.placed(&placement.segments[body], &placement.frames[carried.stages])
     }
 
@@ -248,9 +254,15 @@ impl<'a> Scene<'a> {
     pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
         match pair {
             BodyPair::Obstacle { body, obstacle } => {
-                self.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
+                self.others.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
             }
-            BodyPair::Bodies { near, far } => {
+            BodyPair::Bodies { near, far, .. } => {
+                let radii = self.bodies.carried[near].radius + self.bodies.carried[far].radius;
+                let ([a, b], [c, d]) = (&placement.segments[near], &placement.segments[far]);
+                let apart = 0.5 * ((a + b - c - d).norm() - (a - b).norm() - (c - d).norm()) - radii;
+                if apart > enough + 1e-9 {
+                    return apart - 1e-9;
+                }
                 self.placed(far, placement).distance_to(&self.placed(near, placement), enough)
             }
         }
@@ -264,27 +276,19 @@ impl<'a> Scene<'a> {
         };
         match pair {
             BodyPair::Obstacle { body, .. } => moved(body, own),
-            BodyPair::Bodies { near, far } => moved(far, own) + moved(near, other),
+            BodyPair::Bodies { near, far, .. } => moved(far, own) + moved(near, other),
         }
     }
 
     /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.
     fn carriers_of(&self, pair: BodyPair) -> (usize, usize, usize) {
         match pair {
-            BodyPair::Obstacle { body, .. } => (0, self.carried[body].stages, 0),
-            BodyPair::Bodies { near, far } => {
-                let [near, far] = [near, far].map(|body| self.carried[body].stages);
+            BodyPair::Obstacle { body, .. } => (0, self.bodies.carried[body].stages, 0),
+            BodyPair::Bodies { near, far, .. } => {
+                let [near, far] = [near, far].map(|body| self.bodies.carried[body].stages);
                 (self.robot.meeting_frame(near, far), far, near)
             }
         }
-    }
-
-    fn self_pairs(&self) -> Vec<BodyPair> {
-        let ordered = |[one, other]: [usize; 2]| match self.carried[one].stages <= self.carried[other].stages {
-            true => BodyPair::Bodies { near: one, far: other },
-            false => BodyPair::Bodies { near: other, far: one },
-        };
-        self.robot.tested_bodies().into_iter().map(ordered).collect()
     }
 }
 

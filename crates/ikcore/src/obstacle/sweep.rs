@@ -5,9 +5,10 @@
 //! approach within the interval, it is clear in the whole interval; the other pairs are examined again in both halves.
 //! No step width has to be chosen, and no collision can be missed between two samples.
 
+use super::body_model::BodyPair;
 use super::contact::Contact;
 use super::placement::Placement;
-use super::scene::{BodyPair, Scene};
+use super::scene::Scene;
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 
@@ -64,7 +65,7 @@ impl<'a> Sweep<'a> {
     /// A checker for any number of motions in `scene`.
     pub fn new(scene: &'a Scene<'a>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
-        Self { scene, pending: scene.pairs.clone(), placement: scene.place(&rest), examined: 0 }
+        Self { scene, pending: scene.pairs().collect(), placement: scene.place(&rest), examined: 0 }
     }
 
     /// Number of configurations examined.

@@ -8,7 +8,6 @@ use crate::obstacle::{Contact, JointMotion, Scene};
 use crate::robot::Robot;
 use crate::shape::Shape;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
-use crate::wording::number;
 
 /// Distance added to the margin at end configurations and on straight lines (m), so that their timed motion can be
 /// certified too.
@@ -50,13 +49,9 @@ pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &
 pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
     let kept = margin + RESERVE;
     match scene.nearest(q)? {
-        Some(Contact { link, other, distance }) if distance < kept => {
-            let depth = if distance < 0.0 {
-                format!("{} m inside", number(-distance))
-            } else {
-                format!("only {} m (of a margin of {} m) from", number(distance), number(kept))
-            };
-            Err(Error::InCollision { what: what.into(), link, other: other.to_string(), depth })
+        Some(contact) if contact.distance < kept => {
+            let depth = contact.depth(kept);
+            Err(Error::InCollision { what: what.into(), link: contact.link, other: contact.other.to_string(), depth })
         }
         _ => Ok(()),
     }

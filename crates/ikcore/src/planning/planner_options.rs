@@ -90,23 +90,6 @@ pub struct PointToPointOptions {
     pub seed: u64,
 }
 
-/// Default distance to keep (m).
-const DEFAULT_MARGIN: f64 = 1e-3;
-
-impl PointToPointOptions {
-    /// The distance to keep from obstacles and between links (m).
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] for a margin that is negative or not finite.
-    pub(super) fn kept_margin(&self) -> Result<f64> {
-        let margin = self.margin.unwrap_or(DEFAULT_MARGIN);
-        if margin.is_finite() && margin >= 0.0 {
-            return Ok(margin);
-        }
-        Err(Error::out_of_range("margin", "zero or more and finite", margin))
-    }
-}
-
 /// Options of [`plan_along_path`](super::plan_along_path).
 #[derive(Debug, Clone, Default)]
 pub struct AlongPathOptions {

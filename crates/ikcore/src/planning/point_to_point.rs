@@ -6,6 +6,7 @@ use super::plan::Plan;
 use super::planner_options::{PointToPointMethod, PointToPointOptions};
 use super::{minmax, tpbso};
 use crate::error::{Error, Result};
+use crate::obstacle::kept_margin;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 
@@ -23,7 +24,7 @@ pub fn plan_point_to_point(
 ) -> Result<Plan> {
     start.check("start", robot)?;
     end.check("end", robot)?;
-    options.kept_margin()?;
+    kept_margin(options.margin)?;
     let mut plan = match &options.method {
         PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
         PointToPointMethod::Tpbso(_) if options.start_velocity.is_some() => Err(Error::Contradiction {

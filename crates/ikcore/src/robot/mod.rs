@@ -10,6 +10,7 @@
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
+//! | `derived` | what a higher module derives from the bodies |
 //! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
@@ -23,6 +24,7 @@ mod bodies;
 mod body;
 mod builder;
 mod carried;
+mod derived;
 mod description;
 mod joint;
 mod kinematics;

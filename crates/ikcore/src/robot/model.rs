@@ -1,9 +1,11 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
+use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use super::body::Bodies;
+use super::derived::Derived;
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::off_chain::OffChain;
@@ -40,6 +42,8 @@ pub struct Robot {
     reach_of_links: Reach,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
+    /// Of bodies and pairs.
+    derived: Derived,
     /// The smallest change of each joint that leaves the pose of every link unchanged.
     turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
@@ -73,6 +77,7 @@ impl Robot {
             chain: Arc::new(chain),
             tree: OnceLock::new(),
             pairs: Arc::default(),
+            derived: Derived::default(),
             start_index: Arc::default(),
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
@@ -286,6 +291,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.bodies = bodies;
         robot.pairs = Arc::default();
+        robot.derived = Derived::default();
         robot
     }
 
@@ -294,6 +300,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.pairs = pairs;
         robot.pairs = Arc::default();
+        robot.derived = Derived::default();
         robot
     }
 
@@ -307,6 +314,12 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.stances = stances;
         robot
+    }
+
+    /// What `make` derives from the bodies of this robot and their pairs; made once, and shared with copies that have the same. To
+    /// be called with one type alone.
+    pub(crate) fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
+        self.derived.get(make)
     }
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {

@@ -57,6 +57,8 @@ statuses! {
         "The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.";
     HeldInRegion = 13, "HELD_IN_REGION":
         "The region of the task keeps the tip from the target; the tip is in the region, as near as possible.";
+    InCollision = 14, "IN_COLLISION":
+        "The target is reached, but nearer than the margin to an obstacle, or with two links nearer to each other.";
 }
 
 impl Status {
@@ -78,6 +80,7 @@ impl Status {
             Self::Invalid => "use on_invalid=\"raise\" to see what is wrong",
             Self::PlantFailed => "fix the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
+            Self::InCollision => "move the target or what is in the way, or lower the margin",
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"

@@ -1,8 +1,9 @@
 //! Secondary goals: costs on the joints in the null space of the task.
 
-use crate::error::{Result, require_positive};
+use crate::error::{Error, Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::objective::{Bounds, Point};
+use crate::obstacle::ClearSpace;
 use crate::robot::Robot;
 
 /// A cost to minimise along the self-motion. Positive weights balance several goals.
@@ -35,6 +36,13 @@ pub enum Goal {
         /// Weight among several goals.
         weight: f64,
     },
+    /// Distance from everything near: the sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to`.
+    Clearance {
+        /// Distance beyond which a pair no longer counts (m).
+        up_to: f64,
+        /// Weight among several goals.
+        weight: f64,
+    },
 }
 
 /// Goals compiled for one robot and its limits.
@@ -51,6 +59,8 @@ enum Term {
     Springs { stiffness: Vec<f64>, rest: Vec<f64> },
     /// -weight * ln of an index.
     Manipulability { measure: Manipulability, of: Part, weight: f64 },
+    /// weight * nearness.
+    Clearance { up_to: f64, weight: f64 },
 }
 
 /// The part of the arm that an index measures.
@@ -70,27 +80,35 @@ impl Goal {
             Self::Posture { weight, .. }
             | Self::Centring { weight }
             | Self::Manipulability { weight, .. }
-            | Self::LinkManipulability { weight, .. } => *weight,
+            | Self::LinkManipulability { weight, .. }
+            | Self::Clearance { weight, .. } => *weight,
         }
     }
 
-    /// Checks the weight.
+    /// Checks the numbers of the goal.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a weight that is not positive.
-    pub fn validate_weight(&self) -> Result<()> {
-        require_positive("weight of a goal", self.weight())
+    /// [`Error::OutOfRange`] for a weight or a distance that is not positive.
+    pub fn validate_numbers(&self) -> Result<()> {
+        require_positive("weight of a goal", self.weight())?;
+        if let Self::Clearance { up_to, .. } = self { require_positive("up_to", *up_to) } else { Ok(()) }
     }
 
-    /// Checks the goal against the robot.
+    /// Checks the goal against the robot; `among_obstacles` says whether its surroundings are known.
     ///
     /// # Errors
-    /// As [`validate_weight`](Self::validate_weight) and, for the posture, [`Robot::check`].
-    pub fn validate(&self, robot: &Robot) -> Result<()> {
-        self.validate_weight()?;
+    /// As [`validate_numbers`](Self::validate_numbers) and, for the posture, [`Robot::check`]; [`Error::Contradiction`] for a
+    /// clearance from what is not known.
+    pub fn validate(&self, robot: &Robot, among_obstacles: bool) -> Result<()> {
+        self.validate_numbers()?;
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
-            Self::Centring { .. } | Self::Manipulability { .. } | Self::LinkManipulability { .. } => Ok(()),
+            Self::Clearance { .. } if !among_obstacles => Err(Error::Contradiction {
+                problem: "the goal Clearance is for calls with obstacles= (a list, which may be empty) or \
+                          self_collision=True"
+                    .into(),
+            }),
+            _ => Ok(()),
         }
     }
 
@@ -117,6 +135,7 @@ impl Goal {
                 of: Part::AllLinks,
                 weight: *weight,
             },
+            Self::Clearance { up_to, weight } => Term::Clearance { up_to: *up_to, weight: *weight },
         }
     }
 }
@@ -133,17 +152,24 @@ impl Goals {
         self.terms.is_empty()
     }
 
-    /// Writes the gradient at `q` into `gradient` and returns the cost.
-    pub fn cost(&mut self, robot: &Robot, q: &[f64], gradient: &mut [f64]) -> f64 {
+    /// Writes the gradient at `q` into `gradient` and returns the cost. Clearances are those in `space`.
+    pub fn cost(&mut self, robot: &Robot, space: Option<&ClearSpace<'_>>, q: &[f64], gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
         let one = &mut self.gradient;
-        self.terms.iter().map(|term| term.add(robot, q, one, gradient)).sum()
+        self.terms.iter().map(|term| term.add(robot, space, q, one, gradient)).sum()
     }
 }
 
 impl Term {
     /// Adds the gradient at `q` to `gradient` and returns the cost; `one` is scratch.
-    fn add(&self, robot: &Robot, q: &[f64], one: &mut [f64], gradient: &mut [f64]) -> f64 {
+    fn add(
+        &self,
+        robot: &Robot,
+        space: Option<&ClearSpace<'_>>,
+        q: &[f64],
+        one: &mut [f64],
+        gradient: &mut [f64],
+    ) -> f64 {
         match self {
             Self::Springs { stiffness, rest } => {
                 let mut cost = 0.0;
@@ -164,6 +190,9 @@ impl Term {
                     *slope -= weight * *one / index;
                 }
                 -weight * index.ln()
+            }
+            Self::Clearance { up_to, weight } => {
+                space.map_or(0.0, |space| weight * space.nearness(q, *up_to, *weight, gradient))
             }
         }
     }

@@ -47,7 +47,7 @@ impl TrackOptions {
             let problem = "goals need the library's own rule, with solver left out, or WeightedPseudoInverse";
             return Err(Error::Contradiction { problem: problem.into() });
         }
-        self.goals.iter().try_for_each(|goal| goal.validate(robot))
+        self.goals.iter().try_for_each(|goal| goal.validate(robot, false))
     }
 
     /// The limits in force for `robot`.

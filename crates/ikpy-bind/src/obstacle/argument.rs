@@ -19,21 +19,32 @@ pub struct Obstacles {
 impl Obstacles {
     /// Reads any sequence of obstacles; None means no obstacles.
     pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        let wrong = |place: &str, got: &Bound<'_, PyAny>| {
-            let got = summary(got);
-            invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
-        };
-        let items: Vec<Bound<'_, PyAny>> = match value {
-            None => vec![],
-            Some(one) if one.cast::<PyObstacle>().is_ok() => {
-                return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(one))));
-            }
-            Some(value) => value.try_iter().map_err(|_| wrong("obstacles", value))?.collect::<PyResult<_>>()?,
-        };
-        let core = items.iter().enumerate().map(|(i, item)| match item.cast::<PyObstacle>() {
-            Ok(obstacle) => Ok(obstacle.get().core.clone()),
-            Err(_) => Err(wrong(&format!("obstacle {i}"), item)),
-        });
-        Ok(Self { core: core.collect::<PyResult<_>>()?, tuple: PyTuple::new(py, items)?.unbind() })
+        let items = value.map_or_else(|| Ok(vec![]), items)?;
+        Ok(Self { core: shapes(&items)?, tuple: PyTuple::new(py, items)?.unbind() })
     }
+
+    /// Reads the shapes of a sequence of obstacles.
+    pub fn read_shapes(value: &Bound<'_, PyAny>) -> PyResult<Vec<Shape>> {
+        shapes(&items(value)?)
+    }
+}
+
+fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    if value.cast::<PyObstacle>().is_ok() {
+        return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(value))));
+    }
+    value.try_iter().map_err(|_| not_made_here("obstacles", value))?.collect()
+}
+
+fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {
+    let shape = |(i, item): (usize, &Bound<'_, PyAny>)| match item.cast::<PyObstacle>() {
+        Ok(obstacle) => Ok(obstacle.get().core.clone()),
+        Err(_) => Err(not_made_here(&format!("obstacle {i}"), item)),
+    };
+    items.iter().enumerate().map(shape).collect()
+}
+
+fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
+    let got = summary(got);
+    invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
 }

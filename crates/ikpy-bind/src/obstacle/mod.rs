@@ -15,7 +15,7 @@ pub use argument::Obstacles;
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
-use nearest::PyNearest;
+pub use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

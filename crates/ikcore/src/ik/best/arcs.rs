@@ -91,7 +91,7 @@ impl<'r, 'a> Arcs<'r, 'a> {
     fn ask(&mut self, ways: &[Cubic], share: f64) -> Asked {
         let q = self.place(ways, share);
         let mut gradient = Point::from_elem(0.0, q.len());
-        Asked { cost: self.goals.cost(self.robot, &q, &mut gradient), gradient }
+        Asked { cost: self.goals.cost(self.robot, None, &q, &mut gradient), gradient }
     }
 
     fn place(&self, ways: &[Cubic], share: f64) -> Point {

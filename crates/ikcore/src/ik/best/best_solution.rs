@@ -142,7 +142,7 @@ impl BestSearch<'_, '_, '_> {
         if !self.attempt.descend_goals(&mut self.goals, &mut q) {
             return false;
         }
-        let cost = self.goals.cost(robot, &q, &mut q.clone());
+        let cost = self.goals.cost(robot, None, &q, &mut q.clone());
         let is_better = cost < self.best.0 - SAME;
         if is_better {
             self.best = (cost, q);

@@ -9,7 +9,7 @@ use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
-use crate::obstacle::{Scene, Sweep};
+use crate::obstacle::{Scene, Sweep, kept_margin};
 use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
 use crate::planning::cost::tip_travel_along;
 use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
@@ -32,7 +32,7 @@ const NARROWINGS: usize = 12;
 
 /// Plans for checked ends and options.
 pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
-    let margin = options.kept_margin()?;
+    let margin = kept_margin(options.margin)?;
     let lines = as_lines(search.robot)?;
     let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
     let pairs = search.pairs(PAIRS, monitor)?;

@@ -5,7 +5,7 @@ use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
-use crate::obstacle::Sweep;
+use crate::obstacle::{Sweep, kept_margin};
 use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, scene};
 use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
 use crate::robot::Robot;
@@ -39,7 +39,7 @@ pub(super) fn begin(
     check(search, velocity)?;
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
-    let margin = options.kept_margin()?;
+    let margin = kept_margin(options.margin)?;
     let collides = can_collide(search.robot, &options.obstacles);
     let lines = if collides { as_lines(search.robot)? } else { None };
     let scene = collides.then(|| scene(search.robot, lines.as_ref(), &options.obstacles)).transpose()?;

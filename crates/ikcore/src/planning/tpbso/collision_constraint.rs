@@ -1,7 +1,7 @@
 //! Collisions of a motion: tested at samples during the search, certified for the plan.
 
 use crate::error::Result;
-use crate::obstacle::{Scene, Sweep};
+use crate::obstacle::{Scene, Sweep, kept_margin};
 use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::planner_options::PointToPointOptions;
@@ -39,7 +39,7 @@ impl<'a> CollisionTest<'a> {
     /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
     pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
-        let margin = options.kept_margin()?;
+        let margin = kept_margin(options.margin)?;
         let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
         let flat = lines.and_then(|lines| {
             let arm = PlanarArm::of(lines)?;

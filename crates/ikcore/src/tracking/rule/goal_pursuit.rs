@@ -132,7 +132,7 @@ impl GoalPursuit {
         }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();
-            tick.goals.cost(tick.robot, &self.sample, &mut slope);
+            tick.goals.cost(tick.robot, None, &self.sample, &mut slope);
             preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= tick.dt * slope);
         }
         positions.clip(&mut preferred);

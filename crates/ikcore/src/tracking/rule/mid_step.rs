@@ -110,7 +110,7 @@ impl MidStepState {
         }
         let mut trial = found.clone();
         let mut preferred = found.q.clone();
-        tick.goals.cost(tick.robot, &found.q, &mut preferred);
+        tick.goals.cost(tick.robot, None, &found.q, &mut preferred);
         for (preferred, q) in preferred.iter_mut().zip(&found.q) {
             *preferred = q - tick.dt * *preferred;
         }

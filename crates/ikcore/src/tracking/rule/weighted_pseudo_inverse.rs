@@ -260,7 +260,7 @@ fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick:
     let n = from.len();
     let mut step = Point::from_elem(0.0, n);
     if !tick.goals.is_empty() {
-        tick.goals.cost(tick.robot, from, &mut step);
+        tick.goals.cost(tick.robot, None, from, &mut step);
         step.iter_mut().for_each(|slope| *slope *= -tick.dt);
     }
     if let Some(posture) = &rule.posture {

@@ -1,0 +1,84 @@
+//! Clear solutions by the closed form: branches, and samples of the self-motion.
+
+use super::clear_search::{ClearSearch, Exhausted};
+use crate::closed_form::{ArmBranches, PoseFamily};
+use crate::ik::first_branch::LEAST_BUDGET;
+use crate::ik::preference::Preference;
+use crate::objective::Point;
+use crate::task::Target;
+
+/// Most values of the parameter of a redundant arm that are tried.
+const SCANNED: usize = 2048;
+
+/// Values of the parameter between two looks at the monitor.
+const VALUES_BETWEEN_LOOKS: usize = 64;
+
+/// A clear solution, or why no branch is clear; `None` where the closed form does not apply, or no branch is inside the limits.
+pub(super) type BranchOutcome = Option<Result<Point, Exhausted>>;
+
+impl ClearSearch<'_, '_, '_> {
+    /// The preferred one of the clear branches; of a redundant arm one at the first value of its parameter that has one.
+    pub(super) fn by_branches(&mut self, preference: &Preference) -> BranchOutcome {
+        let (context, target) = (self.attempt.context, self.attempt.problem.target());
+        let Target::Pose(pose) = target else { return None };
+        if !context.asks_for_pose(target) || self.attempt.budget.left() < LEAST_BUDGET {
+            return None;
+        }
+        let robot = context.robot();
+        match (robot.solves_at_once(), robot.family(pose)) {
+            (Some(true), Some(family)) => self.of_family(&family, preference),
+            (Some(_), None) => self.of_branches(&robot.branches(pose)?, preference),
+            _ => None,
+        }
+    }
+
+    /// Of an arm that is not redundant.
+    fn of_branches(&mut self, branches: &ArmBranches, preference: &Preference) -> BranchOutcome {
+        self.attempt.budget.evaluations += branches.evaluations;
+        match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
+            Some(q) => Some(Ok(q)),
+            None if self.has_candidates() && branches.complete && !branches.singular => Some(Err(Exhausted::All)),
+            None => self.clear_by_pushing(),
+        }
+    }
+
+    fn of_family(&mut self, family: &PoseFamily<'_>, preference: &Preference) -> BranchOutcome {
+        let [lower, upper] = self.attempt.context.sampling_ranges();
+        let half_the_budget = self.attempt.budget.left() / 2;
+        for (k, value) in family.arcs(&lower, &upper).scattered(SCANNED).enumerate() {
+            let branches = family.branches_at(value);
+            self.attempt.budget.evaluations += branches.evaluations;
+            if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
+                return Some(Ok(q));
+            }
+            if self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
+                break;
+            }
+            if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
+                return Some(Err(Exhausted::Interrupted));
+            }
+        }
+        self.clear_by_pushing()
+    }
+
+    /// Where no branch is clear.
+    fn clear_by_pushing(&mut self) -> BranchOutcome {
+        match self.pushed_candidate() {
+            Some(q) => Some(Ok(q)),
+            None if self.has_candidates() => Some(Err(Exhausted::Tried)),
+            None => None,
+        }
+    }
+
+    /// The preferred one of those `configurations` that are inside the limits, solve the target and are clear.
+    fn first_clear<'q>(
+        &mut self,
+        preference: &Preference,
+        configurations: impl Iterator<Item = &'q [f64]>,
+    ) -> Option<Point> {
+        preference.ordered(configurations).into_iter().find(|q| {
+            let is_solved = self.attempt.problem.assess(q).score.solved;
+            is_solved && self.is_clear(q)
+        })
+    }
+}

@@ -1,0 +1,140 @@
+//! The state of a search for a clear solution: what was tried, and why it was not clear.
+
+use super::blocked_solutions::BlockedSolutions;
+use crate::ik::attempt::Attempt;
+use crate::ik::solution::{Nearest, Solution};
+use crate::ik::whole_turns::bring_near;
+use crate::objective::Point;
+use crate::obstacle::{Blocked, ClearSpace, Contact};
+use crate::solver::Status;
+use crate::task::{Goal, Goals};
+
+/// How far beyond the margin a configuration is pushed (m).
+const BEYOND: f64 = 5e-3;
+
+/// BlockedSolutions that are pushed where none is clear.
+const PUSHED: usize = 8;
+
+/// BlockedSolutions of one target.
+pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
+    pub attempt: &'s mut Attempt<'m, 'p>,
+    pub space: &'p ClearSpace<'p>,
+    blocked: BlockedSolutions,
+    /// What no motion of the arm ends.
+    hopeless: Option<Blocked>,
+    push: Goals,
+}
+
+/// A clear solution, or the result where none is found.
+pub(super) type Found = Result<Point, Box<Solution>>;
+
+/// Why no solution is clear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::ik) enum Exhausted {
+    /// No other solution exists inside the limits.
+    All,
+    /// Other solutions may exist.
+    Tried,
+    /// The monitor asked to stop.
+    Interrupted,
+}
+
+impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
+    pub fn new(attempt: &'s mut Attempt<'m, 'p>, space: &'p ClearSpace<'p>) -> Self {
+        let away = Goal::Clearance { up_to: space.margin() + BEYOND, weight: 1.0 };
+        let push = Goals::new(&[away], attempt.context.robot(), attempt.context.bounds());
+        Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: None, push }
+    }
+
+    /// Whether the solution `q` is clear. If not, it is remembered.
+    pub fn is_clear(&mut self, q: &[f64]) -> bool {
+        self.attempt.budget.evaluations += 1;
+        if self.space.holds(q) {
+            return true;
+        }
+        if self.blocked.count == 0 {
+            let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
+            self.hopeless = if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere() };
+        }
+        self.blocked.push(q);
+        false
+    }
+
+    /// Whether no solution is clear, whatever the arm does.
+    pub fn is_hopeless(&self) -> bool {
+        self.hopeless.is_some()
+    }
+
+    /// The solution `q`, or one near it on its self-motion that is clear.
+    pub fn cleared(&mut self, q: Point) -> Option<Point> {
+        if self.is_clear(&q) {
+            return Some(q);
+        }
+        if self.is_hopeless() { None } else { self.pushed(q) }
+    }
+
+    /// Shifts the joints of the clear solution `q` by whole turns towards `start`, unless rounding takes it out of the clear space.
+    pub fn bring_near(&self, start: &[f64], q: &mut Point) {
+        let (context, mut near) = (self.attempt.context, q.clone());
+        bring_near(context.robot(), context.bounds(), start, &mut near);
+        if self.space.holds(&near) {
+            *q = near;
+        }
+    }
+
+    /// A clear solution that one of the candidates least deep in collision is pushed to.
+    pub fn pushed_candidate(&mut self) -> Option<Point> {
+        if self.is_hopeless() {
+            return None;
+        }
+        let nearly = self.blocked.by_clearance(self.space);
+        nearly.into_iter().take(PUSHED).find_map(|(_, q)| self.pushed(q))
+    }
+
+    /// Moves `q` along its self-motion until it is clear.
+    fn pushed(&mut self, mut q: Point) -> Option<Point> {
+        let mut goals = self.push.clone();
+        let is_solved = self.attempt.descend_goals(&mut goals, &mut q) && self.attempt.problem.assess(&q).score.solved;
+        (is_solved && self.space.holds(&q)).then_some(q)
+    }
+
+    /// Whether anything reached the target.
+    pub fn has_candidates(&self) -> bool {
+        self.blocked.count > 0
+    }
+
+    /// The result where no solution is clear: the candidate least deep in collision.
+    pub fn in_collision(&self, exhausted: Exhausted) -> Option<Box<Solution>> {
+        let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
+        let margin = self.space.margin();
+        let said =
+            |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
+        let obstruction = match (&self.hopeless, exhausted) {
+            (Some(Blocked::Hand(contact)), _) => {
+                format!("{} whatever the arm does: the hand itself is in the way", said(contact))
+            }
+            (Some(Blocked::Base(contact)), _) => format!("{}, and no joint moves it", said(contact)),
+            (None, Exhausted::All) if self.blocked.count == 1 => {
+                format!("{} at the only solution inside the limits", said(&nearest.contact))
+            }
+            (None, Exhausted::All) => {
+                let count = self.blocked.count;
+                format!("{} at the best of {count} solutions, and there are no others", said(&nearest.contact))
+            }
+            (None, _) => {
+                let count = self.blocked.count;
+                format!(
+                    "{} at the best of {count} solutions tried; a larger budget may find others",
+                    said(&nearest.contact)
+                )
+            }
+        };
+        let status = if exhausted == Exhausted::Interrupted { Status::Interrupted } else { Status::InCollision };
+        let solution = self.attempt.solution(status, q);
+        Some(Box::new(Solution {
+            obstruction,
+            nearest: Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() })),
+            ..solution
+        }))
+    }
+}

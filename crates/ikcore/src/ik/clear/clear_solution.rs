@@ -1,0 +1,128 @@
+//! A solution that is clear, as `solve` returns it.
+
+use super::clear_search::{ClearSearch, Exhausted, Found};
+use crate::ik::attempt::Attempt;
+use crate::ik::first_branch::by_closed_form;
+use crate::ik::preference::Preference;
+use crate::ik::solution::{Nearest, Solution};
+use crate::ik::solve_options::Prefer;
+use crate::objective::Point;
+use crate::obstacle::ClearSpace;
+use crate::solver::Status;
+use crate::task::{Goal, Goals};
+
+/// A solution in `space`, or the configuration that comes nearest to one.
+///
+/// The start of the caller is tried first, by descent, then branches of the closed form, then searches. Solutions that are not
+/// clear are pushed along their self-motion. Goals are descended on inside `space`.
+pub(in crate::ik) fn clear_solution<'p>(
+    attempt: &mut Attempt<'_, 'p>,
+    space: &'p ClearSpace<'p>,
+    start: Option<&[f64]>,
+) -> Solution {
+    let context = attempt.context;
+    let mut search = ClearSearch::new(attempt, space);
+    let found = match (context.options().prefer, start) {
+        (Prefer::Nearest, Some(start)) => search.nearest_to(start),
+        (Prefer::Best, start) => search.least_cost(&mut context.goals().clone(), start),
+        (_, start) => search.first(start).map(|q| search.improved(q, start)),
+    };
+    match found {
+        Err(solution) => *solution,
+        Ok(q) => {
+            let nearest = Some(Box::new(Nearest::at(space, &q)));
+            Solution { nearest, ..attempt.solution(Status::Solved, q) }
+        }
+    }
+}
+
+/// `solution` where it is clear, or one near it on its self-motion; with the status [`Status::InCollision`] where there is none.
+pub(in crate::ik) fn made_clear<'p>(
+    attempt: &mut Attempt<'_, 'p>,
+    space: &'p ClearSpace<'p>,
+    solution: Solution,
+) -> Solution {
+    let checked = ClearSearch::new(attempt, space).checked(solution);
+    checked.map_or_else(|blocked| *blocked, |q| attempt.solution(Status::Solved, q))
+}
+
+impl ClearSearch<'_, '_, '_> {
+    /// The first clear solution; an error is the result where none is found.
+    fn first(&mut self, start: Option<&[f64]>) -> Found {
+        if let Some(start) = start
+            && let Some(q) = self.near_start(start)
+        {
+            return Ok(q);
+        }
+        let context = self.attempt.context;
+        match self.by_branches(&Preference::new(context, start)) {
+            Some(Ok(q)) => return Ok(q),
+            Some(Err(exhausted)) => {
+                if let Some(solution) = self.in_collision(exhausted) {
+                    return Err(solution);
+                }
+            }
+            None => {
+                if let Some(solution) = by_closed_form(self.attempt, start) {
+                    return self.checked(solution);
+                }
+            }
+        }
+        let x0 = self.attempt.first_start(start);
+        self.by_restarts(x0)
+    }
+
+    /// The configuration of `solution` if it is clear, or one near it on its self-motion.
+    fn checked(&mut self, solution: Solution) -> Found {
+        if solution.status != Status::Solved {
+            return Err(Box::new(solution));
+        }
+        let found = self.cleared(solution.q.clone());
+        found.ok_or_else(|| self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(solution)))
+    }
+
+    /// A clear solution that one descent from `start` leads to.
+    fn near_start(&mut self, start: &[f64]) -> Option<Point> {
+        if self.attempt.problem.assess(start).score.solved {
+            return self.cleared(Point::from_slice(start));
+        }
+        let robot = self.attempt.context.robot();
+        // The closed form of other arms names the nearest branch.
+        if robot.dof() <= robot.task_rank().pose && robot.solves_at_once() == Some(true) {
+            return None;
+        }
+        let (status, q) = self.attempt.search_once(start);
+        if status == Status::Solved { self.cleared(q) } else { None }
+    }
+
+    /// The clear solution nearest to `start`: of the branches of an arm that is not redundant, else of those found.
+    fn nearest_to(&mut self, start: &[f64]) -> Found {
+        let context = self.attempt.context;
+        if context.robot().dof() <= context.robot().task_rank().pose {
+            match self.by_branches(&Preference::new(context, Some(start))) {
+                Some(Ok(q)) => return Ok(q),
+                Some(Err(exhausted)) => {
+                    if let Some(solution) = self.in_collision(exhausted) {
+                        return Err(solution);
+                    }
+                }
+                None => {}
+            }
+        }
+        let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
+        self.least_cost(&mut Goals::new(&[goal], context.robot(), context.bounds()), Some(start))
+    }
+
+    /// The clear solution `q`, moved along its self-motion to the nearest optimum of the goals.
+    fn improved(&mut self, mut q: Point, start: Option<&[f64]>) -> Point {
+        let context = self.attempt.context;
+        if context.goals().is_empty() {
+            return q;
+        }
+        if let Some(start) = start {
+            self.bring_near(start, &mut q);
+        }
+        self.attempt.descend_goals(&mut context.goals().clone(), &mut q);
+        q
+    }
+}

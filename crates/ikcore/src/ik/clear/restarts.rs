@@ -1,0 +1,41 @@
+//! Clear solutions by searches from many starts.
+
+use super::clear_search::{ClearSearch, Exhausted, Found};
+use crate::ik::solution::Solution;
+use crate::objective::Point;
+use crate::solver::Status;
+
+/// Solutions in a row that are not clear, nor can be pushed clear, after which the search ends.
+const PATIENCE: usize = 100;
+
+impl ClearSearch<'_, '_, '_> {
+    /// Searches from `x0`, then from other starts, until a solution is clear. An error is the result where none is found.
+    pub(super) fn by_restarts(&mut self, mut x0: Point) -> Found {
+        for _ in 0..PATIENCE {
+            let solution = self.attempt.solve_from(&x0);
+            if solution.status != Status::Solved {
+                return Err(self.missed(solution));
+            }
+            if let Some(q) = self.cleared(solution.q.clone()) {
+                return Ok(q);
+            }
+            if !self.attempt.monitor.keep_going() {
+                return Err(self.in_collision(Exhausted::Interrupted).unwrap_or_else(|| Box::new(solution)));
+            }
+            if self.is_hopeless() || self.attempt.budget.is_spent() {
+                return Err(self.missed(solution));
+            }
+            self.attempt.next_start(&mut x0);
+        }
+        let reached = self.attempt.solution(Status::Stalled, x0);
+        Err(self.missed(reached))
+    }
+
+    /// The result after `last`, which is neither clear nor on the way to anything better.
+    fn missed(&self, last: Solution) -> Box<Solution> {
+        match last.status {
+            Status::OutOfReach | Status::Interrupted => Box::new(last),
+            _ => self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(last)),
+        }
+    }
+}
