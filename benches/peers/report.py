@@ -123,6 +123,8 @@ def tracking_lines(followed: list[Followed]) -> list[list[str]]:
     """
     cells = {(row.library, row.steps): row for row in followed}
     libraries = list(dict.fromkeys(row.library for row in followed))
+    if not {BeetleIkTracker.name, BeetleIkTrack.name} <= set(libraries):
+        return []  # nothing to compare with: --only left ours out
     lines = []
     for library in libraries:
         lines.append([library])

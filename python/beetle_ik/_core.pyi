@@ -2289,8 +2289,9 @@ class Tracker:
 
         Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
         model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
-        otherwise the arm goes on towards the last target. A target that is not finite raises an error, after which the tracker
-        is as before.
+        otherwise the arm goes on towards the last target. A loop may also pass the last target again in each tick until the
+        next one comes: for two intervals of a stream of 10 Hz or more, the same target again counts as None. A target that is
+        not finite raises an error, after which the tracker is as before.
 
         Args:
             target: target of the tip at the end of the tick; None: no new one.
@@ -2692,6 +2693,7 @@ def state_to_state(
         A `Trajectory` of cubic segments.
 
     Raises:
+        TypeError: limits that are no `Limits`.
         InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
         LimitError: a position outside its limits.
         InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
@@ -2874,6 +2876,7 @@ class Plan:
             limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
 
         Raises:
+            TypeError: limits that are no `Limits`.
             InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
                 acceleration jumps.
             UnsupportedLimit: limits that vary in time.

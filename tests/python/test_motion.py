@@ -77,6 +77,11 @@ def test_a_retimed_plan_keeps_its_path_and_survives_pickling() -> None:
     np.testing.assert_allclose(here, there, atol=1e-12)
     np.testing.assert_array_equal(slow.limits.jerk, 20.0)
 
+    says = r"^limits must be a Limits, such as Limits\(velocity=1.5, acceleration=5.0\), got 3$"
+    for call in (plan.retime, lambda limits: bik.state_to_state(HOME, THERE, limits)):
+        with pytest.raises(TypeError, match=says):
+            call(3)  # type: ignore[arg-type, operator]
+
     along = bik.plan_along_path(bik.Robot.named("ur5e"), CIRCLE, limits=bik.Limits(acceleration=5.0))
     again = pickle.loads(pickle.dumps(along)).retime(bik.Limits(acceleration=5.0, jerk=50.0))
     assert np.all(again.trajectory.max_jerk() <= 50.0)

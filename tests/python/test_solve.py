@@ -113,6 +113,18 @@ def test_out_of_reach_is_a_status_with_the_nearest_point() -> None:
     assert "(out of reach by at least 1.000 m" in found.message
 
 
+@pytest.mark.parametrize(("name", "height"), [("iiwa14", 0.36), ("panda", 0.4)])
+def test_a_pose_that_no_elbow_allows_is_proven_out_of_reach(name: str, height: float) -> None:
+    robot = bik.Robot.named(name)
+    inside = robot.fk(np.clip(np.full(7, 0.3), robot.lower, robot.upper)).copy()
+    inside[:3, 3] = [0.0, 0.0, height]
+    found = bik.solve(robot, inside)
+    assert found.status is bik.Status.OUT_OF_REACH
+    assert "no configuration inside the limits has this pose" in found.message
+    assert found.evaluations < 200
+    assert bik.solve(robot, inside, position_tolerance=0.5, rotation_tolerance=1.0).success
+
+
 def test_seeds_repeat_and_differ() -> None:
     robot = bik.Robot.named("panda")
     target = robot.fk(robot.random_configurations(1, seed=5)[0])

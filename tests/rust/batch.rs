@@ -360,12 +360,12 @@ fn progress_ends_with_all_and_never_goes_back() {
 fn an_interrupted_batch_ends_in_the_middle_of_an_item() {
     let robot = robot("iiwa14");
     let mut targets = poses(&robot, 8);
-    // Inside the shoulder, with a budget of days.
+    // Inside the shoulder, searched for with a budget of days.
     for target in &mut targets[1..3] {
         (target[3], target[7], target[11]) = (0.0, 0.0, 0.36);
     }
-    let each =
-        SolveOptions { stop: Stop { max_evaluations: usize::MAX, ..Stop::default() }, ..SolveOptions::default() };
+    let stop = Stop { max_evaluations: usize::MAX, ..Stop::default() };
+    let each = SolveOptions { stop, solver: Some(AnySolver::default()), ..SolveOptions::default() };
     for threads in [1, 2] {
         let options = BatchOptions { each: each.clone(), ..on_threads(threads) };
         let batch = solve_batch(&robot, Targets::Poses(&targets), &options, &mut Observer::with_patience(5)).unwrap();

@@ -86,7 +86,7 @@ fn noise_neither_delays_nor_shakes() {
     for jerk in [f64::INFINITY, 50.0] {
         for dt in [0.002, 0.01] {
             let (alone, _) = settle(0.0, jerk, dt);
-            for noise in [1e-6, 1e-5, 1e-4] {
+            for noise in [1e-6, 1e-5, 1e-4, 1e-3] {
                 let (settled, commands) = settle(noise, jerk, dt);
                 let name = format!("noise {noise} jerk {jerk} dt {dt}");
                 assert!(settled <= 1.3 * alone, "{name}: {settled} s against {alone} s");
@@ -251,6 +251,43 @@ fn rare_late_targets_are_followed_smoothly() {
     assert!(commands.largest()[1] < 1.0, "{:?}", commands.largest());
 }
 
+/// Root mean square error (m) behind a circle whose position comes every 8 ticks with `noise` (m). Between, the loop repeats
+/// the last target if it is `held`, and has none otherwise.
+fn stream_error(noise: f64, jerk: f64, held: bool) -> f64 {
+    let arm = robot("panda");
+    let mut session = session(&arm, moderate(&arm, jerk), 0.002);
+    let from = arm.tip_position(&START);
+    let path = |tick: i32| {
+        let angle = 0.002 * 1.57 * f64::from(tick);
+        [from[0], from[1] + 0.08 * angle.sin(), from[2] + 0.08 * (1.0 - angle.cos())]
+    };
+    let (mut draws, mut sum, mut last) = (rng::stream(7, 0), 0.0, from);
+    for tick in 1..=4000 {
+        let arrives = tick % 8 == 0;
+        if arrives {
+            last = path(tick).map(|x| x + noise * normal(&mut draws));
+        }
+        let arrival = Arrival { target: Target::Position(last), velocity: None, stamp: None };
+        session.advance((arrives || held).then_some(arrival), &mut Unattended).unwrap();
+        if tick > 2000 {
+            sum += distance(arm.tip_position(session.q()), path(tick)).powi(2) / 2000.0;
+        }
+    }
+    sum.sqrt()
+}
+
+#[test]
+fn slow_streams_are_followed_whether_the_loop_repeats_targets_or_not() {
+    for jerk in [f64::INFINITY, 50.0] {
+        for held in [false, true] {
+            let error = stream_error(0.0, jerk, held);
+            assert!(error < 1e-4, "jerk {jerk} held {held}: {error}");
+            let error = stream_error(1e-3, jerk, held);
+            assert!(error < 6e-3, "noise, jerk {jerk} held {held}: {error}");
+        }
+    }
+}
+
 #[test]
 fn a_target_that_is_no_number_leaves_the_tracker_usable() {
     let arm = robot("panda");
@@ -283,6 +320,20 @@ fn a_reset_in_motion_goes_on_from_there() {
     near_its_limit[6] = 2.85;
     assert!(session.reset_moving(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]), None).is_err());
     assert!(session.reset_moving(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]), None).is_ok());
+}
+
+#[test]
+fn stamps_may_be_closer_than_ticks() {
+    let arm = robot("panda");
+    let mut session = session(&arm, moderate(&arm, 50.0), 0.01);
+    let (from, mut draws) = (arm.tip_position(&START), rng::stream(9, 0));
+    for tick in 1..400 {
+        let stamp = 0.002 * f64::from(tick);
+        let target = [from[0], from[1] + 0.1 * stamp.sin() + 1e-4 * normal(&mut draws), from[2]];
+        let arrival = Arrival { target: Target::Position(target), velocity: None, stamp: Some(stamp) };
+        assert!(session.advance(Some(arrival), &mut Unattended).unwrap().inside_limits);
+    }
+    assert!(distance(arm.tip_position(session.q()), from) < 0.12);
 }
 
 #[test]

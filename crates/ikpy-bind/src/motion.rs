@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::convert::vector;
 use crate::error::raise;
-use crate::limits::PyLimits;
+use crate::limits::required_limits;
 use crate::trajectory::{PyTrajectory, names};
 
 /// Computes the fastest motion of all joints from one state to another, in which they arrive together.
@@ -27,6 +27,7 @@ use crate::trajectory::{PyTrajectory, names};
 ///     A `Trajectory` of cubic segments.
 ///
 /// Raises:
+///     TypeError: limits that are no `Limits`.
 ///     InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
 ///     LimitError: a position outside its limits.
 ///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
@@ -39,7 +40,7 @@ pub fn state_to_state(
     py: Python<'_>,
     q0: &Bound<'_, PyAny>,
     q1: &Bound<'_, PyAny>,
-    limits: &PyLimits,
+    limits: &Bound<'_, PyAny>,
     qd0: Option<&Bound<'_, PyAny>>,
     qdd0: Option<&Bound<'_, PyAny>>,
     qd1: Option<&Bound<'_, PyAny>>,
@@ -48,7 +49,7 @@ pub fn state_to_state(
 ) -> PyResult<PyTrajectory> {
     let from = read_state(("q0", q0), [("qd0", qd0), ("qdd0", qdd0)])?;
     let to = read_state(("q1", q1), [("qd1", qd1), ("qdd1", qdd1)])?;
-    let limits = limits.for_joints(py, &names(joint_names, from.q.len())?)?;
+    let limits = required_limits(limits)?.for_joints(py, &names(joint_names, from.q.len())?)?;
     motion::state_to_state(&from, &to, &limits).map(PyTrajectory::from).map_err(raise)
 }
 

@@ -70,7 +70,9 @@ impl Angle {
         let turned = add_scaled(&scaled(v, self.cos), &cross(axis, v), self.sin);
         add_scaled(&turned, axis, (1.0 - self.cos) * dot(axis, v))
     }
+
     /// The displacement that turns about the line through `point` along the unit vector `axis`.
+    #[inline]
     pub fn about_line(self, axis: &Vector, point: &Vector) -> Frame {
         let axes = Frame::IDENTITY.axes.map(|e| self.about(axis, &e));
         Frame { axes, origin: sub(point, &self.about(axis, point)) }

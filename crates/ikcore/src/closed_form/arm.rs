@@ -1,20 +1,16 @@
 //! The closed form of a robot's chain: its axes, and joint values from the values of the axes.
 
-use smallvec::SmallVec;
-
+use super::arm_branches::ArmBranches;
 use super::axis_chain::{AxisChain, JointAxis};
-use super::branches::{BranchError, Branches, MOST};
+use super::configurations::{ArmConfigurations, Drives, MOST_JOINTS};
 use super::five_joints::FiveJoints;
-use super::parameter_arcs::ParameterArcs;
 use super::planar::Planar;
+use super::pose_family::{FamilyLimits, PoseFamily};
 use super::redundant::{Parameter, Redundant};
 use super::six::{ClosedForm, Structure};
 use crate::kinematics::chain::{Chain, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
-
-/// Most joints that a closed form has.
-pub(crate) const MOST_JOINTS: usize = 7;
 
 /// Why a chain has no closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,46 +39,20 @@ pub(crate) struct ClosedFormArm {
     drives: Drives,
 }
 
-/// Which joint drives each axis, and its factor on q.
-type Drives = SmallVec<[(usize, f64); MOST_JOINTS]>;
-
 #[derive(Debug, Clone)]
 enum Method {
     Planar(Box<Planar<3>>),
     Scara(Box<Planar<4>>),
     Five(Box<FiveJoints>),
     Six(Box<ClosedForm>),
-    Seven(Box<Redundant>),
-}
-
-/// Configurations of an arm for one pose, each at one of its whole turns.
-#[derive(Debug, Clone)]
-pub(crate) struct ArmBranches {
-    sets: [[f64; MOST_JOINTS]; MOST],
-    errors: [BranchError; MOST],
-    count: usize,
-    joints: usize,
-    /// A configuration that was no solution was near one: the pose may be reached within wide tolerances.
-    pub nearly: bool,
-    /// No configuration is missing; for a redundant arm, none at this value of the parameter.
-    pub complete: bool,
-    /// One configuration at least stands for a family, in which a joint is free.
-    pub singular: bool,
-    /// Evaluations of the forward kinematics.
-    pub evaluations: usize,
-}
-
-/// All configurations of a redundant arm for one pose, as a function of one parameter.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PoseFamily<'a> {
-    redundant: &'a Redundant,
-    drives: &'a Drives,
-    displacement: Frame,
+    /// With the limits of the arm itself.
+    Seven(Box<(Redundant, FamilyLimits)>),
 }
 
 impl ClosedFormArm {
-    /// Decides the method for a chain of `joints` joints whose tip moves in `rank` directions.
-    pub fn new(chain: &Chain, joints: usize, rank: usize) -> Result<Self, NoClosedForm> {
+    /// Decides the method for a chain with joints of these limits, whose tip moves in `rank` directions.
+    pub fn new(chain: &Chain, [lower, upper]: [&[f64]; 2], rank: usize) -> Result<Self, NoClosedForm> {
+        let joints = lower.len();
         if !(3..=MOST_JOINTS).contains(&joints) {
             return Err(NoClosedForm::Joints(joints));
         }
@@ -99,7 +69,20 @@ impl ClosedFormArm {
         let slides = motions.iter().any(|motion| motion.slide_scale != 0.0);
         let unsolved = if slides { NoClosedForm::Sliding } else { NoClosedForm::Joined };
         let drives = drives_of(chain);
-        let method = method_of(chain, joints).ok_or(unsolved)?;
+        let method = match joints {
+            3 => Planar::new(&axes_of(chain)).map(|planar| Method::Planar(Box::new(planar))),
+            4 => Planar::new(&axes_of(chain)).map(|scara| Method::Scara(Box::new(scara))),
+            5 => FiveJoints::new(&axes_of(chain)).map(|five| Method::Five(Box::new(five))),
+            6 => {
+                let form = ClosedForm::new(&axes_of(chain));
+                (form.structure() != Structure::Unsolved).then(|| Method::Six(Box::new(form)))
+            }
+            _ => Redundant::new(&axes_of(chain)).map(|redundant| {
+                let own = FamilyLimits::new(&redundant, &drives, [lower, upper]);
+                Method::Seven(Box::new((redundant, own)))
+            }),
+        };
+        let method = method.ok_or(unsolved)?;
         Ok(Self { method, drives })
     }
 
@@ -110,9 +93,9 @@ impl ClosedFormArm {
             Method::Scara(_) => "SCARA; at most 2 solutions".into(),
             Method::Five(method) => format!("five joints, solved as six: {}", method.structure()),
             Method::Six(method) => method.structure().to_string(),
-            Method::Seven(method) => match (method.parameter(), method.structure()) {
+            Method::Seven(method) => match (method.0.parameter(), method.0.structure()) {
                 (Parameter::Axis(axis), Some(structure)) => {
-                    format!("{structure} for each value of joint '{}'", joint_name(self.drives[axis].0))
+                    format!("{structure} for each value of joint '{}'", joint_name(self.drives.joint(axis)))
                 }
                 _ => "spherical shoulder and wrist; at most 8 solutions for each arm angle".into(),
             },
@@ -125,7 +108,7 @@ impl ClosedFormArm {
             Method::Planar(_) | Method::Scara(_) => false,
             Method::Five(method) => method.structure() == Structure::General,
             Method::Six(method) => method.structure() == Structure::General,
-            Method::Seven(method) => method.structure() == Some(Structure::General),
+            Method::Seven(method) => method.0.structure() == Some(Structure::General),
         };
         !general
     }
@@ -151,62 +134,22 @@ impl ClosedFormArm {
         })
     }
 
-    /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
-    pub fn family(&self, target: Frame) -> Option<PoseFamily<'_>> {
+    /// ArmConfigurations that bring the tip of the chain to `target` unless forward kinematics says otherwise, at less cost than
+    /// [`Self::solve`] where that is possible; none for redundant arms.
+    #[inline]
+    pub fn likely(&self, target: &Frame) -> ArmConfigurations {
         match &self.method {
-            Method::Seven(redundant) => {
-                Some(PoseFamily { redundant, drives: &self.drives, displacement: redundant.displacement(&target) })
-            }
+            Method::Six(method) if method.has_exact_candidates() => method.likely(target, &self.drives),
+            _ => self.solve(target).map_or_else(ArmConfigurations::none, ArmBranches::into_configurations),
+        }
+    }
+
+    /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
+    pub fn family(&self, target: &Frame) -> Option<PoseFamily<'_>> {
+        match &self.method {
+            Method::Seven(method) => Some(PoseFamily::new(&method.0, &self.drives, &method.1, target)),
             _ => None,
         }
-    }
-}
-
-impl PoseFamily<'_> {
-    /// The values of the parameter (rad, m) outside which no configuration is within the limits `lower` and `upper` (n,). What they
-    /// leave is to be searched: not every value has a configuration within them.
-    pub fn arcs(&self, lower: &[f64], upper: &[f64]) -> ParameterArcs {
-        let limits = std::array::from_fn(|axis| {
-            let (joint, scale) = self.drives[axis];
-            let ends = [scale * lower[joint], scale * upper[joint]];
-            [ends[0].min(ends[1]), ends[0].max(ends[1])]
-        });
-        self.redundant.arcs(&self.displacement, &limits)
-    }
-
-    /// Whether the parameter is the arm angle: then every branch exists at every value.
-    pub fn is_by_arm_angle(&self) -> bool {
-        self.redundant.parameter() == Parameter::ArmAngle
-    }
-
-    /// All configurations with the parameter at `value`.
-    pub fn branches_at(&self, value: f64) -> ArmBranches {
-        ArmBranches::of(&self.redundant.solve(&self.displacement, value), self.drives)
-    }
-}
-
-impl ArmBranches {
-    fn of<const N: usize>(branches: &Branches<N>, drives: &Drives) -> Self {
-        let mut sets = [[0.0; MOST_JOINTS]; MOST];
-        for (set, values) in sets.iter_mut().zip(branches.iter()) {
-            for (value, (joint, scale)) in values.iter().zip(drives) {
-                set[*joint] = value / scale;
-            }
-        }
-        let mut errors = [BranchError::default(); MOST];
-        errors[..branches.len()].copy_from_slice(branches.errors());
-        let Branches { nearly, complete, singular, evaluations, .. } = *branches;
-        Self { sets, errors, count: branches.len(), joints: N, nearly, complete, singular, evaluations }
-    }
-
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// The configurations (n,) (rad, m), and by how much they miss the pose.
-    pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchError)> {
-        self.sets[..self.count].iter().zip(self.errors).map(|(set, error)| (&set[..self.joints], error))
     }
 }
 
@@ -216,20 +159,7 @@ fn scale_of(motion: &StageMotion) -> f64 {
 
 fn drives_of(chain: &Chain) -> Drives {
     let driven = chain.motions[..chain.moving].iter().filter(|motion| scale_of(motion) != 0.0);
-    driven.map(|motion| (motion.joint, scale_of(motion))).collect()
-}
-
-fn method_of(chain: &Chain, joints: usize) -> Option<Method> {
-    Some(match joints {
-        3 => Method::Planar(Box::new(Planar::new(&axes_of(chain))?)),
-        4 => Method::Scara(Box::new(Planar::new(&axes_of(chain))?)),
-        5 => Method::Five(Box::new(FiveJoints::new(&axes_of(chain))?)),
-        6 => {
-            let form = ClosedForm::new(&axes_of(chain));
-            (form.structure() != Structure::Unsolved).then(|| Method::Six(Box::new(form)))?
-        }
-        _ => Method::Seven(Box::new(Redundant::new(&axes_of(chain))?)),
-    })
+    Drives::new(driven.map(|motion| (motion.joint, scale_of(motion))))
 }
 
 /// The axes of a chain at q = 0. Stages that no joint moves are part of the chain between.

@@ -2,8 +2,10 @@
 //! the whole about the line between them.
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::{AngleRange, may_hold};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::Candidates;
+use crate::closed_form::orbit::about_z;
 use crate::closed_form::structure::{EXACT, three_meet};
 use crate::closed_form::subproblem::distance_to_point;
 use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
@@ -23,6 +25,35 @@ pub struct ArmAngle {
     /// Axis 1: at arm angle zero the elbow's axis is across the plane of axis 1 and the line from shoulder to wrist.
     upright: Vector,
     floor: f64,
+}
+
+/// A pose of an SRS arm, prepared for any arm angle.
+#[derive(Debug, Clone, Copy)]
+pub struct ArmAnglePose {
+    /// z along the line from shoulder to wrist, y along the elbow's axis at arm angle zero.
+    frame: Frame,
+    /// Where the last three joints point, seen from there.
+    last: Pointing,
+    /// Only the first `count` count.
+    elbows: [Elbow; 2],
+    count: usize,
+    /// Joint 4 is free.
+    free: bool,
+}
+
+/// A value of joint 4.
+#[derive(Debug, Clone, Copy)]
+struct Elbow {
+    q4: Angle,
+    /// Where the first three joints point, seen from the line from shoulder to wrist.
+    first: Pointing,
+    /// From there to the last three joints.
+    to_wrist: Frame,
+}
+
+impl Elbow {
+    const NONE: Self =
+        Self { q4: Angle::NONE, first: Pointing { end: [0.0; 3], mark: [0.0; 3] }, to_wrist: Frame::IDENTITY };
 }
 
 impl ArmAngle {
@@ -47,26 +78,45 @@ impl ArmAngle {
         })
     }
 
-    /// All joint angles whose displacements make `goal` at an arm angle.
-    #[inline]
-    pub fn solve(&self, goal: &Frame, arm_angle: Angle, found: &mut Candidates<7>) {
+    /// Prepares the pose with the displacement `goal` for any arm angle.
+    pub fn pose(&self, goal: &Frame) -> ArmAnglePose {
         let reached = sub(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
         let (from_elbow, to_shoulder) = (sub(&self.wrist, &self.elbow), sub(&self.shoulder, &self.elbow));
         let square = dot(&reached, &reached);
         let q4 = distance_to_point(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);
+        let frame = self.frame(&reached, &self.across(&reached));
         let pointing = self.last.pointing(goal);
-        let target = self.frame(&reached, &self.across(&reached), arm_angle);
-        found.singular |= q4.free;
+        let last = Pointing { end: frame.turn_back(&pointing.end), mark: frame.turn_back(&pointing.mark) };
+        let mut pose = ArmAnglePose { frame, last, elbows: [Elbow::NONE; 2], count: 0, free: q4.free };
         for q4 in q4.iter() {
             let arm = sub(&q4.about(&self.elbow_axis, &from_elbow), &to_shoulder);
-            let shoulder = rotation(&target, &self.frame(&arm, &self.elbow_axis, Angle::NONE));
-            let first = self.first.turns(&self.first.pointing(&shoulder));
+            let at_zero = self.frame(&arm, &self.elbow_axis);
+            let back = q4.back();
+            pose.elbows[pose.count] = Elbow {
+                q4: *q4,
+                first: self.first.pointing(&at_zero.inverse()),
+                to_wrist: Frame { axes: at_zero.axes.map(|v| back.about(&self.elbow_axis, &v)), origin: [0.0; 3] },
+            };
+            pose.count += 1;
+        }
+        pose
+    }
+
+    /// All joint angles at an arm angle, as far as `ranges` may hold them.
+    #[inline(always)]
+    pub fn solve(&self, pose: &ArmAnglePose, arm_angle: Angle, ranges: &[AngleRange; 7], found: &mut Candidates<7>) {
+        let [a, b, c, of_elbow, d, e, f] = *ranges;
+        let target = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
+        let back = |v: &Vector| about_z(arm_angle.back(), v);
+        let seen = Pointing { end: back(&pose.last.end), mark: back(&pose.last.mark) };
+        found.singular |= pose.free;
+        for Elbow { q4, first, to_wrist } in pose.elbows[..pose.count].iter().filter(|it| of_elbow.may_hold(&it.q4)) {
+            let first = self.first.turns(&first.turned(&target));
             // R567 = R4' R123' R.
-            let left = |v: &Vector| q4.back().about(&self.elbow_axis, &shoulder.turn_back(v));
-            let last = self.last.turns(&Pointing { end: left(&pointing.end), mark: left(&pointing.mark) });
+            let last = self.last.turns(&seen.turned(to_wrist));
             found.singular |= first.aligned || last.aligned;
-            for [q1, q2, q3] in &first.sets[..first.count] {
-                for [q5, q6, q7] in &last.sets[..last.count] {
+            for [q1, q2, q3] in first.sets[..first.count].iter().filter(|set| may_hold(&[a, b, c], *set)) {
+                for [q5, q6, q7] in last.sets[..last.count].iter().filter(|set| may_hold(&[d, e, f], *set)) {
                     found.push(&[*q1, *q2, *q3, *q4, *q5, *q6, *q7]);
                 }
             }
@@ -79,19 +129,14 @@ impl ArmAngle {
         if norm(&across) > 1e-9 * norm(reached) { across } else { perpendicular(&self.upright) }
     }
 
-    /// The frame with z along `line` and y near `across`, turned about z.
-    fn frame(&self, line: &Vector, across: &Vector, angle: Angle) -> Frame {
+    /// The frame with z along `line` and y near `across`.
+    fn frame(&self, line: &Vector, across: &Vector) -> Frame {
         let size = norm(line);
         // With the wrist in the shoulder, any direction will do.
         let z = if size > 0.0 { scaled(line, 1.0 / size) } else { self.upright };
         let y = add_scaled(across, &z, -dot(across, &z));
         let length = norm(&y);
         let y = if length > 0.0 { scaled(&y, 1.0 / length) } else { perpendicular(&z) };
-        Frame { axes: [cross(&y, &z), y, z], origin: [0.0; 3] }.turned::<Baseline>(angle.sin, angle.cos)
+        Frame { axes: [cross(&y, &z), y, z], origin: [0.0; 3] }
     }
-}
-
-/// to from'.
-fn rotation(to: &Frame, from: &Frame) -> Frame {
-    to.then::<Baseline>(&from.inverse())
 }

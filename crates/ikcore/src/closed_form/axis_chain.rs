@@ -1,7 +1,7 @@
 //! A chain as data: the axes of its joints in the zero configuration and the tip frame there (product of exponentials).
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::vector::{Vector, add_scaled, dot, norm, sub};
+use crate::closed_form::vector::{Vector, add_scaled, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
@@ -47,9 +47,24 @@ impl JointAxis {
 
     /// The displacement by `value` (rad or m).
     pub fn displacement(&self, value: f64) -> Frame {
+        self.displacement_by(self.turn(value))
+    }
+
+    /// `value` (rad or m) as candidates hold it: a slide in the sine.
+    #[inline]
+    pub fn turn(&self, value: f64) -> Angle {
         match self.motion {
-            AxisMotion::Turns => Angle::by(value).about_line(&self.axis, &self.point),
-            AxisMotion::Slides => Frame { origin: add_scaled(&[0.0; 3], &self.axis, value), ..Frame::IDENTITY },
+            AxisMotion::Turns => Angle::by(value),
+            AxisMotion::Slides => Angle { cos: 1.0, sin: value },
+        }
+    }
+
+    /// The displacement by a [`Self::turn`].
+    #[inline]
+    pub fn displacement_by(&self, turn: Angle) -> Frame {
+        match self.motion {
+            AxisMotion::Turns => turn.about_line(&self.axis, &self.point),
+            AxisMotion::Slides => Frame { origin: scaled(&self.axis, turn.sin), ..Frame::IDENTITY },
         }
     }
 

@@ -27,6 +27,14 @@ impl<const N: usize> Candidates<N> {
         Self { cos: [[1.0; MOST]; N], sin: [[0.0; MOST]; N], count: 0, singular: false, unsettled: false }
     }
 
+    /// Removes the first `count`.
+    pub fn remove_first(&mut self, count: usize) {
+        for row in self.cos.iter_mut().chain(&mut self.sin) {
+            row.copy_within(count..self.count, 0);
+        }
+        self.count -= count;
+    }
+
     /// Adds one; ignored when full.
     #[inline(always)]
     pub fn push(&mut self, turns: &[Angle; N]) {
@@ -37,6 +45,28 @@ impl<const N: usize> Candidates<N> {
             }
             self.count += 1;
         }
+    }
+}
+
+impl Candidates<7> {
+    /// Adds those of six joints, with the turn of one more at place `joint`; as many as there is room for.
+    pub fn add_with(&mut self, six: &Candidates<6>, joint: usize, turn: Angle) {
+        let count = six.count.min(MOST - self.count);
+        let places = self.count..self.count + count;
+        for k in 0..7 {
+            let (cos, sin) = (&mut self.cos[k][places.clone()], &mut self.sin[k][places.clone()]);
+            if k == joint {
+                cos.fill(turn.cos);
+                sin.fill(turn.sin);
+            } else {
+                let k = if k < joint { k } else { k - 1 };
+                cos.copy_from_slice(&six.cos[k][..count]);
+                sin.copy_from_slice(&six.sin[k][..count]);
+            }
+        }
+        self.count += count;
+        self.singular |= six.singular;
+        self.unsettled |= six.unsettled;
     }
 }
 

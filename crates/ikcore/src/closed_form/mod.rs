@@ -3,22 +3,28 @@
 //!
 //! Read `six` first: it decides the structure of a chain of six joints (`structure`) and its method (`spherical_wrist`,
 //! `sliding_arm`, `three_parallel`, `general`) once, and solves poses. Seven joints (`redundant`) become six by giving one of them, or
-//! are solved for a given arm angle (`arm_angle`); five (`five_joints`) become six by adding one; `planar` serves planar arms and
-//! SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of trigonometric polynomials (`trigonometric`),
-//! and yield candidates as cosines and sines; `verify` keeps those that forward kinematics confirms. `arm` takes the axes from a
-//! robot's chain and converts joint values.
+//! are solved for a given arm angle (`arm_angle`); `pose_family` asks them for many values at once. Five (`five_joints`) become six
+//! by adding one; `planar` serves planar arms and SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of
+//! trigonometric polynomials (`trigonometric`), and yield candidates as cosines and sines; `verify` keeps those that forward
+//! kinematics confirms. `arm` takes the axes from a robot's chain and converts joint values.
 //!
 //! Sources: Pieper (1968); Raghavan and Roth (1990); Manocha and Canny (1994); Elias and Wen, "IK-Geo" (arXiv 2211.05737).
 
 mod angle;
+mod angle_range;
 mod arm;
 mod arm_angle;
+mod arm_branches;
 mod axis_chain;
 mod branches;
+mod configurations;
+mod elbow_distance;
 mod five_joints;
 mod general;
+mod orbit;
 mod parameter_arcs;
 mod planar;
+mod pose_family;
 mod position;
 mod redundant;
 mod six;
@@ -32,6 +38,9 @@ mod vector;
 mod verify;
 mod wrist;
 
-pub(crate) use arm::{ArmBranches, ClosedFormArm, MOST_JOINTS, NoClosedForm, PoseFamily};
+pub(crate) use arm::{ClosedFormArm, NoClosedForm};
+pub(crate) use arm_branches::ArmBranches;
 pub(crate) use branches::BranchError;
+pub(crate) use configurations::{ArmConfigurations, MOST_JOINTS};
+pub(crate) use pose_family::{FamilyLimits, PoseFamily};
 pub(crate) use verify::VERIFIED;

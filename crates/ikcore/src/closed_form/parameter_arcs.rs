@@ -16,11 +16,15 @@ pub struct Wave {
 }
 
 impl Wave {
+    /// base + a cos q + b sin q.
+    pub fn new(base: f64, a: f64, b: f64) -> Self {
+        Self { base, swing: (a * a + b * b).sqrt(), peak: b.atan2(a) }
+    }
+
     /// Fits a function of one angle that has no higher harmonics, by four samples.
     pub fn of(value: impl Fn(f64) -> f64) -> Self {
         let (east, north, west, south) = (value(0.0), value(0.5 * PI), value(PI), value(-0.5 * PI));
-        let (a, b) = (0.5 * (east - west), 0.5 * (north - south));
-        Self { base: 0.25 * (east + north + west + south), swing: a.hypot(b), peak: b.atan2(a) }
+        Self::new(0.25 * (east + north + west + south), 0.5 * (east - west), 0.5 * (north - south))
     }
 
     fn at(&self, q: f64) -> f64 {

@@ -1,6 +1,7 @@
 //! Three revolute joints that carry a point to a given point: the arm of a robot with a spherical wrist (Pieper 1968).
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::subproblem::{Linear, QuadraticForm, angle_to_plane, distance_to_point, onto_point, two_axes};
 use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 
@@ -94,16 +95,16 @@ impl ThreeAxes {
         Self { axes, points, case, mirrored, floor: 1e-11 * size }
     }
 
-    /// All angles that carry `point` to `goal`.
+    /// All angles that carry `point` to `goal`; those that `ranges` cannot hold may be missing.
     #[inline(always)]
-    pub fn reach(&self, point: &Vector, goal: &Vector) -> Arms {
-        let (point, goal) = if self.mirrored { (goal, point) } else { (point, goal) };
+    pub fn reach(&self, point: &Vector, goal: &Vector, ranges: &[AngleRange; 3]) -> Arms {
+        let (point, goal, of_q3) = if self.mirrored { (goal, point, &ranges[0]) } else { (point, goal, &ranges[2]) };
         let [p1, p2, p3] = &self.points;
         // rot1 (b + rot2 (c + rot3 w)) = a.
         let (a, b, c, w) = (sub(goal, p1), sub(p2, p1), sub(p3, p2), sub(point, p3));
         let mut arms = match self.case {
-            Case::FirstTwoParallel => self.parallel(&a, &b, &c, &w),
-            Case::FirstTwoMeet => self.meeting(&a, &c, &w),
+            Case::FirstTwoParallel => self.parallel(&a, &b, &c, &w, of_q3),
+            Case::FirstTwoMeet => self.meeting(&a, &c, &w, of_q3),
             Case::General => self.general(&a, &b, &c, &w),
         };
         if self.mirrored {
@@ -114,13 +115,13 @@ impl ThreeAxes {
 
     /// Axis 1 parallel to axis 2: the height along them gives q3, the distance q2.
     #[inline(always)]
-    fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> Arms {
+    fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
         let height = dot(h1, &sub(&sub(a, b), c));
         let q3 = angle_to_plane(h1, h3, w, height, self.floor);
         arms.free |= q3.free;
-        for q3 in q3.iter() {
+        for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // In the plane across the axes, where the heights cannot disturb the distance.
             let (flat_a, flat_b, flat_u) = (cross(h1, a), cross(h1, b), cross(h1, &u));
@@ -137,12 +138,12 @@ impl ThreeAxes {
 
     /// Axes 1 and 2 meet (b = 0): the distance from there gives q3, subproblem 2 the others.
     #[inline(always)]
-    fn meeting(&self, a: &Vector, c: &Vector, w: &Vector) -> Arms {
+    fn meeting(&self, a: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
         let q3 = distance_to_point(h3, w, &scaled(c, -1.0), dot(a, a), self.floor * norm(c));
         arms.free |= q3.free;
-        for q3 in q3.iter() {
+        for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // rot2 u = rot1' a.
             let (q2, back) = two_axes(h2, &u, h1, a, self.floor);

@@ -5,16 +5,16 @@
 //! to wrist.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::arm_angle::ArmAngle;
+use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
-use crate::closed_form::parameter_arcs::{ParameterArcs, Wave};
+use crate::closed_form::elbow_distance::ElbowDistance;
+use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::six::{ClosedForm, Structure};
-use crate::closed_form::structure::{EXACT, Pair, three_meet};
-use crate::closed_form::vector::{Vector, dot, sub};
 use crate::closed_form::verify::{Verifier, verified_seven};
 use crate::math::Frame;
-use crate::math::arithmetic::Baseline;
+use crate::math::arithmetic::{Baseline, by_instructions};
 
 /// What is given besides the pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,8 @@ pub struct Redundant {
     chain: AxisChain<7>,
     back: Frame,
     method: Method,
-    distance: Option<Distance>,
+    distance: Option<ElbowDistance>,
+    verifier: Verifier<7>,
 }
 
 #[derive(Debug, Clone)]
@@ -40,39 +41,45 @@ enum Method {
     First(Box<ClosedForm>),
     /// The last joint is given: it moves the tip.
     Last(Box<ClosedForm>),
-    ArmAngle(Box<(ArmAngle, Verifier<7>)>),
+    ArmAngle(Box<ArmAngle>),
 }
 
-/// Shoulder and a point on axes 5 and 6: their distance determines joint 4, given joint 7 or a spherical wrist.
+/// A pose, prepared for any value of the parameter.
 #[derive(Debug, Clone, Copy)]
-struct Distance {
-    shoulder: Vector,
-    wrist: Vector,
+pub struct RedundantPose {
+    /// What the joints together must do: the product of their displacements.
+    goal: Frame,
+    by_arm_angle: Option<ArmAnglePose>,
+}
+
+/// Limits of the axes (rad, m), prepared for any pose.
+#[derive(Debug, Clone, Copy)]
+pub struct AxisLimits {
+    /// From lower to upper.
+    pub axes: [[f64; 2]; 7],
+    ranges: [AngleRange; 7],
+    /// Squared distances between shoulder and wrist within the limits of joint 4.
+    distances: [f64; 2],
 }
 
 impl Redundant {
     /// Chooses the parameter; `None` where joints slide and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
-        let (mut distance, back) = (None, chain.tip.inverse());
-        let method = match ArmAngle::new(chain) {
-            Some(method) => {
-                distance = Distance::of(chain);
-                let untipped = AxisChain { tip: Frame::IDENTITY, ..*chain };
-                Method::ArmAngle(Box::new((method, Verifier::new(&untipped, 1e-3))))
-            }
+        let (method, distance) = match ArmAngle::new(chain) {
+            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::of(chain)),
             None => {
                 let (last, first) = (six_without(chain, 6), six_without(chain, 0));
                 match (rank(&last), rank(&first)) {
                     (Some(of_last), of_first) if of_first.is_none_or(|of_first| of_last <= of_first) => {
-                        distance = Distance::of(chain);
-                        Method::Last(Box::new(last))
+                        (Method::Last(Box::new(last)), ElbowDistance::of(chain))
                     }
-                    (_, Some(_)) => Method::First(Box::new(first)),
+                    (_, Some(_)) => (Method::First(Box::new(first)), None),
                     _ => return None,
                 }
             }
         };
-        Some(Self { chain: *chain, back, method, distance })
+        let verifier = Verifier::new(&AxisChain { tip: Frame::IDENTITY, ..*chain }, 1e-3);
+        Some(Self { chain: *chain, back: chain.tip.inverse(), method, distance, verifier })
     }
 
     /// What the value in [`Self::solve`] means.
@@ -92,67 +99,118 @@ impl Redundant {
         }
     }
 
-    /// What the joints together must do to bring the tip to `target`: the product of their displacements.
-    pub fn displacement(&self, target: &Frame) -> Frame {
-        target.then::<Baseline>(&self.back)
+    /// Whether [`Self::add_candidates`] finds all configurations but for rounding.
+    pub fn has_exact_candidates(&self) -> bool {
+        match &self.method {
+            Method::First(form) | Method::Last(form) => form.has_exact_candidates(),
+            Method::ArmAngle(_) => true,
+        }
     }
 
-    /// All joint values, angles in (-pi, pi], that together displace by `goal` with the parameter at `value` (rad, m).
-    pub fn solve(&self, goal: &Frame, value: f64) -> Branches<7> {
+    /// The pose that brings the tip to `target`.
+    pub fn pose(&self, target: &Frame) -> RedundantPose {
+        let goal = target.then::<Baseline>(&self.back);
+        let by_arm_angle = match &self.method {
+            Method::ArmAngle(method) => Some(method.pose(&goal)),
+            _ => None,
+        };
+        RedundantPose { goal, by_arm_angle }
+    }
+
+    /// Prepares limits of the axes (rad, m).
+    pub fn limits(&self, axes: [[f64; 2]; 7]) -> AxisLimits {
+        let ranges = std::array::from_fn(|k| match self.chain.joints[k].motion {
+            AxisMotion::Turns => AngleRange::of(axes[k]),
+            AxisMotion::Slides => AngleRange::ANY,
+        });
+        let distances = self.distance.map_or([0.0; 2], |distance| distance.range(axes[3]));
+        AxisLimits { axes, ranges, distances }
+    }
+
+    /// All joint values, angles in (-pi, pi], that reach a pose with the parameter at `value` (rad, m).
+    pub fn solve(&self, pose: &RedundantPose, value: f64) -> Branches<7> {
         let [first, .., last] = &self.chain.joints;
         match &self.method {
             // E2 ... E7 = E1^-1 goal.
             Method::First(form) => {
-                let left = first.displacement(-value).then::<Baseline>(goal);
+                let left = first.displacement(-value).then::<Baseline>(&pose.goal);
                 self.inserted(&form.solve_displacement(&left, &left), 0, value)
             }
             // E1 ... E6 = goal E7^-1.
             Method::Last(form) => {
-                let left = goal.then::<Baseline>(&last.displacement(-value));
+                let left = pose.goal.then::<Baseline>(&last.displacement(-value));
                 self.inserted(&form.solve_displacement(&left, &left), 6, value)
             }
-            Method::ArmAngle(prepared) => {
-                let (method, verifier) = &**prepared;
+            Method::ArmAngle(_) => {
                 let mut candidates = Candidates::new();
-                method.solve(goal, Angle::by(value), &mut candidates);
-                let mut found = verified_seven(verifier, goal, &candidates);
+                self.add_candidates(pose, value, &[AngleRange::ANY; 7], &mut candidates);
+                let mut found = self.verified(pose, &candidates);
                 found.complete = true;
                 found
             }
         }
     }
 
-    /// The values of the parameter outside which joint 4 or the parameter's own joint cannot be within limits, given by axis (rad,
-    /// m).
+    /// Adds all joint values that may reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
+    fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates<7>) {
+        let [a, b, c, d, e, f, g] = *ranges;
+        let [first, .., last] = &self.chain.joints;
+        let mut six = Candidates::new();
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::First(form), _) => {
+                let turn = first.turn(value);
+                let left = first.displacement_by(turn.back()).then::<Baseline>(&pose.goal);
+                form.add_candidates(&left, &[b, c, d, e, f, g], &mut six);
+                found.add_with(&six, 0, turn);
+            }
+            (Method::Last(form), _) => {
+                let turn = last.turn(value);
+                let left = pose.goal.then::<Baseline>(&last.displacement_by(turn.back()));
+                form.add_candidates(&left, &[a, b, c, d, e, f], &mut six);
+                found.add_with(&six, 6, turn);
+            }
+            (Method::ArmAngle(method), Some(pose)) => {
+                arm_angle_candidates(method, pose, Angle::by(value), ranges, found);
+            }
+            (Method::ArmAngle(_), None) => {}
+        }
+    }
+
+    /// The same for limits.
+    pub fn add_candidates_within(
+        &self,
+        pose: &RedundantPose,
+        value: f64,
+        limits: &AxisLimits,
+        found: &mut Candidates<7>,
+    ) {
+        self.add_candidates(pose, value, &limits.ranges, found);
+    }
+
+    /// The candidates that reach a pose.
+    pub fn verified(&self, pose: &RedundantPose, candidates: &Candidates<7>) -> Branches<7> {
+        verified_seven(&self.verifier, &pose.goal, candidates)
+    }
+
+    /// What turns the candidates into joint values.
+    pub fn verifier(&self) -> &Verifier<7> {
+        &self.verifier
+    }
+
+    /// The values of the parameter outside which joint 4 or the parameter's own joint cannot be within limits.
     ///
     /// Exact, so that an arc shrunk to a point, with joint 4 at its limit, is not lost between samples.
-    pub fn arcs(&self, goal: &Frame, limits: &[[f64; 2]; 7]) -> ParameterArcs {
-        let Parameter::Axis(axis) = self.parameter() else { return self.arm_angles(goal, limits[3]) };
-        if self.chain.joints[axis].motion == AxisMotion::Slides {
-            return ParameterArcs::one(limits[axis]);
+    pub fn arcs(&self, pose: &RedundantPose, limits: &AxisLimits) -> ParameterArcs {
+        let AxisLimits { axes, distances, .. } = limits;
+        match (self.parameter(), &self.distance) {
+            (Parameter::ArmAngle, Some(distance)) => distance.arm_angles(&pose.goal, *distances),
+            (Parameter::ArmAngle, None) => ParameterArcs::CIRCLE,
+            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisMotion::Slides => {
+                ParameterArcs::one(axes[axis])
+            }
+            (Parameter::Axis(axis), Some(distance)) => distance.last_angles(&pose.goal, *distances).within(axes[axis]),
+            (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
         }
-        let reached = match &self.distance {
-            Some(distance) => self.arcs_by_distance(distance, goal, limits[3]),
-            None => ParameterArcs::CIRCLE,
-        };
-        reached.within(limits[axis])
-    }
-
-    /// All arm angles, or none: the distance of shoulder and wrist alone determines joint 4.
-    fn arm_angles(&self, goal: &Frame, limits: [f64; 2]) -> ParameterArcs {
-        let Some(Distance { shoulder, wrist }) = &self.distance else { return ParameterArcs::CIRCLE };
-        let square = |from_tip: &Frame| squared_distance(&from_tip.place::<Baseline>(wrist), shoulder);
-        let reached = square(goal);
-        let by_joint_4 = Wave::of(|q| square(&self.chain.joints[3].displacement(q)));
-        Wave::of(|_| reached).arcs_between(by_joint_4.range(limits))
-    }
-
-    fn arcs_by_distance(&self, distance: &Distance, goal: &Frame, limits: [f64; 2]) -> ParameterArcs {
-        let Distance { shoulder, wrist } = distance;
-        let square = |from_tip: &Frame| squared_distance(&from_tip.place::<Baseline>(wrist), shoulder);
-        let by_joint_4 = |q: f64| square(&self.chain.joints[3].displacement(q));
-        let by_joint_7 = |q: f64| square(&goal.then::<Baseline>(&self.chain.joints[6].displacement(-q)));
-        Wave::of(by_joint_7).arcs_between(Wave::of(by_joint_4).range(limits))
     }
 
     /// The branches of six joints with the value of one more.
@@ -174,9 +232,16 @@ impl Redundant {
     }
 }
 
-fn squared_distance(a: &Vector, b: &Vector) -> f64 {
-    let way = sub(a, b);
-    dot(&way, &way)
+by_instructions! {
+    fn arm_angle_candidates(
+        method: &ArmAngle,
+        pose: &ArmAnglePose,
+        arm_angle: Angle,
+        ranges: &[AngleRange; 7],
+        found: &mut Candidates<7>,
+    ) {
+        method.solve(pose, arm_angle, ranges, found);
+    }
 }
 
 /// The closed form of the chain without one joint; its tip is the displacement of the others.
@@ -198,31 +263,16 @@ fn rank(form: &ClosedForm) -> Option<u8> {
     }
 }
 
-impl Distance {
-    /// Where the first three axes meet and axes 5 and 6 do, joint 7 given.
-    fn of(chain: &AxisChain<7>) -> Option<Self> {
-        if chain.joints.iter().any(|joint| joint.motion != AxisMotion::Turns) {
-            return None;
-        }
-        let size = chain.size();
-        let shoulder = three_meet(&chain.joints[..3], size, EXACT)?;
-        match Pair::of(&chain.joints[4], &chain.joints[5], size, EXACT) {
-            Pair::Meet(wrist) => Some(Self { shoulder, wrist }),
-            _ => None,
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::f64::consts::{FRAC_PI_2 as Q, PI, TAU};
 
     use super::*;
     use crate::closed_form::axis_chain::JointAxis;
-    use crate::closed_form::vector::norm;
+    use crate::closed_form::vector::{norm, sub};
     use crate::rng;
 
-    const PANDA: [[f64; 4]; 7] = [
+    pub const PANDA: [[f64; 4]; 7] = [
         [0.0, -Q, 0.333, 0.0],
         [0.0, Q, 0.0, 0.0],
         [0.0825, Q, 0.316, 0.0],
@@ -231,7 +281,7 @@ mod tests {
         [0.088, Q, 0.0, 0.0],
         [0.0, 0.0, 0.107, 0.0],
     ];
-    const IIWA14: [[f64; 4]; 7] = [
+    pub const IIWA14: [[f64; 4]; 7] = [
         [0.0, -Q, 0.36, 0.0],
         [0.0, Q, 0.0, 0.0],
         [0.0, Q, 0.42, 0.0],
@@ -284,7 +334,7 @@ mod tests {
         rows
     }
 
-    fn random_angles(count: usize) -> Vec<[f64; 7]> {
+    pub fn random_angles(count: usize) -> Vec<[f64; 7]> {
         let mut rng = rng::stream(21, 0);
         (0..count).map(|_| std::array::from_fn(|_| rng.uniform_in(-PI, PI))).collect()
     }
@@ -315,7 +365,7 @@ mod tests {
             assert!(is_general || axis == if by_last.contains(&rows) { 6 } else { 0 });
             for q in random_angles(if is_general { 40 } else { 300 }) {
                 let target = chain.tip_at(&q);
-                let found = method.solve(&method.displacement(&target), q[axis]);
+                let found = method.solve(&method.pose(&target), q[axis]);
                 assert!(found.iter().all(|b| miss(&chain, b, &target) < 2e-10));
                 assert!(found.iter().any(|b| apart(b, &q) < 1e-5), "{rows:?} {q:?}");
             }
@@ -330,7 +380,7 @@ mod tests {
         for q in random_angles(200) {
             let target = chain.tip_at(&q);
             for angle in q {
-                let found = method.solve(&method.displacement(&target), angle);
+                let found = method.solve(&method.pose(&target), angle);
                 assert!(found.len() == 8 && found.complete);
                 assert!(found.iter().all(|b| miss(&chain, b, &target) < 2e-10));
             }
@@ -344,7 +394,7 @@ mod tests {
         for q in random_angles(20) {
             let target = chain.tip_at(&q);
             let angles = (0..2000).map(|k| PI * f64::from(k - 1000) / 1000.0);
-            let all = angles.flat_map(|angle| method.solve(&method.displacement(&target), angle).to_vec());
+            let all = angles.flat_map(|angle| method.solve(&method.pose(&target), angle).to_vec());
             let nearest = all.map(|b| apart(&b, &q)).fold(f64::INFINITY, f64::min);
             assert!(nearest < 0.2, "{nearest}");
         }
@@ -363,12 +413,12 @@ mod tests {
                 q[3] = limits[3][count % 2];
             }
             let target = chain.tip_at(&q);
-            let arcs = method.arcs(&method.displacement(&target), &limits);
+            let arcs = method.arcs(&method.pose(&target), &method.limits(limits));
             assert!(arcs.iter().any(|[a, b]| a - 1e-6 <= q[6] && q[6] <= b + 1e-6), "{q:?} {arcs:?}");
             narrowed += usize::from(arcs.length() < 5.0);
             for [a, b] in arcs.iter() {
                 for part in [0.02, 0.5, 0.98] {
-                    let found = method.solve(&method.displacement(&target), a + part * (b - a));
+                    let found = method.solve(&method.pose(&target), a + part * (b - a));
                     let within = |q: f64| limits[3][0] - 1e-4 <= q && q <= limits[3][1] + 1e-4;
                     assert!(found.is_empty() || found.iter().any(|set| within(set[3])), "{q:?}");
                 }
@@ -394,8 +444,8 @@ mod tests {
         assert_eq!(method.parameter(), Parameter::Axis(0));
         for q in random_angles(100) {
             let target = chain.tip_at(&q);
-            assert!(method.solve(&method.displacement(&target), q[0]).iter().any(|b| apart(b, &q) < 1e-5), "{q:?}");
-            assert_eq!(*method.arcs(&method.displacement(&target), &[[-1.0, 2.0]; 7]), [[-1.0, 2.0]]);
+            assert!(method.solve(&method.pose(&target), q[0]).iter().any(|b| apart(b, &q) < 1e-5), "{q:?}");
+            assert_eq!(*method.arcs(&method.pose(&target), &method.limits([[-1.0, 2.0]; 7])), [[-1.0, 2.0]]);
         }
     }
 }

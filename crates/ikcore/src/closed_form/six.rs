@@ -4,13 +4,15 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
 use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::configurations::{ArmConfigurations, Drives};
 use crate::closed_form::general::General;
 use crate::closed_form::spherical_wrist::SphericalWrist;
 use crate::closed_form::structure::{EXACT, NEARLY, three_meet, three_parallel};
 use crate::closed_form::three_parallel::ThreeParallel;
-use crate::closed_form::verify::{Verifier, verified};
+use crate::closed_form::verify::{Verifier, values_of_six, verified};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
 
@@ -170,14 +172,11 @@ impl ClosedForm {
     /// The same for a known displacement of the tip from where it is at zero to `target`.
     #[inline]
     pub fn solve_displacement(&self, goal: &Frame, target: &Frame) -> Branches<6> {
-        let mut candidates = Candidates::new();
-        match &self.method {
-            Method::Spherical(method) => spherical_candidates(method, goal, &mut candidates),
-            Method::Parallel(method) => parallel_candidates(method, goal, &mut candidates),
-            Method::Opened { at, tolerance } => self.solve_opened(goal, *at, *tolerance, &mut candidates),
-            Method::General(ways) => return self.solve_general(ways, goal, target, Branches::none()),
-            Method::None => return Branches::none(),
+        if let Method::General(ways) = &self.method {
+            return self.solve_general(ways, goal, target, Branches::none());
         }
+        let mut candidates = Candidates::new();
+        self.add_candidates(goal, &[AngleRange::ANY; 6], &mut candidates);
         let mut found = verified(&self.verifier, target, &candidates);
         found.complete = match self.structure {
             Structure::ThreeMeet { nearly, .. } | Structure::ThreeParallel { nearly, .. } => {
@@ -190,6 +189,31 @@ impl ClosedForm {
             Some(ways) => self.solve_general(ways, goal, target, found),
             None => found,
         }
+    }
+
+    /// Adds all joint angles that may displace the tip by `goal`, as far as `ranges` may hold them. Not for the general method, which
+    /// knows of none before it has verified them.
+    #[inline]
+    pub fn add_candidates(&self, goal: &Frame, ranges: &[AngleRange; 6], candidates: &mut Candidates<6>) {
+        match &self.method {
+            Method::Spherical(method) => spherical_candidates(method, goal, ranges, candidates),
+            Method::Parallel(method) => parallel_candidates(method, goal, candidates),
+            Method::Opened { at, tolerance } => self.solve_opened(goal, *at, *tolerance, candidates),
+            Method::General(_) | Method::None => {}
+        }
+    }
+
+    /// Joint values that bring the tip to `target` unless forward kinematics says otherwise; for exact candidates.
+    #[inline]
+    pub fn likely(&self, target: &Frame, drives: &Drives) -> ArmConfigurations {
+        let mut candidates = Candidates::new();
+        self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
+        ArmConfigurations::new(drives, candidates.count, |sets| values_of_six(&self.verifier, &candidates, sets))
+    }
+
+    /// Whether candidates are solutions but for rounding.
+    pub fn has_exact_candidates(&self) -> bool {
+        !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
     }
 
     /// One way, and the other too where the first does not prove that nothing is missing.
@@ -221,7 +245,8 @@ impl ClosedForm {
         match self.structure {
             Structure::ThreeMeet { .. } => match three_meet(&joints[3..], self.size, 4.0 * tolerance) {
                 Some(centre) => {
-                    SphericalWrist::new(&joints, &centre, self.size, tolerance).solve(goal, &mut turned);
+                    let method = SphericalWrist::new(&joints, &centre, self.size, tolerance);
+                    method.solve(goal, &[AngleRange::ANY; 6], &mut turned);
                 }
                 None => turned.unsettled = true,
             },
@@ -237,8 +262,13 @@ impl ClosedForm {
 }
 
 by_instructions! {
-    fn spherical_candidates(method: &SphericalWrist, goal: &Frame, candidates: &mut Candidates<6>) {
-        method.solve(goal, candidates);
+    fn spherical_candidates(
+        method: &SphericalWrist,
+        goal: &Frame,
+        ranges: &[AngleRange; 6],
+        candidates: &mut Candidates<6>,
+    ) {
+        method.solve(goal, ranges, candidates);
     }
 }
 

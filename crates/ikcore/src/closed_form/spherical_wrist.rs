@@ -2,6 +2,7 @@
 //! others. At most eight solutions (Pieper 1968).
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::{AngleRange, may_hold};
 use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::position::{Three, ThreeAxes};
@@ -61,34 +62,43 @@ impl SphericalWrist {
         Self { reversed: true, ..Self::new(&backwards, centre, size, tolerance) }
     }
 
-    /// All joint angles whose displacements make `goal`.
+    /// All joint angles whose displacements make `goal`, as far as `ranges` may hold them.
     #[inline(always)]
-    pub fn solve(&self, goal: &Frame, found: &mut Candidates<6>) {
+    pub fn solve(&self, goal: &Frame, ranges: &[AngleRange; 6], found: &mut Candidates<6>) {
+        let [a, b, c, d, e, f] = *ranges;
         // Reversed: E6^-1 ... E1^-1 = H^-1, and a negative axis turns E^-1 into E.
         if self.reversed {
-            self.solve_forward(&goal.inverse(), found, |arm, wrist| {
+            self.solve_forward(&goal.inverse(), [&[f, e, d], &[c, b, a]], found, |arm, wrist| {
                 [wrist[2], wrist[1], wrist[0], arm[2], arm[1], arm[0]]
             });
         } else {
-            self.solve_forward(goal, found, |arm, wrist| [arm[0], arm[1], arm[2], wrist[0], wrist[1], wrist[2]]);
+            self.solve_forward(goal, [&[a, b, c], &[d, e, f]], found, |arm, wrist| {
+                [arm[0], arm[1], arm[2], wrist[0], wrist[1], wrist[2]]
+            });
         }
     }
 
     #[inline(always)]
-    fn solve_forward(&self, goal: &Frame, found: &mut Candidates<6>, order: impl Fn(&Three, &Three) -> [Angle; 6]) {
+    fn solve_forward(
+        &self,
+        goal: &Frame,
+        [of_arm, of_wrist]: [&[AngleRange; 3]; 2],
+        found: &mut Candidates<6>,
+        order: impl Fn(&Three, &Three) -> [Angle; 6],
+    ) {
         let reached = goal.place::<Baseline>(&self.centre);
         let arms = match &self.arm {
-            Arm::Turning(arm) => arm.reach(&self.centre, &reached),
+            Arm::Turning(arm) => arm.reach(&self.centre, &reached, of_arm),
             Arm::Sliding(arm) => arm.reach(&self.centre, &reached),
         };
         found.singular |= arms.free;
         found.unsettled |= arms.unsettled;
         let pointing = self.wrist.pointing(goal);
-        for arm in arms.iter() {
+        for arm in arms.iter().filter(|arm| may_hold(of_arm, *arm)) {
             let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
             let wrists = self.wrist.turns(&left);
             found.singular |= wrists.aligned;
-            for wrist in &wrists.sets[..wrists.count] {
+            for wrist in wrists.sets[..wrists.count].iter().filter(|wrist| may_hold(of_wrist, *wrist)) {
                 found.push(&order(arm, wrist));
             }
         }

@@ -8,11 +8,10 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::branches::Candidates;
+use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::structure::Pair;
-use crate::closed_form::subproblem::{
-    Linear, angle_to_plane, distance_to_point, line_on_circle, onto_point, two_linear_equations,
-};
-use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
+use crate::closed_form::subproblem::{Linear, angle_to_plane, line_on_circle, two_linear_equations};
+use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
 use crate::closed_form::wrist::{ALIGNED, Bend};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
@@ -26,9 +25,27 @@ pub struct ThreeParallel {
     bend: Bend,
     /// 1 or -1: whether axes 3 and 4 point as axis 2 does.
     senses: [f64; 2],
-    /// A unit vector across the three axes.
-    mark: Vector,
+    /// Two unit vectors across the three axes, and h.
+    flat: [Vector; 3],
+    /// Two unit vectors across axis 6, and that axis.
+    end: [Vector; 3],
+    /// Seen along `end`, by q5: where the first of `flat` and h are turned back to, and p4 from p6.
+    mark: Orbit,
+    seen: Orbit,
+    wrist: Orbit,
+    /// The links from axis 2 to 3 and from 3 to 4, in the plane across them.
+    links: [[f64; 2]; 2],
     floor: f64,
+}
+
+/// Joint 1 at one of its angles.
+#[derive(Debug, Clone, Copy)]
+struct Shoulder {
+    q1: Angle,
+    /// The vectors of `flat`, seen from the tip along `end`.
+    axes: [Vector; 3],
+    /// Where p6 lies in the plane across the three axes, from axis 2.
+    offset: [f64; 2],
 }
 
 /// How axes 5 and 6 lie, which decides how q1 and q5 come apart.
@@ -57,7 +74,13 @@ impl ThreeParallel {
         };
         let senses = [2, 3].map(|k| dot(&axes[1], &axes[k]).signum());
         let bend = Bend::new(&axes[1], &axes[4], &axes[5]);
-        Self { axes, points, last, bend, senses, mark: perpendicular(&axes[1]), floor: 1e-11 * size }
+        let (flat, end) = (across(&axes[1]), across(&axes[5]));
+        let circle = |v: &Vector| Orbit::of(&scaled(&axes[4], -1.0), v).seen(&end);
+        let wrist = circle(&sub(&points[3], &points[4])).moved(&seen(&end, &sub(&points[4], &points[5])));
+        let in_plane = |v: &Vector| [dot(&flat[0], v), dot(&flat[1], v)];
+        let links = [1, 2].map(|k| in_plane(&sub(&points[k + 1], &points[k])));
+        let (mark, seen) = (circle(&flat[0]), circle(&flat[2]));
+        Self { axes, points, last, bend, senses, flat, end, mark, seen, wrist, links, floor: 1e-11 * size }
     }
 
     /// All joint angles whose displacements make `goal`.
@@ -72,9 +95,10 @@ impl ThreeParallel {
                 let q1 = angle_to_plane(h, &scaled(h1, -1.0), &a, offset, self.floor);
                 found.singular |= q1.free;
                 for q1 in q1.iter() {
+                    let shoulder = self.shoulder(goal, *q1);
                     let (q5, _) = self.bend.angles(&q1.back().about(h1, &n));
                     for q5 in q5.iter() {
-                        self.wrist(goal, *q1, *q5, found);
+                        self.wrist(&shoulder, *q5, found);
                     }
                 }
             }
@@ -82,9 +106,10 @@ impl ThreeParallel {
                 let q1 = angle_to_plane(h, &scaled(h1, -1.0), &n, dot(h, h6), 1e-11);
                 found.singular |= q1.free;
                 for q1 in q1.iter() {
+                    let shoulder = self.shoulder(goal, *q1);
                     let height = dot(h, &q1.back().about(h1, &a)) - offset;
                     for q5 in angle_to_plane(h, h5, &sub(p6, p5), height, self.floor).iter() {
-                        self.wrist(goal, *q1, *q5, found);
+                        self.wrist(&shoulder, *q5, found);
                     }
                 }
             }
@@ -113,69 +138,72 @@ impl ThreeParallel {
         };
         found.unsettled |= q1.free;
         for (q1, q5) in q1.iter().zip(&q5) {
-            self.wrist(goal, *q1, *q5, found);
+            self.wrist(&self.shoulder(goal, *q1), *q5, found);
         }
+    }
+
+    #[inline(always)]
+    fn shoulder(&self, goal: &Frame, q1: Angle) -> Shoulder {
+        let [p1, p2, .., p6] = &self.points;
+        let [x, y, h] = self.flat.map(|v| q1.about(&self.axes[0], &v));
+        let axes = [x, y, h].map(|v| seen(&self.end, &goal.turn_back(&v)));
+        // rot1' (H p6 - p1) - (p2 - p1).
+        let (from_p1, second) = (sub(&goal.place::<Baseline>(p6), p1), sub(p2, p1));
+        let offset = [dot(&x, &from_p1) - dot(&self.flat[0], &second), dot(&y, &from_p1) - dot(&self.flat[1], &second)];
+        Shoulder { q1, axes, offset }
     }
 
     /// q6, the sum of the three parallel joints, and their planar arm.
     #[inline(always)]
-    fn wrist(&self, goal: &Frame, q1: Angle, q5: Angle, found: &mut Candidates<6>) {
-        let [h1, h, _, _, h5, h6] = &self.axes;
-        let seen = q5.back().about(h5, h);
-        let across = cross(h6, &seen);
-        if dot(&across, &across) < ALIGNED * ALIGNED {
-            return self.wrist_aligned(goal, q1, q5, found);
+    fn wrist(&self, shoulder: &Shoulder, q5: Angle, found: &mut Candidates<6>) {
+        let seen = self.seen.at(q5);
+        if seen[0] * seen[0] + seen[1] * seen[1] < ALIGNED * ALIGNED {
+            return self.wrist_aligned(shoulder, q5, found);
         }
-        let q6 = onto_point(h6, &goal.turn_back(&q1.about(h1, h)), &seen);
-        self.planar(goal, q1, q5, q6, found);
+        let [.., up] = &shoulder.axes;
+        let q6 = Angle::towards(up[0] * seen[0] + up[1] * seen[1], up[0] * seen[1] - up[1] * seen[0]);
+        self.planar(shoulder, q5, q6, found);
     }
 
     /// q2, q3, q4 by the two links between axes 2, 3 and 4.
     #[inline(always)]
-    fn planar(&self, goal: &Frame, q1: Angle, q5: Angle, q6: Angle, found: &mut Candidates<6>) {
-        let [h1, h, h3, _, h5, h6] = &self.axes;
-        let [_, p2, p3, p4, ..] = &self.points;
+    fn planar(&self, shoulder: &Shoulder, q5: Angle, q6: Angle, found: &mut Candidates<6>) {
+        let [x, y, _] = &shoulder.axes;
         // The sum of the three turns a vector across h as rot1' R_H rot6' rot5' does.
-        let undo = |v: &Vector| q6.back().about(h6, &q5.back().about(h5, v));
-        let sum = onto_point(h, &self.mark, &q1.back().about(h1, &goal.turn::<Baseline>(&undo(&self.mark))));
-        let reached = self.wrist_from_axis_2(goal, q1, q5, q6);
-        let (first, second) = (sub(p3, p2), sub(p4, p3));
-        let flat = |v: &Vector| cross(h, v);
-        let (flat_first, flat_second, flat_reached) = (flat(&first), flat(&second), flat(&reached));
-        let square = dot(&flat_reached, &flat_reached);
-        let q3 =
-            distance_to_point(h3, &flat_second, &scaled(&flat_first, -1.0), square, self.floor * norm(&flat_first));
-        for q3 in q3.iter() {
-            let elbow = add(&flat_first, &q3.about(h3, &flat_second));
-            let q2 = onto_point(h, &elbow, &flat_reached);
-            let q4 = sum.and(q2.back()).and(q3.signed(-self.senses[0])).signed(self.senses[1]);
-            found.push(&[q1, q2, *q3, q4, q5, q6]);
+        let mark = about_z(q6.back(), &self.mark.at(q5));
+        let sum = Angle::towards(dot(x, &mark), dot(y, &mark));
+        let [rx, ry] = self.reached(shoulder, q5, q6);
+        let [[ax, ay], [bx, by]] = self.links;
+        // |a + rot3 b| = |reached|.
+        let sense = self.senses[0];
+        let product = 0.5 * (rx * rx + ry * ry - (ax * ax + ay * ay) - (bx * bx + by * by));
+        let floor = self.floor * (ax * ax + ay * ay).sqrt();
+        for q3 in line_on_circle(ax * bx + ay * by, sense * (ay * bx - ax * by), product, floor).iter() {
+            let (cos, sin) = (q3.cos, sense * q3.sin);
+            let (ex, ey) = (ax + cos * bx - sin * by, ay + sin * bx + cos * by);
+            let q2 = Angle::towards(ex * rx + ey * ry, ex * ry - ey * rx);
+            let q4 = sum.and(q2.back()).and(q3.signed(-sense)).signed(self.senses[1]);
+            found.push(&[shoulder.q1, q2, *q3, q4, q5, q6]);
         }
     }
 
-    /// Where p4 lies, seen from axis 2 with joint 1 undone: rot1' (H rot6' rot5' p4 - p1) - (p2 - p1).
+    /// Where p4 lies in the plane across the three axes, from axis 2: rot1' (H rot6' rot5' p4 - p1) - (p2 - p1).
     #[inline(always)]
-    fn wrist_from_axis_2(&self, goal: &Frame, q1: Angle, q5: Angle, q6: Angle) -> Vector {
-        let [p1, p2, _, p4, p5, p6] = &self.points;
-        let [h1, _, _, _, h5, h6] = &self.axes;
-        let back5 = add(p5, &q5.back().about(h5, &sub(p4, p5)));
-        let back6 = add(p6, &q6.back().about(h6, &sub(&back5, p6)));
-        sub(&q1.back().about(h1, &sub(&goal.place::<Baseline>(&back6), p1)), &sub(p2, p1))
+    fn reached(&self, shoulder: &Shoulder, q5: Angle, q6: Angle) -> [f64; 2] {
+        let Shoulder { axes: [x, y, _], offset, .. } = shoulder;
+        let wrist = about_z(q6.back(), &self.wrist.at(q5));
+        [dot(x, &wrist) + offset[0], dot(y, &wrist) + offset[1]]
     }
 
     /// Axis 6 parallel to the three: q6 is free as far as the planar arm reaches. The middle of the reach stands for all.
     #[cold]
-    fn wrist_aligned(&self, goal: &Frame, q1: Angle, q5: Angle, found: &mut Candidates<6>) {
-        let h = &self.axes[1];
-        let [_, p2, p3, p4, ..] = &self.points;
-        let flat_norm = |v: &Vector| norm(&cross(h, v));
-        let (first, second) = (flat_norm(&sub(p3, p2)), flat_norm(&sub(p4, p3)));
+    fn wrist_aligned(&self, shoulder: &Shoulder, q5: Angle, found: &mut Candidates<6>) {
+        let [first, second] = self.links.map(|[x, y]| x.hypot(y));
         // The squared distance of axis 4 from axis 2 is base + a cos q6 + b sin q6.
-        let square = |q6: Angle| {
-            let flat = cross(h, &self.wrist_from_axis_2(goal, q1, q5, q6));
-            dot(&flat, &flat)
+        let quarter = |cos: f64, sin: f64| {
+            let [x, y] = self.reached(shoulder, q5, Angle { cos, sin });
+            x * x + y * y
         };
-        let quarter = |cos: f64, sin: f64| square(Angle { cos, sin });
         let base = 0.5 * (quarter(1.0, 0.0) + quarter(-1.0, 0.0));
         let (a, b) = (quarter(1.0, 0.0) - base, quarter(0.0, 1.0) - base);
         let (least, most) = ((first - second).powi(2), (first + second).powi(2));
@@ -186,7 +214,7 @@ impl ThreeParallel {
         }
         found.singular = true;
         for q6 in line_on_circle(a, b, 0.5 * (low + high) - base, 1e-12 * most).iter().take(1) {
-            self.planar(goal, q1, q5, *q6, found);
+            self.planar(shoulder, q5, *q6, found);
         }
     }
 }

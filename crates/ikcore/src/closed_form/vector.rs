@@ -45,3 +45,9 @@ pub fn perpendicular(axis: &Vector) -> Vector {
     let helper = if axis[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     unit(&add_scaled(&helper, axis, -dot(axis, &helper)))
 }
+
+/// Two unit vectors across the unit vector `axis`, and `axis`: a right-handed frame.
+pub fn across(axis: &Vector) -> [Vector; 3] {
+    let x = perpendicular(axis);
+    [x, cross(axis, &x), *axis]
+}

@@ -1,8 +1,9 @@
 //! Three revolute joints that make a rotation: the spherical wrist.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::subproblem::{Turns, onto_point, with_radicand};
-use crate::closed_form::vector::{Vector, cross, dot, perpendicular};
+use crate::closed_form::orbit::{Orbit, about_z, seen};
+use crate::closed_form::subproblem::{Turns, with_radicand};
+use crate::closed_form::vector::{Vector, across, cross, dot};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
@@ -46,9 +47,13 @@ impl Bend {
     /// where the wrist is straight, and then it comes from |outer x goal| and not from a cosine near one.
     #[inline(always)]
     pub fn angles(&self, goal: &Vector) -> (Turns<2>, f64) {
-        let cosine = dot(&self.outer, goal);
         let normal = cross(&self.outer, goal);
-        let square = dot(&normal, &normal);
+        self.angles_by(dot(&self.outer, goal), dot(&normal, &normal))
+    }
+
+    /// The same, given outer'goal and |outer x goal|^2.
+    #[inline(always)]
+    fn angles_by(&self, cosine: f64, square: f64) -> (Turns<2>, f64) {
         let (below_one, above_minus_one) = if cosine > 0.0 {
             (square / (1.0 + cosine), 1.0 + cosine)
         } else {
@@ -62,10 +67,15 @@ impl Bend {
 /// A wrist: three axes of which neither neighbours are parallel.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrist {
-    axes: [Vector; 3],
+    /// Two unit vectors across the first axis, and that axis.
+    outer: [Vector; 3],
     bend: Bend,
+    /// The last axis.
+    end: Vector,
     /// A unit vector across the last axis.
     mark: Vector,
+    /// Where the middle joint takes the mark, a third vector across both, and the last axis; seen along `outer`.
+    inner: [Orbit; 3],
     /// The middle axis is at right angles to both others: the second set of angles follows from the first.
     square: bool,
 }
@@ -77,6 +87,14 @@ pub struct Pointing {
     pub end: Vector,
     /// The mark.
     pub mark: Vector,
+}
+
+impl Pointing {
+    /// The same seen from where `frame` turns it.
+    #[inline(always)]
+    pub fn turned(&self, frame: &Frame) -> Self {
+        Self { end: frame.turn::<Baseline>(&self.end), mark: frame.turn::<Baseline>(&self.mark) }
+    }
 }
 
 /// The at most two sets of angles of a wrist.
@@ -94,10 +112,13 @@ impl Wrist {
     /// By the axes, in order.
     pub fn new(axes: &[Vector; 3]) -> Self {
         let right_angle = |a: &Vector, b: &Vector| dot(a, b).abs() < 1e-12;
+        let (outer, [mark, across_mark, end]) = (across(&axes[0]), across(&axes[2]));
         Self {
-            axes: *axes,
+            outer,
             bend: Bend::new(&axes[0], &axes[1], &axes[2]),
-            mark: perpendicular(&axes[2]),
+            end,
+            mark,
+            inner: [mark, across_mark, end].map(|v| Orbit::of(&axes[1], &v).seen(&outer)),
             square: right_angle(&axes[0], &axes[1]) && right_angle(&axes[1], &axes[2]),
         }
     }
@@ -105,13 +126,15 @@ impl Wrist {
     /// Where the rotation of `goal` takes this wrist.
     #[inline(always)]
     pub fn pointing(&self, goal: &Frame) -> Pointing {
-        Pointing { end: goal.turn::<Baseline>(&self.axes[2]), mark: goal.turn::<Baseline>(&self.mark) }
+        Pointing { end: goal.turn::<Baseline>(&self.end), mark: goal.turn::<Baseline>(&self.mark) }
     }
 
     /// All angles with rot1 rot2 rot3 = the rotation that points the wrist so, where rotations act on the zero configuration.
     #[inline(always)]
     pub fn turns(&self, goal: &Pointing) -> WristTurns {
-        let (bends, sine) = self.bend.angles(&goal.end);
+        let [x, y, z] = seen(&self.outer, &goal.end);
+        let mark = seen(&self.outer, &goal.mark);
+        let (bends, sine) = self.bend.angles_by(z, x * x + y * y);
         let mut found = WristTurns { sets: [[Angle::NONE; 3]; 2], count: 0, aligned: sine < ALIGNED };
         let wanted = if found.aligned { bends.len().min(1) } else { bends.len() };
         for q2 in &bends[..wanted] {
@@ -120,19 +143,15 @@ impl Wrist {
                 let [q1, _, q3] = &found.sets[0];
                 [q1.opposite(), *q2, q3.opposite()]
             } else {
-                self.with_bend(goal, *q2, found.aligned)
+                let [to_mark, to_across, to_end] = self.inner.map(|circle| circle.at(*q2));
+                let towards = Angle::towards(to_end[0] * x + to_end[1] * y, to_end[0] * y - to_end[1] * x);
+                let q1 = if found.aligned { Angle::NONE } else { towards };
+                let left = about_z(q1.back(), &mark);
+                [q1, *q2, Angle::towards(dot(&to_mark, &left), dot(&to_across, &left))]
             };
             found.count += 1;
         }
         found
-    }
-
-    #[inline(always)]
-    fn with_bend(&self, goal: &Pointing, q2: Angle, aligned: bool) -> [Angle; 3] {
-        let [h1, h2, h3] = &self.axes;
-        let q1 = if aligned { Angle::NONE } else { onto_point(h1, &q2.about(h2, h3), &goal.end) };
-        let seen = q2.back().about(h2, &q1.back().about(h1, &goal.mark));
-        [q1, q2, onto_point(h3, &self.mark, &seen)]
     }
 }
 

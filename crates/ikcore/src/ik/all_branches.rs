@@ -3,7 +3,7 @@
 use super::attempt::{APPROACHES, Attempt};
 use super::solutions::Solutions;
 use super::whole_turns::NearestTurns;
-use crate::closed_form::{ArmBranches, BranchError, MOST_JOINTS, PoseFamily, VERIFIED};
+use crate::closed_form::{ArmBranches, BranchError, FamilyLimits, MOST_JOINTS, PoseFamily, VERIFIED};
 use crate::math::Frame;
 use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, MultiStart};
@@ -24,8 +24,8 @@ const WIDE: f64 = 1e-5;
 /// How many times more values of the parameter are tried where none has a solution.
 const FINER: usize = 4;
 
-/// Values of the parameter between two looks at the monitor.
-const VALUES_BETWEEN_LOOKS: usize = 64;
+/// Visits to configurations between two looks at the monitor.
+const VISITS_BETWEEN_LOOKS: usize = 32;
 
 /// What the closed form yields for one target.
 pub(super) struct AllBranches {
@@ -111,31 +111,31 @@ struct Taker<'a, 'm, 'p> {
 impl Taker<'_, '_, '_> {
     /// Takes those of a redundant arm at `count` values of its parameter, or at more where none of them has a solution.
     fn sample(&mut self, family: &PoseFamily<'_>, count: usize) {
-        let bounds = self.attempt.context.bounds();
-        let arcs = family.arcs(bounds.lower(), bounds.upper());
-        // Outside the arcs there is none: without arcs the pose is out of reach.
-        self.found.complete = arcs.is_empty();
+        let [lower, upper] = self.attempt.context.sampling_ranges();
+        let limits = family.limits(lower, upper);
+        let arcs = family.arcs(&limits);
+        // Outside the arcs there is none: without arcs the pose is out of reach, though not of wide tolerances.
+        self.found.complete = arcs.is_empty() && !self.nearly;
         for finer in [1, FINER, FINER * FINER] {
-            self.take_values(family, arcs.spread(count.saturating_mul(finer)));
+            self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
             if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
                 break;
             }
         }
     }
 
-    fn take_values(&mut self, family: &PoseFamily<'_>, values: impl Iterator<Item = f64>) {
-        for (k, value) in values.enumerate() {
-            if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
-                self.found.interrupted = true;
-                break;
-            }
-            let branches = family.branches_at(value);
+    fn take_values(&mut self, family: &PoseFamily<'_>, limits: &FamilyLimits, values: impl Iterator<Item = f64>) {
+        let mut looks = 0;
+        family.visit_within(limits, values, |branches| {
             self.attempt.budget.evaluations += branches.evaluations;
             self.found.singular |= branches.singular;
             for (q, error) in branches.iter() {
                 self.take_inside(q, error);
             }
-        }
+            looks += 1;
+            self.found.interrupted = looks % VISITS_BETWEEN_LOOKS == 0 && !self.attempt.monitor.keep_going();
+            !self.found.interrupted
+        });
     }
 
     /// Takes those of an arm that is not redundant. Returns how many there are, limits aside; None without a closed form.
@@ -164,17 +164,16 @@ impl Taker<'_, '_, '_> {
     /// Takes a branch if it is inside the limits.
     #[inline]
     fn take_inside(&mut self, q: &[f64], error: BranchError) -> bool {
-        let bounds = self.attempt.context.bounds();
         let mut near = [0.0; MOST_JOINTS];
         let near = &mut near[..q.len()];
-        for (j, placed) in near.iter_mut().enumerate() {
-            let (value, lower, upper) = (self.turns.nearest(j, q[j]), bounds.lower()[j], bounds.upper()[j]);
-            let outside = (lower - value).max(value - upper);
+        for ((joint, value), placed) in self.turns.joints().iter().zip(q).zip(near.iter_mut()) {
+            let value = joint.nearest(*value);
+            let outside = (joint.lower - value).max(value - joint.upper);
             if outside > AT_LIMIT {
                 self.nearly |= outside < NEAR_LIMIT;
                 return false;
             }
-            *placed = value.clamp(lower, upper);
+            *placed = value.clamp(joint.lower, joint.upper);
         }
         if self.verified_is_solved {
             let BranchError { position, rotation } = error;

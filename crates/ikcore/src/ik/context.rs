@@ -1,7 +1,9 @@
 //! The validated arguments that all targets of a call share.
 
-use std::sync::LazyLock;
+use std::borrow::Cow;
+use std::sync::{LazyLock, OnceLock};
 
+use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
@@ -35,6 +37,8 @@ pub(crate) struct SolveContext<'a> {
     criterion: Criterion,
     goals: Goals,
     bounds: Bounds,
+    /// The preference of queries without a start, made when first asked for.
+    central: OnceLock<Preference>,
     /// Where solutions must be; boxed to keep the context small.
     space: Option<Box<ClearSpace<'a>>>,
 }
@@ -63,7 +67,7 @@ impl<'a> SolveContext<'a> {
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
-        Ok(Self { robot, with_tool, options, criterion, goals, bounds, space })
+        Ok(Self { robot, with_tool, options, criterion, goals, bounds, central: OnceLock::new(), space })
     }
 
     pub(super) fn robot(&self) -> &Robot {
@@ -108,12 +112,21 @@ impl<'a> SolveContext<'a> {
         self.goals.is_empty() && self.asks_for_pose(target)
     }
 
+    /// Which of several solutions to take.
+    pub(super) fn preference(&self, start: Option<&[f64]>) -> Cow<'_, Preference> {
+        match start {
+            Some(_) => Cow::Owned(Preference::new(self.robot(), &self.bounds, start)),
+            None => Cow::Borrowed(self.central()),
+        }
+    }
+
     /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
-    pub(super) fn sampling_ranges(&self) -> [Point; 2] {
-        let (bounds, joints) = (&self.bounds, self.robot().joints());
-        let ranges = bounds.lower().iter().zip(bounds.upper()).zip(joints);
-        let (lower, upper) = ranges.map(|((lower, upper), joint)| joint.sampling_range_within(*lower, *upper)).unzip();
-        [lower, upper]
+    pub(super) fn sampling_ranges(&self) -> [&[f64]; 2] {
+        self.central().ranges()
+    }
+
+    fn central(&self) -> &Preference {
+        self.central.get_or_init(|| Preference::new(self.robot(), &self.bounds, None))
     }
 
     /// The problem of reaching `target`.

@@ -4,7 +4,7 @@ use super::all_branches::all_branches;
 use super::attempt::Attempt;
 use super::preference::Preference;
 use super::solution::Solution;
-use crate::closed_form::PoseFamily;
+use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
 use crate::math::Frame;
 use crate::objective::Point;
 use crate::solver::Status;
@@ -46,16 +46,24 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
     {
         return Some(solution);
     }
-    let branches = attempt.context.robot().branches(pose)?;
-    attempt.budget.evaluations += branches.evaluations;
-    let preference = Preference::new(attempt.context, start);
-    if let Some(q) = preference.choose(branches.iter().map(|(q, _)| q))
-        && let Some(solution) = attempt.solved_at(q)
-    {
+    let context = attempt.context;
+    let likely = context.robot().likely_branches(pose);
+    let preference = context.preference(start);
+    if let Some(solution) = preferred(attempt, &preference, &likely) {
         return Some(solution);
     }
-    // Limits cut all branches, or the tolerances are tighter than rounding allows the closed form.
+    // Limits cut all branches, the pose is nearly singular, or the tolerances are tighter than rounding allows the closed form.
     of_all_branches(attempt, &preference, start)
+}
+
+/// The preferred one of `configurations`, if it reaches the pose as well as a verified branch does.
+fn preferred(
+    attempt: &mut Attempt<'_, '_>,
+    preference: &Preference,
+    configurations: &ArmConfigurations,
+) -> Option<Solution> {
+    let solution = attempt.solved_at(preference.choose(configurations.iter())?)?;
+    (solution.error.position.max(solution.error.rotation) <= VERIFIED).then_some(solution)
 }
 
 /// Of an arm with one joint more: from the start by descent; then the first value of the parameter that has a branch inside the
@@ -67,10 +75,24 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
             return Some(attempt.explained(status, q));
         }
     }
-    let preference = Preference::new(attempt.context, start);
-    let [lower, upper] = attempt.context.sampling_ranges();
+    let context = attempt.context;
+    let preference = context.preference(start);
+    let [lower, upper] = context.sampling_ranges();
+    let limits = family.limits(lower, upper);
+    let arcs = family.arcs(&limits);
+    if arcs.is_empty() {
+        return of_all_branches(attempt, &preference, start);
+    }
     let half_the_budget = attempt.budget.left() / 2;
-    for value in family.arcs(&lower, &upper).scattered(SCANNED) {
+    for value in arcs.scattered(SCANNED) {
+        let likely = family.likely_at(value, &limits);
+        if likely.is_empty() {
+            continue;
+        }
+        if let Some(solution) = preferred(attempt, &preference, &likely) {
+            return Some(solution);
+        }
+        // Beside singular poses, what is near a branch is still to be polished.
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
         if let Some(q) = preference.choose(branches.iter().map(|(q, _)| q))
@@ -93,12 +115,13 @@ fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<S
     if status != Status::BudgetSpent || attempt.budget.is_spent() {
         return Some(attempt.explained(status, q));
     }
-    of_all_branches(attempt, &Preference::new(attempt.context, start), start)
+    of_all_branches(attempt, &attempt.context.preference(start), start)
 }
 
 /// What `solve_all` finds, or proves.
 fn of_all_branches(attempt: &mut Attempt<'_, '_>, preference: &Preference, start: Option<&[f64]>) -> Option<Solution> {
-    let all = all_branches(attempt, &preference.reference(), 0)?;
+    // Of a redundant arm only whether there are any: a single value of its parameter tells.
+    let all = all_branches(attempt, &preference.reference(), 1)?;
     if let Some(q) = preference.choose(all.solutions.iter().map(|solution| solution.q)) {
         return attempt.solved_at(q);
     }

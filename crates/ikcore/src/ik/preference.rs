@@ -2,16 +2,22 @@
 
 use smallvec::SmallVec;
 
-use super::context::SolveContext;
-use crate::objective::Point;
+use crate::objective::{Bounds, Point};
+use crate::robot::Robot;
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
 pub(super) const AT_LIMIT: f64 = 1e-9;
 
 /// A reference configuration within limits.
-pub(super) struct Preference(SmallVec<[JointPreference; 8]>);
+#[derive(Debug, Clone)]
+pub(super) struct Preference {
+    joints: SmallVec<[JointPreference; 8]>,
+    /// The finite ranges inside the limits.
+    ranges: [SmallVec<[f64; 8]>; 2],
+}
 
 /// The preferred value of a joint.
+#[derive(Debug, Clone)]
 struct JointPreference {
     lower: f64,
     upper: f64,
@@ -25,27 +31,35 @@ struct JointPreference {
 impl Preference {
     /// Near `start`, all joints counted the same (rad, m); without one near the middle of the limits, joints counted in their
     /// ranges.
-    pub fn new(context: &SolveContext<'_>, start: Option<&[f64]>) -> Self {
-        let (robot, bounds) = (context.robot(), context.bounds());
-        let of_joint = |j: usize| {
+    pub fn new(robot: &Robot, bounds: &Bounds, start: Option<&[f64]>) -> Self {
+        let mut preference = Self { joints: SmallVec::new(), ranges: Default::default() };
+        for (j, joint) in robot.joints().iter().enumerate() {
             let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
+            let (low, high) = joint.sampling_range_within(lower, upper);
             let (reference, weight) = match start {
                 Some(start) => (start[j], 1.0),
                 None => {
-                    let (low, high) = robot.joints()[j].sampling_range_within(lower, upper);
                     let range = high - low;
                     (0.5 * (low + high), if range > 0.0 { 1.0 / (range * range) } else { 0.0 })
                 }
             };
             let period = robot.turn_period(j).unwrap_or(f64::INFINITY);
-            JointPreference { lower, upper, reference, weight, period }
-        };
-        Self((0..robot.dof()).map(of_joint).collect())
+            preference.joints.push(JointPreference { lower, upper, reference, weight, period });
+            preference.ranges[0].push(low);
+            preference.ranges[1].push(high);
+        }
+        preference
+    }
+
+    /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
+    pub fn ranges(&self) -> [&[f64]; 2] {
+        let [lower, upper] = &self.ranges;
+        [lower, upper]
     }
 
     /// The reference configuration.
     pub fn reference(&self) -> Point {
-        self.0.iter().map(|joint| joint.reference).collect()
+        self.joints.iter().map(|joint| joint.reference).collect()
     }
 
     /// The preferred one of `configurations`, at its whole turns nearest to the reference; None if none is inside the limits.
@@ -59,7 +73,7 @@ impl Preference {
                 (least, best) = (cost, Some(q));
             }
         }
-        self.0.iter().zip(best?).map(|(joint, q)| joint.turned(*q)).collect()
+        self.joints.iter().zip(best?).map(|(joint, q)| joint.turned(*q)).collect()
     }
 
     /// Those of `configurations` that are inside the limits, at their whole turns nearest to the reference, preferred ones first.
@@ -67,7 +81,7 @@ impl Preference {
         let inside = configurations.filter_map(|q| self.cost(q).map(|cost| (cost, q)));
         let mut inside: SmallVec<[(f64, &[f64]); 16]> = inside.collect();
         inside.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let turned = |q: &[f64]| self.0.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
+        let turned = |q: &[f64]| self.joints.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
         inside.iter().filter_map(|(_, q)| turned(q)).collect()
     }
 
@@ -75,7 +89,7 @@ impl Preference {
     #[inline]
     fn cost(&self, q: &[f64]) -> Option<f64> {
         let mut sum = 0.0;
-        for (joint, q) in self.0.iter().zip(q) {
+        for (joint, q) in self.joints.iter().zip(q) {
             let off = joint.turned(*q)? - joint.reference;
             sum += off * off * joint.weight;
         }

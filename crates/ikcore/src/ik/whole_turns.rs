@@ -2,7 +2,6 @@
 
 use smallvec::SmallVec;
 
-use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
@@ -13,16 +12,28 @@ pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &
 
 /// What [`bring_near`] needs, prepared for many configurations.
 pub(super) struct NearestTurns<'a> {
-    bounds: &'a Bounds,
     reference: &'a [f64],
-    /// The period of each joint; 0 where there is none.
-    periods: SmallVec<[f64; MAX_DOF]>,
+    joints: SmallVec<[NearestTurn; 8]>,
+}
+
+/// One joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearestTurn {
+    /// The limits (rad, m).
+    pub lower: f64,
+    pub upper: f64,
+    reference: f64,
+    /// 0 where there is none.
+    period: f64,
 }
 
 impl<'a> NearestTurns<'a> {
-    pub fn new(robot: &Robot, bounds: &'a Bounds, reference: &'a [f64]) -> Self {
-        let periods = (0..reference.len()).map(|j| robot.turn_period(j).unwrap_or(0.0)).collect();
-        Self { bounds, reference, periods }
+    pub fn new(robot: &Robot, bounds: &Bounds, reference: &'a [f64]) -> Self {
+        let joint = |j: usize| {
+            let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
+            NearestTurn { lower, upper, reference: reference[j], period: robot.turn_period(j).unwrap_or(0.0) }
+        };
+        Self { reference, joints: (0..reference.len()).map(joint).collect() }
     }
 
     /// The configuration to be near to (n,).
@@ -30,23 +41,31 @@ impl<'a> NearestTurns<'a> {
         self.reference
     }
 
-    /// Shifts each joint by whole turns to be as near as possible to the reference within its limits.
-    pub fn bring_near(&self, q: &mut [f64]) {
-        for (j, value) in q.iter_mut().enumerate() {
-            *value = self.nearest(j, *value);
-        }
+    /// The joints, in order.
+    pub fn joints(&self) -> &[NearestTurn] {
+        &self.joints
     }
 
-    /// `value` of joint `j`, shifted by whole turns to be as near as possible to the reference within its limits.
-    #[inline]
-    pub fn nearest(&self, j: usize, value: f64) -> f64 {
-        let (lower, upper, period) = (self.bounds.lower()[j], self.bounds.upper()[j], self.periods[j]);
-        let away = self.reference[j] - value;
-        let is_near = 2.0 * away.abs() < period && lower <= value && value <= upper;
-        if is_near || period == 0.0 {
-            return value;
+    /// Shifts each joint by whole turns to be as near as possible to the reference within its limits.
+    pub fn bring_near(&self, q: &mut [f64]) {
+        for (joint, value) in self.joints.iter().zip(q) {
+            *value = joint.nearest(*value);
         }
-        let turns = (away / period).round();
+    }
+}
+
+impl NearestTurn {
+    /// `value` shifted by whole turns to be as near as possible to the reference within the limits.
+    #[inline]
+    pub fn nearest(&self, value: f64) -> f64 {
+        let Self { lower, upper, reference, period } = *self;
+        let is_near = 2.0 * (reference - value).abs() < period && lower <= value && value <= upper;
+        if is_near || period == 0.0 { value } else { self.turned(value) }
+    }
+
+    fn turned(&self, value: f64) -> f64 {
+        let Self { lower, upper, reference, period } = *self;
+        let turns = ((reference - value) / period).round();
         let (fewest, most) = (((lower - value) / period).ceil(), ((upper - value) / period).floor());
         let turned = value + turns.max(fewest).min(most) * period;
         // Rounding may pass a limit.

@@ -75,6 +75,7 @@ impl Frame {
     }
 
     /// The inverse transform.
+    #[inline]
     pub fn inverse(&self) -> Self {
         let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
         let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());

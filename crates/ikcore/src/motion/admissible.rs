@@ -66,10 +66,12 @@ impl Braking {
                 slowest_until.map_or(f64::NEG_INFINITY, |limit| self.fastest(next, change) - limit(stop.ticks));
             too_far.max(too_fast)
         };
-        if room == f64::INFINITY && slowest_until.is_none() {
+        // Far from the position limit no stop need be known.
+        if slowest_until.is_none() && step + most + self.at_most_up(step + most, most) <= room {
             return Some(most);
         }
-        largest_not_positive([least, most], excess)
+        let at_most = excess(most);
+        if at_most <= 0.0 { Some(most) } else { largest_not_positive(least, [most, at_most], excess) }
     }
 }
 

@@ -13,6 +13,9 @@
 //! | `joint_state` | steps and changes of all joints |
 //! | `bracket` | zeros of increasing functions |
 //! | `noise_level` | noise of a sequence of samples, robust to jumps |
+//! | `goal_scales` | largest steps and changes, in which goals are measured |
+//! | `goal_memory` | how many samples of a noisy goal to average |
+//! | `goal_gains` | how much a sample corrects a goal |
 //! | `moving_goal` | the goal configuration as a moving point: position, step and change from noisy samples |
 //! | `pursuit` | the change of each joint towards a moving goal |
 //! | `arm_state` | [`ArmState`]: positions, velocities and accelerations of all joints |
@@ -23,6 +26,9 @@ mod admissible;
 mod arm_state;
 mod bracket;
 mod braking;
+mod goal_gains;
+mod goal_memory;
+mod goal_scales;
 mod joint_state;
 mod moving_goal;
 mod noise_level;
@@ -33,8 +39,9 @@ mod synchronised;
 
 pub use arm_state::ArmState;
 pub(crate) use braking::Braking;
+pub(crate) use goal_scales::Scales;
 pub(crate) use joint_state::JointState;
-pub(crate) use moving_goal::{GoalSample, MovingGoal, Scales};
+pub(crate) use moving_goal::{GoalSample, MovingGoal};
 pub(crate) use pursuit::Pursuit;
 pub(crate) use reachable_set::ReachableSet;
 pub(crate) use state_to_state::meet;

@@ -1,24 +1,15 @@
 //! The goal of a pursuit: the configuration in which the arm meets its target, as a moving point.
 //!
 //! Each target gives a sample of the goal, with the noise of its sensor. A fading-memory filter keeps position, step and
-//! change of the goal: a triple pole at theta = 1 - 1/m for a memory of m samples, so that a goal with constant change is
-//! followed without lag. The memory is as long as the noise requires: following the filtered goal takes a small fraction of
-//! the acceleration and jerk limits. Without noise it is one sample: the goal is then exactly the last sample. After a jump
-//! the filter starts anew, with a growing memory.
+//! change of the goal, so that a goal with constant change is followed without lag. [`GoalMemory`] chooses how many samples
+//! it remembers; without noise it is one: the goal is then exactly the last sample. After a jump the filter starts anew,
+//! with a growing memory.
 
+use super::goal_gains::GoalGains;
+use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
 use super::noise_level::{NoiseLevel, root_mean_square};
-use super::{Braking, JointState};
+use super::{JointState, Scales};
 use crate::objective::Point;
-
-/// Standard deviation of the acceleration that noise may cause, as a fraction of the acceleration limit.
-const SHAKE: f64 = 0.004;
-
-/// Likewise for jerk, which the noise of single samples causes.
-const JERK_SHAKE: f64 = 0.02;
-
-/// Following a goal with a memory of m samples multiplies noise by this over m^2.5 in the acceleration, and by this over
-/// m^3.5 in the jerk.
-const AMPLIFIED: f64 = 5.0;
 
 /// A sample further than this many standard deviations from where the goal was expected is no noise.
 const OUTLIER: f64 = 6.0;
@@ -26,45 +17,14 @@ const OUTLIER: f64 = 6.0;
 /// A sample further than this many accelerations of one sample is no smooth motion of a goal that the arm can follow.
 const SUDDEN: f64 = 4.0;
 
-/// A memory below this many samples follows single samples.
-const NOISELESS: f64 = 2.0;
+/// Where the memory grows at once from one sample to this many, what was taken for motion was noise.
+const MISTAKEN: f64 = 2.0 * NOISELESS;
 
 /// Samples that a parabola needs.
 const PARABOLA: usize = 3;
 
-/// Step of a joint without a velocity limit (rad, m).
-const LONGEST_STEP: f64 = 1.0;
-
 /// Overdue intervals that the motion is extrapolated over.
 const STRETCH: f64 = 2.0;
-
-/// What the limits of a joint are measured in: per tick.
-#[derive(Debug, Clone)]
-pub(crate) struct Scales {
-    /// Largest steps.
-    pub step: Point,
-    /// Largest changes; infinite for joints without limits and for locked ones.
-    pub change: Point,
-    /// Smallest ratio of jerk to acceleration limit: fraction of the change that may change in a tick.
-    pub jerk_share: f64,
-}
-
-impl Scales {
-    /// The scales of joints with these largest steps. A joint without an acceleration limit gets the acceleration that its
-    /// jerk limit allows up to its velocity limit.
-    pub fn new(braking: &[Braking], steps: impl Iterator<Item = f64>) -> Self {
-        let step: Point = steps.collect();
-        let scale = |(braking, step): (&Braking, &f64)| {
-            let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
-            let scale = braking.acceleration.min(by_jerk);
-            if scale > 0.0 { scale } else { f64::INFINITY }
-        };
-        let change: Point = braking.iter().zip(&step).map(scale).collect();
-        let limited = braking.iter().zip(&change).filter(|(_, change)| change.is_finite());
-        let jerk_share = limited.map(|(braking, change)| braking.jerk / change).fold(f64::INFINITY, f64::min);
-        Self { step, change, jerk_share }
-    }
-}
 
 /// A sample of the goal.
 #[derive(Debug, Clone, Copy)]
@@ -92,28 +52,12 @@ pub(crate) struct MovingGoal {
     interval: f64,
     /// Samples since the last jump, while they are fewer than the memory; afterwards `None`.
     samples: Option<usize>,
-    /// Samples that the filter remembers.
-    memory: f64,
+    memory: GoalMemory,
     noise: NoiseLevel,
     /// Uncertainty of the goal in standard deviations of a sample.
     uncertainty: f64,
-}
-
-/// Corrections of position, step and change per sample interval by an unexpected difference.
-#[derive(Debug, Clone, Copy)]
-struct Gains {
-    position: f64,
-    step: f64,
-    change: f64,
-}
-
-impl Gains {
-    /// Uncertainty of a goal that is extrapolated over `ahead` intervals, in standard deviations of a sample, up to a factor
-    /// near 1: that of its position, and of step and change, which are as much smaller as their gains.
-    fn uncertainty(&self, ahead: f64) -> f64 {
-        let (step, change) = (self.step.sqrt(), self.change.cbrt().powi(2));
-        self.position.sqrt() * (1.0 + ahead * (step + 0.5 * ahead * change))
-    }
+    /// Fraction of a surprise by which the last sample corrected the position.
+    corrected: f64,
 }
 
 impl MovingGoal {
@@ -129,9 +73,10 @@ impl MovingGoal {
             arrived: now,
             interval: 1.0,
             samples: None,
-            memory: 1.0,
+            memory: GoalMemory::new(q.len()),
             noise: NoiseLevel::new(),
             uncertainty: 1.0,
+            corrected: 1.0,
         }
     }
 
@@ -167,7 +112,12 @@ impl MovingGoal {
 
     /// Ticks over which noise is averaged; 1 without noise.
     pub fn memory(&self) -> f64 {
-        self.memory * self.interval
+        self.memory.samples() * self.interval
+    }
+
+    /// Root mean square of the corrections of its position that noise causes.
+    pub fn jitter(&self) -> f64 {
+        self.corrected * self.noise()
     }
 
     /// Moves on by one tick. A goal whose sample is overdue brakes to rest.
@@ -203,13 +153,14 @@ impl MovingGoal {
         self.interval +=
             (interval - self.interval) * if self.samples.is_some_and(|samples| samples < PARABOLA) { 1.0 } else { 0.2 };
         (self.last_sample, self.arrived) = (time, self.now);
-        let before = self.memory;
-        self.memory = self.required_memory(scales.jerk_share, (self.now - time) / self.interval);
-        if before < NOISELESS && self.memory > NOISELESS {
-            // What was taken for motion was noise.
+        let ahead = (self.now - time) / self.interval;
+        let before = self.memory.samples();
+        self.adapt_memory(sample, expected, scales);
+        let memory = self.memory.samples();
+        if before < NOISELESS && memory > MISTAKEN {
             return self.restart(sample);
         }
-        self.samples = self.samples.map(|samples| samples + 1).filter(|n| *n < PARABOLA || (*n as f64) < self.memory);
+        self.samples = self.samples.map(|samples| samples + 1).filter(|n| *n < PARABOLA || (*n as f64) < memory);
         let surprise = root_mean_square(q.iter().zip(expected).map(|(q, expected)| q - expected), &scales.change);
         let noise = OUTLIER * self.noise();
         if self.samples == Some(2) {
@@ -220,19 +171,34 @@ impl MovingGoal {
             }
         } else if surprise > SUDDEN * self.interval.powi(2) + noise {
             // An acceleration within the memory explains that much; otherwise it is a jump.
-            if surprise > (SUDDEN + 0.125 * self.memory.powi(2)) * self.interval.powi(2) + noise {
+            if surprise > (SUDDEN + 0.125 * memory.powi(2)) * self.interval.powi(2) + noise {
                 return self.restart(sample);
             }
             self.forget_half();
         }
-        let gains = self.gains();
-        self.uncertainty = gains.uncertainty((self.now - time) / self.interval);
+        let gains = match self.samples {
+            Some(samples) => GoalGains::of_line(samples),
+            None => GoalGains::of_parabola(memory, self.interval),
+        };
+        (self.uncertainty, self.corrected) = (gains.uncertainty(ahead), gains.position);
         self.apply(gains, interval, sample, expected);
+    }
+
+    fn adapt_memory(&mut self, sample: GoalSample<'_>, expected: &[f64], scales: &Scales) {
+        let circumstances = Circumstances {
+            noise: self.noise(),
+            interval: self.interval,
+            age: self.now - sample.time,
+            jerk_share: scales.jerk_share,
+            quickness: scales.quickness,
+        };
+        let surprise = sample.q.iter().zip(expected).map(|(q, expected)| q - expected);
+        self.memory.adapt(surprise, &scales.change, &circumstances);
     }
 
     /// Starts a straight line through half as many samples.
     fn forget_half(&mut self) {
-        let remembered = self.samples.unwrap_or(self.memory.ceil() as usize);
+        let remembered = self.samples.unwrap_or(self.memory.samples().ceil() as usize);
         self.samples = Some((remembered / 2).max(2));
         self.change.fill(0.0);
     }
@@ -242,34 +208,10 @@ impl MovingGoal {
         self.step.fill(0.0);
         self.change.fill(0.0);
         self.samples = Some(1);
+        self.memory.restart();
     }
 
-    /// Samples to remember so that following the noise, over so many intervals ahead, takes a small share of the limits.
-    fn required_memory(&self, jerk_share: f64, ahead: f64) -> f64 {
-        let noise = self.noise() * (1.0 + ahead) / self.interval.powi(2);
-        let for_acceleration = (AMPLIFIED * noise / SHAKE).powf(0.4);
-        let for_jerk = (AMPLIFIED * noise / (JERK_SHAKE * jerk_share * self.interval)).powf(2.0 / 7.0);
-        for_acceleration.max(for_jerk).max(1.0)
-    }
-
-    fn gains(&self) -> Gains {
-        if let Some(samples) = self.samples {
-            // The straight line of least squares through n samples.
-            let n = samples as f64;
-            let both = n * (n + 1.0);
-            return Gains { position: 2.0 * (2.0 * n - 1.0) / both, step: 6.0 / both, change: 0.0 };
-        }
-        let (theta, forgotten) = (1.0 - 1.0 / self.memory, 1.0 / self.memory);
-        // A change adds this share of itself to the displacement of an interval.
-        let share = 0.5 * (self.interval + 1.0) / self.interval;
-        Gains {
-            position: 1.0 - theta.powi(3),
-            step: forgotten.powi(2) * (2.0 + theta - share * forgotten),
-            change: forgotten.powi(3),
-        }
-    }
-
-    fn apply(&mut self, gains: Gains, interval: f64, sample: GoalSample<'_>, expected: &[f64]) {
+    fn apply(&mut self, gains: GoalGains, interval: f64, sample: GoalSample<'_>, expected: &[f64]) {
         let ago = self.now - sample.time;
         for (j, (q, expected)) in sample.q.iter().zip(expected).enumerate() {
             let surprise = q - expected;
@@ -283,6 +225,7 @@ impl MovingGoal {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Braking;
     use super::*;
     use crate::rng::{self, LazyRng};
 

@@ -1,14 +1,16 @@
 //! The noise of a sequence of samples.
 //!
-//! A smooth motion is a parabola over four samples, so the difference between a sample and the parabola through the three
-//! before it is noise. The median over a window ignores jumps.
+//! A smooth motion is nearly a parabola over four samples and even more nearly a cubic over five, so the difference between
+//! a sample and the polynomial through those before it is noise. For noise both differences say the same; for a motion that
+//! is less smooth than expected one of them is smaller. The medians over a window ignore jumps.
 
 use crate::objective::Point;
 
-/// Samples that a parabola needs.
-const BEFORE: usize = 3;
+/// Samples that a parabola and a cubic need.
+const PARABOLA: usize = 3;
+const CUBIC: usize = 4;
 
-/// Window of the median. A jump spoils four differences, which is less than half.
+/// Window of the medians. A jump spoils four differences to the parabola, which is less than half.
 const WINDOW: usize = 9;
 
 /// Median of the absolute value of a normal variable with standard deviation 1.
@@ -24,11 +26,12 @@ const AVERAGED: f64 = 50.0;
 #[derive(Debug, Clone)]
 pub(super) struct NoiseLevel {
     /// The last samples and their times, oldest first in a ring.
-    samples: [Point; BEFORE],
-    times: [f64; BEFORE],
+    samples: [Point; CUBIC],
+    times: [f64; CUBIC],
     count: usize,
-    /// Differences in the window; zero until it is full, so that a jump at the start is not taken for noise.
-    differences: [f64; WINDOW],
+    /// Differences to parabolas and cubics in the window; zero until it is full, so that a jump at the start is not taken
+    /// for noise.
+    differences: [[f64; WINDOW]; 2],
     level: f64,
     /// Fraction of the squared differences in each entry.
     shares: Point,
@@ -37,7 +40,14 @@ pub(super) struct NoiseLevel {
 impl NoiseLevel {
     pub fn new() -> Self {
         let samples = std::array::from_fn(|_| Point::new());
-        Self { samples, times: [0.0; BEFORE], count: 0, differences: [0.0; WINDOW], level: 0.0, shares: Point::new() }
+        Self {
+            samples,
+            times: [0.0; CUBIC],
+            count: 0,
+            differences: [[0.0; WINDOW]; 2],
+            level: 0.0,
+            shares: Point::new(),
+        }
     }
 
     /// Root mean square over the entries of the standard deviation of the noise, in the scales of `add`.
@@ -53,34 +63,36 @@ impl NoiseLevel {
     /// Adds a sample at `time`; entries are measured in units of `scales`.
     pub fn add(&mut self, sample: &[f64], time: f64, scales: &[f64]) {
         let count = self.count;
-        let slot = |ago: usize| (count + BEFORE - ago) % BEFORE;
-        if count >= BEFORE {
-            let slots = [slot(3), slot(2), slot(1)];
-            let difference = self.difference(sample, time, scales, slots);
-            self.differences[count % WINDOW] = difference;
+        let slot = |ago: usize| (count + CUBIC - ago) % CUBIC;
+        let latest: [usize; CUBIC] = std::array::from_fn(|i| slot(i + 1));
+        if count >= PARABOLA {
+            self.differences[0][count % WINDOW] = self.difference::<PARABOLA>(sample, time, scales, &latest);
+        }
+        if count >= CUBIC {
+            self.differences[1][count % WINDOW] = self.difference::<CUBIC>(sample, time, scales, &latest);
             self.update();
         }
         if count == 0 {
             self.shares = Point::from_elem(1.0 / sample.len() as f64, sample.len());
         }
-        let oldest = slot(3);
+        let oldest = slot(CUBIC);
         self.samples[oldest].clear();
         self.samples[oldest].extend_from_slice(sample);
         self.times[oldest] = time;
         self.count += 1;
     }
 
-    /// Root mean square over the entries of the difference to the parabola, divided by its standard deviation for noise of
-    /// unit size.
-    fn difference(&mut self, sample: &[f64], time: f64, scales: &[f64], slots: [usize; BEFORE]) -> f64 {
-        let times = slots.map(|slot| self.times[slot]);
-        let weights: [f64; BEFORE] = std::array::from_fn(|i| {
-            (0..BEFORE).filter(|k| *k != i).map(|k| (time - times[k]) / (times[i] - times[k])).product()
+    /// Root mean square over the entries of the difference to the polynomial through the `latest` N samples, divided by its
+    /// standard deviation for noise of unit size.
+    fn difference<const N: usize>(&mut self, sample: &[f64], time: f64, scales: &[f64], latest: &[usize]) -> f64 {
+        let times: [f64; N] = std::array::from_fn(|i| self.times[latest[i]]);
+        let weights: [f64; N] = std::array::from_fn(|i| {
+            (0..N).filter(|k| *k != i).map(|k| (time - times[k]) / (times[i] - times[k])).product()
         });
         let variance = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
         let square = |j: usize| -> f64 {
             let extrapolated: f64 =
-                slots.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
+                latest.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
             if scales[j].is_finite() { ((sample[j] - extrapolated) / scales[j]).powi(2) } else { 0.0 }
         };
         let squares: Point = (0..sample.len()).map(square).collect();
@@ -94,9 +106,8 @@ impl NoiseLevel {
     }
 
     fn update(&mut self) {
-        let mut sorted = self.differences;
-        let (_, median, _) = sorted.select_nth_unstable_by(WINDOW / 2, f64::total_cmp);
-        let median = *median / MEDIAN_OF_NORMAL;
+        let median = |mut sorted: [f64; WINDOW]| *sorted.select_nth_unstable_by(WINDOW / 2, f64::total_cmp).1;
+        let median = self.differences.map(median).into_iter().fold(f64::INFINITY, f64::min) / MEDIAN_OF_NORMAL;
         self.level = if median > RISE * self.level { median } else { self.level + (median - self.level) / AVERAGED };
     }
 }
@@ -129,6 +140,12 @@ mod tests {
             let measured = level(noise, |time| 0.3 * (0.02 * time).sin());
             assert!((0.7..1.4).contains(&(measured / noise)), "{measured} {noise}");
         }
+    }
+
+    #[test]
+    fn a_motion_of_few_samples_a_turn_is_hardly_noise() {
+        // Its third difference is 7e-5.
+        assert!(level(0.0, |time| 0.01 * (0.2 * time).sin()) < 5e-6);
     }
 
     #[test]

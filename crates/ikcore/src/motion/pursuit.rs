@@ -1,20 +1,33 @@
 //! The change of each joint towards a moving goal, inside its reachable set.
 //!
-//! Relative to the goal, a joint follows a linear law with a double pole at 1 - 1/m for a memory of m ticks, which adds no
-//! more noise than the filter of the goal lets through. The law is slow, so it applies only as long as the fastest stop
-//! after it would end within the noise around the goal. Otherwise the change is the one after which the stop ends at the
-//! edge of the noise: that is the time-optimal way. Without noise the edge is the goal, and the joint arrives exactly.
+//! Relative to the goal, a joint follows a linear law with a double pole at 1 - 1/p. The time p, in ticks, is a part of the
+//! memory of the goal, less far from the goal, and no shorter than the jerk limit allows with its noise: the law then adds
+//! little to the noise that the goal has. It is slow, so it applies only as long as the fastest stop after it would end
+//! within the noise around the goal. Otherwise the change is the one after which the stop ends at the edge of the noise:
+//! that is the time-optimal way. Without noise the edge is the goal, and the joint arrives exactly.
 //!
 //! A goal far away is approached by all joints in proportion: the limits of each are scaled by its share of the way.
 
 use super::bracket::largest_not_positive;
 use super::braking::longest_first;
-use super::moving_goal::{MovingGoal, Scales};
-use super::{Braking, JointState};
+use super::moving_goal::MovingGoal;
+use super::{Braking, JointState, Scales};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.
 const EDGE: f64 = 4.0;
+
+/// A joint aims at the goal itself, not at the edge, where its stop is longer than this fraction of the edge.
+const FAST: f64 = 0.125;
+
+/// Time of the linear law, as a fraction of the memory of the goal.
+const SHARPER: f64 = 0.35;
+
+/// So many standard deviations of the goal away, the linear law takes half the time.
+const NEAR: f64 = 3.0;
+
+/// A correction of the goal by its noise may change the change of the linear law by this fraction of the jerk limit.
+const JERK_SHARE: f64 = 0.125;
 
 /// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
 const FAR: f64 = 16.0;
@@ -48,7 +61,7 @@ impl Pursuit<'_> {
     /// Writes the configuration at the end of the tick of an arm that is at `q` in `state`.
     pub fn write(&self, q: &[f64], state: &JointState, out: &mut [f64]) {
         let shares = self.shares(q);
-        let pole = 1.0 - 1.0 / self.goal.memory();
+        let (slowest, quickest) = self.law_times();
         for j in 0..q.len() {
             let goal_step = self.goal.step()[j];
             // Far from the goal its acceleration does not count, but its noise would.
@@ -63,10 +76,23 @@ impl Pursuit<'_> {
             let acceleration = (shares.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
             let braking = Braking { acceleration, jerk: shares.jerk[j] * jerk };
             let scale = self.scales.change[j];
-            let edge = if scale.is_finite() { EDGE * self.goal.uncertainty_of(j) * scale } else { 0.0 };
-            out[j] = straight + relative.change(&braking, pole, edge, shares.step[j] * self.scales.step[j]);
+            let noise = if scale.is_finite() { self.goal.uncertainty_of(j) * scale } else { 0.0 };
+            let law = if noise > 0.0 {
+                let away = relative.distance / (NEAR * noise);
+                (1.0 + (slowest - 1.0) / (1.0 + away * away)).max(quickest)
+            } else {
+                slowest
+            };
+            out[j] = straight + relative.change(&braking, law, EDGE * noise, shares.step[j] * self.scales.step[j]);
         }
         self.reachable.clip(out);
+    }
+
+    /// Longest and shortest time of the linear law, in ticks.
+    fn law_times(&self) -> (f64, f64) {
+        let memory = self.goal.memory();
+        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_share)).sqrt().min(memory).max(1.0);
+        ((SHARPER * memory).max(quickest), quickest)
     }
 
     /// The share of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
@@ -102,25 +128,27 @@ struct Shares {
 }
 
 impl Relative {
-    /// The change of the joint, relative to the goal.
-    fn change(&self, braking: &Braking, pole: f64, edge: f64, fastest: f64) -> f64 {
+    /// The change of the joint, relative to the goal. `law` is the time of the linear law.
+    fn change(&self, braking: &Braking, law: f64, edge: f64, fastest: f64) -> f64 {
         let [least, most] = self.changes;
         let toward = |speed: f64| if speed >= 0.0 { longest_first(speed, braking.jerk) } else { speed };
         let [least, most] =
             [least.max(-toward(fastest + self.step)).min(most), most.min(toward(fastest - self.step)).max(least)];
+        let pole = 1.0 - 1.0 / law;
         let linear = -(1.0 - pole).powi(2) * self.distance - (1.0 - pole * pole) * self.step;
         let linear = linear.clamp(least.min(most), most);
         let end = |change: f64| {
             let step = self.step + change;
             self.distance + step + braking.stop(step, change).end
         };
-        // An arm that is still fast aims at the goal itself.
-        let edge = (edge - braking.stop(self.step, 0.0).end.abs()).max(0.0);
+        let slack = |edge: f64| (edge - braking.stop(self.step, 0.0).end.abs() / FAST).max(0.0);
+        let edge = if edge > 0.0 { slack(edge) } else { 0.0 };
         let there = end(linear);
         if there > edge {
-            largest_not_positive([least, linear], |change| end(change) - edge).unwrap_or(least)
+            largest_not_positive(least, [linear, there - edge], |change| end(change) - edge).unwrap_or(least)
         } else if there < -edge {
-            -largest_not_positive([-most, -linear], |change| -end(-change) - edge).unwrap_or(-most)
+            let excess = |change: f64| -end(-change) - edge;
+            -largest_not_positive(-most, [-linear, -there - edge], excess).unwrap_or(-most)
         } else {
             linear
         }

@@ -243,12 +243,13 @@ impl<'a> Scene<'a> {
         placement.update(self.robot, &self.bodies.carried, q);
     }
 
+    #[inline]
     fn placed<'b>(&'b self, body: usize, placement: &'b Placement) -> PlacedBody<'b> {
         let carried = &self.bodies.carried[body];
         carried.placed(&placement.segments[body], &placement.frames[carried.stages])
     }
 
-    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`; to 1e-7 of it
+    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`; to 1e-7 m
     /// for bodies that are no capsules.
     pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
         match pair {

@@ -36,6 +36,7 @@ impl Robot {
 
 impl Carried {
     /// The body where the axis of its capsule is `axis` and the element that carries it is at `frame`.
+    #[inline]
     pub fn placed<'a>(&'a self, axis: &'a LineSegment, frame: &Frame) -> PlacedBody<'a> {
         let solid = self.solid.as_ref().map(|(shape, offset)| (shape, frame.then::<NoFma>(offset)));
         PlacedBody { axis, radius: self.radius, solid }

@@ -12,7 +12,7 @@ use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::parts::Parts;
 use super::stance::Stance;
-use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm, PoseFamily};
+use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::Chain;
@@ -240,11 +240,20 @@ impl Robot {
         self.closed_form_or_reason().as_ref().ok()?.solve(&self.at_flange(pose))
     }
 
+    /// The same unless forward kinematics says otherwise, at less cost where that is possible; none without a closed form and for
+    /// redundant arms.
+    pub(crate) fn likely_branches(&self, pose: &Frame) -> ArmConfigurations {
+        match self.closed_form_or_reason() {
+            Ok(form) => form.likely(&self.at_flange(pose)),
+            Err(_) => ArmConfigurations::none(),
+        }
+    }
+
     /// All configurations of a redundant arm that bring the tip to `pose`, by one parameter; None without a closed form and for arms
     /// that are not redundant.
     pub(crate) fn family(&self, pose: &Frame) -> Option<PoseFamily<'_>> {
         let form = self.closed_form_or_reason().as_ref().ok()?;
-        if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
+        if form.is_redundant() { form.family(&self.at_flange(pose)) } else { None }
     }
 
     /// Whether the closed form takes no longer than a search; None without one.
@@ -261,7 +270,8 @@ impl Robot {
     fn closed_form_or_reason(&self) -> &std::result::Result<ClosedFormArm, NoClosedForm> {
         self.closed_form.get_or_init(|| {
             let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
-            ClosedFormArm::new(&chain, self.dof(), self.task_rank().pose)
+            let (lower, upper): (Vec<_>, Vec<_>) = self.sampling_ranges().into_iter().unzip();
+            ClosedFormArm::new(&chain, [&lower, &upper], self.task_rank().pose)
         })
     }
 

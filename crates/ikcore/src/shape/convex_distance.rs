@@ -37,7 +37,7 @@ impl Gap {
     }
 }
 
-/// The gap between two sets: at most the truth, and exact to about 1e-7 of it where it is below `enough`.
+/// The gap between two sets: at most the truth, and exact to about 1e-7 m where it is below `enough`.
 pub(super) fn gap(own: &Convex, other: &Convex, enough: f64) -> Gap {
     let radii = own.radius() + other.radius();
     let (here, there) = (own.support(&Vector3::x()), other.support(&Vector3::x()));

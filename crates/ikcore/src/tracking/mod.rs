@@ -16,7 +16,7 @@
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
-//! | `target_stream`, `target_filter` | targets as they arrive: stamps, timeout, filters |
+//! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
@@ -31,6 +31,7 @@ mod limited_motion;
 mod model_free;
 mod plant;
 mod record;
+mod repeated_targets;
 mod rule;
 mod session;
 mod step;

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
+use super::repeated_targets::RepeatedTargets;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::step::Step;
 use super::target_stream::{Arrival, TargetStream};
@@ -64,7 +65,10 @@ impl Session {
         options.check_goals(robot)?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
-        let targets = TargetStream::new(options.target_filter, options.timeout)?;
+        let limited = LimitedMotion::new(&limits, dt);
+        let running = options.rule.start(limited.is_some());
+        let repeated = running.extrapolates().then(|| RepeatedTargets::new(dt));
+        let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
         if criterion.region.is_some() {
             require_room_to_stop(&limits)?;
         }
@@ -74,11 +78,10 @@ impl Session {
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
-        let limited = LimitedMotion::new(&limits, dt);
         Ok(Self {
             robot,
             tick_box: TickBox::around(start, &limits),
-            running: options.rule.start(limited.is_some()),
+            running,
             limited,
             limits,
             limit_at: options.limit_at,
@@ -255,6 +258,7 @@ impl Session {
     fn begin_stopping(&mut self) {
         self.stopping = true;
         self.running.forget();
+        self.targets.expect_new();
     }
 
     fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {

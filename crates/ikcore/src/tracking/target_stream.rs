@@ -1,5 +1,6 @@
 //! Targets as they arrive: their ages, the filter, and the timeout.
 
+use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::task::Target;
@@ -23,6 +24,8 @@ pub struct Arrival {
 pub(super) struct TargetStream {
     filter: Option<RunningFilter>,
     timeout: Option<f64>,
+    /// For rules that extrapolate.
+    repeated: Option<RepeatedTargets>,
     /// The last target and its velocity.
     last: Option<(Target, Option<[f64; 3]>)>,
     /// Those at the end of the previous tick.
@@ -33,15 +36,15 @@ pub(super) struct TargetStream {
 }
 
 impl TargetStream {
-    /// No target yet.
+    /// No target yet. `repeated` says which targets are no new ones.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a setting of the filter or a timeout that is not positive.
-    pub fn new(filter: Option<TargetFilter>, timeout: Option<f64>) -> Result<Self> {
+    pub fn new(filter: Option<TargetFilter>, timeout: Option<f64>, repeated: Option<RepeatedTargets>) -> Result<Self> {
         timeout.map_or(Ok(()), |timeout| require_positive("timeout", timeout))?;
         filter.map_or(Ok(()), |filter| filter.validate())?;
         let filter = filter.map(RunningFilter::new);
-        Ok(Self { filter, timeout, last: None, before: None, measured: f64::NEG_INFINITY, arrived: 0.0 })
+        Ok(Self { filter, timeout, repeated, last: None, before: None, measured: f64::NEG_INFINITY, arrived: 0.0 })
     }
 
     /// The last target, filtered.
@@ -66,7 +69,7 @@ impl TargetStream {
     }
 
     /// Takes the target that arrived in the tick that ends at `time` (s). Returns its age then (s); `None` without a target
-    /// or for one that was measured before the last one.
+    /// or for one that was measured before the last one or repeats it.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
@@ -84,6 +87,9 @@ impl TargetStream {
         self.arrived = time;
         // The target of a tick that was interrupted is replaced by the next one.
         if measured < self.measured || stamp.is_some() && measured == self.measured {
+            return Ok(None);
+        }
+        if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(&target, time)) {
             return Ok(None);
         }
         let interval = measured - self.measured;
@@ -106,11 +112,19 @@ impl TargetStream {
         self.before = self.last;
     }
 
+    /// The next target is new, even if it equals the last one.
+    pub fn expect_new(&mut self) {
+        if let Some(repeated) = &mut self.repeated {
+            repeated.forget();
+        }
+    }
+
     /// Forgets all targets; the clock starts at zero.
     pub fn clear(&mut self) {
         (self.last, self.before, self.measured, self.arrived) = (None, None, f64::NEG_INFINITY, 0.0);
         if let Some(filter) = &mut self.filter {
             filter.clear();
         }
+        self.expect_new();
     }
 }

@@ -8,7 +8,7 @@ mod sampling;
 mod sinusoid;
 
 pub use joint_limits::PyLimits;
-pub use of_call::{limits_of_call, limits_without_robot};
+pub use of_call::{limits_of_call, limits_without_robot, required_limits};
 pub use per_joint::PerJoint;
 pub use sampling::Sampling;
 pub use sinusoid::PySinusoid;

@@ -9,7 +9,7 @@ use pyo3::types::PyTuple;
 use super::violation::PyViolation;
 use crate::convert::table;
 use crate::error::raise;
-use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::limits::{PyLimits, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
@@ -102,12 +102,13 @@ impl PyPlan {
     ///     limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
     ///
     /// Raises:
+    ///     TypeError: limits that are no `Limits`.
     ///     InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
     ///         acceleration jumps.
     ///     UnsupportedLimit: limits that vary in time.
-    fn retime(&self, py: Python<'_>, limits: &PyLimits) -> PyResult<Self> {
+    fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let robot = self.robot.bind(py);
-        let (in_force, resolved) = limits_of_call(py, Some(limits), robot.get(), &Sampling::once())?;
+        let (in_force, resolved) = limits_of_call(py, Some(required_limits(limits)?), robot.get(), &Sampling::once())?;
         let arm = robot.get().core.clone();
         let retimed = long_call(py, || self.core.retime(&arm, resolved.as_ref()))?;
         Self::new(retimed, robot, in_force, self.obstacles.clone_ref(py))

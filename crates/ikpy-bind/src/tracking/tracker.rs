@@ -94,8 +94,9 @@ impl PyTracker {
     ///
     /// Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
     /// model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
-    /// otherwise the arm goes on towards the last target. A target that is not finite raises an error, after which the tracker
-    /// is as before.
+    /// otherwise the arm goes on towards the last target. A loop may also pass the last target again in each tick until the
+    /// next one comes: for two intervals of a stream of 10 Hz or more, the same target again counts as None. A target that is
+    /// not finite raises an error, after which the tracker is as before.
     ///
     /// Args:
     ///     target: target of the tip at the end of the tick; None: no new one.

@@ -7,9 +7,11 @@ mod residuals;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{BranchError, Branches, Candidates};
+use crate::closed_form::configurations::Sets;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
-use residuals::{FixedFrames, LANES};
+use residuals::FixedFrames;
+pub use residuals::LANES;
 
 /// Every branch brings the tip nearer to the pose than this (m, rad): entries within [`polish::TOLERANCE`].
 pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
@@ -71,6 +73,19 @@ impl<const N: usize> Verifier<N> {
         found
     }
 
+    /// Writes the joint values of candidates, unverified.
+    #[inline(always)]
+    fn write_values<A: Arithmetic>(&self, candidates: &Candidates<N>, sets: &mut Sets) {
+        let mut first = 0;
+        while first < candidates.count {
+            let angles = angles::angles::<A, N>(&self.slides, candidates, first);
+            for lane in 0..LANES {
+                (0..N).for_each(|k| sets[first + lane][k] = angles[k][lane]);
+            }
+            first += LANES;
+        }
+    }
+
     #[inline(always)]
     fn accept(&self, target: &Frame, residual: f64, set: [f64; N], error: BranchError, found: &mut Branches<N>) {
         if residual <= GOOD {
@@ -86,6 +101,20 @@ impl<const N: usize> Verifier<N> {
             Some((set, error)) => push_new(set, error, &self.slides, found),
             None => found.nearly = true,
         }
+    }
+}
+
+by_instructions! {
+    /// Writes the joint values of candidates, unverified.
+    pub fn values_of_six(verifier: &Verifier<6>, candidates: &Candidates<6>, sets: &mut Sets) {
+        verifier.write_values::<A>(candidates, sets);
+    }
+}
+
+by_instructions! {
+    /// The same for seven joints.
+    pub fn values_of_seven(verifier: &Verifier<7>, candidates: &Candidates<7>, sets: &mut Sets) {
+        verifier.write_values::<A>(candidates, sets);
     }
 }
 

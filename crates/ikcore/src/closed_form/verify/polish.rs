@@ -88,29 +88,64 @@ fn jacobian<const N: usize>(chain: &AxisChain<N>, q: &[f64; N]) -> (Frame, [[f64
     (tip, columns)
 }
 
-/// (J'J + damping) step = J'error, by Cholesky's method.
+/// The damped step: (J'J + damping) step = J'error, or J'(JJ' + damping)^-1 error, whichever is the smaller system: the larger one
+/// is singular.
 fn damped_step<const N: usize>(columns: &[[f64; 6]; N], error: &[f64; 6], damping: f64) -> [f64; N] {
-    let product = |a: &[f64; 6], b: &[f64; 6]| (0..6).map(|k| a[k] * b[k]).sum::<f64>();
+    let along = |v: &[f64; 6]| columns.map(|column| (0..6).map(|k| column[k] * v[k]).sum::<f64>());
+    if N <= 6 {
+        let entry = |i: usize, j: usize| (0..6).map(|k| columns[i][k] * columns[j][k]).sum();
+        return solved(entry, damping, along(error));
+    }
+    let entry = |i: usize, j: usize| columns.iter().map(|column| column[i] * column[j]).sum();
+    along(&solved(entry, damping, *error))
+}
+
+/// (A + damping)^-1 b by Cholesky's method.
+fn solved<const N: usize>(a: impl Fn(usize, usize) -> f64, damping: f64, b: [f64; N]) -> [f64; N] {
     let mut factor = [[0.0; N]; N];
-    let mut step: [f64; N] = std::array::from_fn(|k| product(&columns[k], error));
+    let mut x = b;
     for i in 0..N {
         for j in 0..=i {
-            let mut sum = product(&columns[i], &columns[j]) + if i == j { damping } else { 0.0 };
+            let mut sum = a(i, j) + if i == j { damping } else { 0.0 };
             for k in 0..j {
                 sum -= factor[i][k] * factor[j][k];
             }
             factor[i][j] = if i == j { sum.max(1e-30).sqrt() } else { sum / factor[j][j] };
         }
         for k in 0..i {
-            step[i] -= factor[i][k] * step[k];
+            x[i] -= factor[i][k] * x[k];
         }
-        step[i] /= factor[i][i];
+        x[i] /= factor[i][i];
     }
     for i in (0..N).rev() {
         for k in i + 1..N {
-            step[i] -= factor[k][i] * step[k];
+            x[i] -= factor[k][i] * x[k];
         }
-        step[i] /= factor[i][i];
+        x[i] /= factor[i][i];
     }
-    step
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::redundant::tests::{PANDA, random_angles};
+    use super::*;
+
+    #[test]
+    fn a_redundant_arm_moves_as_little_as_it_must() {
+        let chain = AxisChain::of_rows(&PANDA);
+        for mut q in random_angles(100) {
+            // Away from singular configurations.
+            (q[3], q[5]) = (-1.5 + 0.3 * q[3], 1.5 + 0.3 * q[5]);
+            let start: [f64; 7] = std::array::from_fn(|k| q[k] + 1e-4 * (k as f64 - 3.0));
+            let mut evaluations = 0;
+            let (found, error) = polished(&chain, &chain.tip_at(&q), start, &mut evaluations).expect("it is near");
+            let moved = |to: &[f64; 7]| {
+                let off = |k: usize| wrapped(to[k] - start[k]);
+                (0..7).map(|k| off(k) * off(k)).sum::<f64>().sqrt()
+            };
+            assert!(error.position < 1e-10 && error.rotation < 1e-10 && evaluations < 8, "{evaluations}");
+            assert!(moved(&found) < 1.01 * moved(&q), "{} {}", moved(&found), moved(&q));
+        }
+    }
 }

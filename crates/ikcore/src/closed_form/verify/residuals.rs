@@ -2,7 +2,7 @@
 
 use crate::closed_form::axis_chain::AxisChain;
 use crate::closed_form::branches::{BranchError, Candidates};
-use crate::closed_form::vector::{Vector, cross, perpendicular};
+use crate::closed_form::vector::{Vector, across};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::arithmetic::Baseline;
@@ -112,8 +112,7 @@ fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
 
 /// A frame at `point` whose z axis is `axis`.
 fn along(axis: &Vector, point: &Vector) -> Frame {
-    let x = perpendicular(axis);
-    Frame { axes: [x, cross(axis, &x), *axis], origin: *point }
+    Frame { axes: across(axis), origin: *point }
 }
 
 #[inline(always)]

@@ -44,11 +44,10 @@ impl ClearSearch<'_, '_, '_> {
 
     fn of_family(&mut self, family: &PoseFamily<'_>, preference: &Preference) -> BranchOutcome {
         let [lower, upper] = self.attempt.context.sampling_ranges();
+        let limits = family.limits(lower, upper);
         let half_the_budget = self.attempt.budget.left() / 2;
-        for (k, value) in family.arcs(&lower, &upper).scattered(SCANNED).enumerate() {
-            let branches = family.branches_at(value);
-            self.attempt.budget.evaluations += branches.evaluations;
-            if let Some(q) = self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
+        for (k, value) in family.arcs(&limits).scattered(SCANNED).enumerate() {
+            if let Some(q) = self.first_clear(preference, family.likely_at(value, &limits).iter()) {
                 return Some(Ok(q));
             }
             if self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
@@ -77,6 +76,7 @@ impl ClearSearch<'_, '_, '_> {
         configurations: impl Iterator<Item = &'q [f64]>,
     ) -> Option<Point> {
         preference.ordered(configurations).into_iter().find(|q| {
+            self.attempt.budget.evaluations += 1;
             let is_solved = self.attempt.problem.assess(q).score.solved;
             is_solved && self.is_clear(q)
         })

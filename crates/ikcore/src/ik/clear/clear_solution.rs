@@ -3,7 +3,6 @@
 use super::clear_search::{ClearSearch, Exhausted, Found};
 use crate::ik::attempt::Attempt;
 use crate::ik::first_branch::by_closed_form;
-use crate::ik::preference::Preference;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::solve_options::Prefer;
 use crate::objective::Point;
@@ -55,7 +54,7 @@ impl ClearSearch<'_, '_, '_> {
             return Ok(q);
         }
         let context = self.attempt.context;
-        match self.by_branches(&Preference::new(context, start)) {
+        match self.by_branches(&context.preference(start)) {
             Some(Ok(q)) => return Ok(q),
             Some(Err(exhausted)) => {
                 if let Some(solution) = self.in_collision(exhausted) {
@@ -99,7 +98,7 @@ impl ClearSearch<'_, '_, '_> {
     fn nearest_to(&mut self, start: &[f64]) -> Found {
         let context = self.attempt.context;
         if context.robot().dof() <= context.robot().task_rank().pose {
-            match self.by_branches(&Preference::new(context, Some(start))) {
+            match self.by_branches(&context.preference(Some(start))) {
                 Some(Ok(q)) => return Ok(q),
                 Some(Err(exhausted)) => {
                     if let Some(solution) = self.in_collision(exhausted) {

@@ -23,7 +23,7 @@ pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count
     };
     let (lower, upper) = (limits(bounds.lower(), f64::NEG_INFINITY), limits(bounds.upper(), f64::INFINITY));
     let mut seeds = Vec::new();
-    for value in family.arcs(&lower, &upper).spread(count) {
+    for value in family.arcs(&family.limits(&lower, &upper)).spread(count) {
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
         seeds.extend(branches.iter().map(|(q, _)| Point::from_slice(q)));

@@ -32,7 +32,8 @@ pub(super) const PANDA: Arm = Arm {
     flange: FLANGE,
 };
 
-/// Franka Research 3: the geometry of the Panda with its own joint limits, up to jerk; same document.
+/// Franka Research 3: the geometry of the Panda with its own joint limits, up to jerk; same document (its table for the FR3), and
+/// `rate_limiting.h` of libfranka 0.10 and later, which has the same accelerations and jerks.
 pub(super) const FR3: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,

@@ -1,0 +1,65 @@
+//! Limits of a joint as a test of cosine and sine, before any arctangent is taken.
+
+use std::f64::consts::PI;
+
+use super::angle::Angle;
+
+/// Polishing may move a candidate by so much (rad): double roots are kept up to there, see [`super::subproblem::CLAMP`].
+const SLACK: f64 = 0.03;
+
+/// The angles from one limit to another and a little beyond, whole turns aside.
+#[derive(Debug, Clone, Copy)]
+pub struct AngleRange {
+    middle: Angle,
+    /// Least cosine of an angle's distance from the middle.
+    least: f64,
+}
+
+impl AngleRange {
+    /// All angles.
+    pub const ANY: Self = Self { middle: Angle { cos: 0.0, sin: 0.0 }, least: -1.0 };
+
+    /// Between limits (rad).
+    pub fn of([lower, upper]: [f64; 2]) -> Self {
+        let half = 0.5 * (upper - lower);
+        if half < PI { Self { middle: Angle::by(lower + half), least: half.cos() - SLACK } } else { Self::ANY }
+    }
+
+    /// False only for angles that no branch within the limits is near.
+    #[inline(always)]
+    pub fn may_hold(&self, angle: &Angle) -> bool {
+        self.middle.cos * angle.cos + self.middle.sin * angle.sin >= self.least
+    }
+}
+
+/// Whether each of these angles may be within its limits.
+#[inline(always)]
+pub fn may_hold(ranges: &[AngleRange], angles: &[Angle]) -> bool {
+    ranges.iter().zip(angles).all(|(range, angle)| range.may_hold(angle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holds_what_lies_between_the_limits_and_little_else() {
+        for limits in [[-2.9, 2.9], [-3.07, -0.07], [-0.02, 3.75], [2.0, 2.0], [5.0, 7.0]] {
+            let range = AngleRange::of(limits);
+            for k in -700..700 {
+                let q = 0.01 * f64::from(k);
+                let near = |by: f64| {
+                    [-2.0, -1.0, 0.0, 1.0, 2.0].iter().any(|turn| {
+                        let q = q + turn * 2.0 * PI;
+                        limits[0] - by <= q && q <= limits[1] + by
+                    })
+                };
+                let held = range.may_hold(&Angle::by(q));
+                assert!(held || !near(0.0), "{limits:?} {q}");
+                assert!(!held || near(0.3), "{limits:?} {q}");
+            }
+        }
+        assert!(AngleRange::of([-4.0, 4.0]).may_hold(&Angle::by(3.0)));
+        assert!(AngleRange::of([f64::NEG_INFINITY, f64::INFINITY]).may_hold(&Angle::by(3.0)));
+    }
+}

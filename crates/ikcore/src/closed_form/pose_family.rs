@@ -1,0 +1,170 @@
+//! All configurations of a redundant arm for one pose, as a function of one parameter.
+
+use crate::closed_form::arm_branches::ArmBranches;
+use crate::closed_form::branches::Candidates;
+use crate::closed_form::configurations::{ArmConfigurations, Drives};
+use crate::closed_form::parameter_arcs::ParameterArcs;
+use crate::closed_form::redundant::{AxisLimits, Parameter, Redundant, RedundantPose};
+use crate::closed_form::verify::{LANES, values_of_seven};
+use crate::math::Frame;
+
+/// A redundant arm and a pose.
+#[derive(Debug, Clone)]
+pub(crate) struct PoseFamily<'a> {
+    redundant: &'a Redundant,
+    drives: &'a Drives,
+    /// The limits of the arm itself.
+    own: &'a FamilyLimits,
+    pose: RedundantPose,
+}
+
+/// Limits of the joints of a redundant arm, prepared for any pose.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FamilyLimits(AxisLimits);
+
+impl FamilyLimits {
+    /// The limits `lower` and `upper` (n,) (rad, m).
+    pub fn new(redundant: &Redundant, drives: &Drives, [lower, upper]: [&[f64]; 2]) -> Self {
+        Self(redundant.limits(drives.of_axes(lower, upper)))
+    }
+}
+
+impl<'a> PoseFamily<'a> {
+    /// The arm with the tip of its chain at `target`.
+    pub fn new(redundant: &'a Redundant, drives: &'a Drives, own: &'a FamilyLimits, target: &Frame) -> Self {
+        Self { redundant, drives, own, pose: redundant.pose(target) }
+    }
+
+    /// The limits `lower` and `upper` (n,) (rad, m).
+    pub fn limits(&self, lower: &[f64], upper: &[f64]) -> FamilyLimits {
+        let is_own = self.own.0.axes == self.drives.of_axes(lower, upper);
+        if is_own { *self.own } else { FamilyLimits::new(self.redundant, self.drives, [lower, upper]) }
+    }
+
+    /// The values of the parameter (rad, m) outside which no configuration is within limits. What they leave is to be searched: not
+    /// every value has a configuration within them.
+    pub fn arcs(&self, limits: &FamilyLimits) -> ParameterArcs {
+        self.redundant.arcs(&self.pose, &limits.0)
+    }
+
+    /// Whether the parameter is the arm angle: then every branch exists at every value.
+    pub fn is_by_arm_angle(&self) -> bool {
+        self.redundant.parameter() == Parameter::ArmAngle
+    }
+
+    /// All configurations with the parameter at `value`.
+    pub fn branches_at(&self, value: f64) -> ArmBranches {
+        ArmBranches::of(&self.redundant.solve(&self.pose, value), self.drives)
+    }
+
+    /// ArmConfigurations with the parameter at `value` that bring the tip to the pose unless forward kinematics says otherwise, at less
+    /// cost than [`Self::branches_at`]. All that are within the limits are among them.
+    pub fn likely_at(&self, value: f64, limits: &FamilyLimits) -> ArmConfigurations {
+        if !self.redundant.has_exact_candidates() {
+            return self.branches_at(value).into_configurations();
+        }
+        let mut candidates = Candidates::new();
+        self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
+        let verifier = self.redundant.verifier();
+        ArmConfigurations::new(self.drives, candidates.count, |sets| values_of_seven(verifier, &candidates, sets))
+    }
+
+    /// Calls `visit` with configurations at each of `values`, several values together, until it returns false. All that are within
+    /// the limits are among them.
+    pub fn visit_within(
+        &self,
+        limits: &FamilyLimits,
+        values: impl Iterator<Item = f64>,
+        mut visit: impl FnMut(&ArmBranches) -> bool,
+    ) {
+        if !self.redundant.has_exact_candidates() {
+            values.map(|value| self.branches_at(value)).all(|branches| visit(&branches));
+            return;
+        }
+        let mut candidates = Candidates::new();
+        for value in values {
+            self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
+            // There is room for those of one value more.
+            if candidates.count > LANES && !visit(&self.first_verified(&mut candidates)) {
+                return;
+            }
+        }
+        while candidates.count > 0 && visit(&self.first_verified(&mut candidates)) {}
+    }
+
+    /// Removes as many candidates as are verified together.
+    fn first_verified(&self, candidates: &mut Candidates<7>) -> ArmBranches {
+        let all = candidates.count;
+        candidates.count = all.min(LANES);
+        let verified = ArmBranches::of(&self.redundant.verified(&self.pose, candidates), self.drives);
+        let count = candidates.count;
+        candidates.count = all;
+        candidates.remove_first(count);
+        verified
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::redundant::tests::{IIWA14, PANDA, random_angles};
+    use super::*;
+    use crate::closed_form::axis_chain::AxisChain;
+
+    const LIMITS: [[f64; 7]; 2] = [[-2.9, -1.8, -2.9, -3.07, -2.9, -0.1, -2.9], [2.9, 1.8, 2.9, -0.07, 2.9, 3.75, 2.9]];
+
+    fn is_inside(q: &[f64]) -> bool {
+        q.iter().zip(LIMITS[0]).zip(LIMITS[1]).all(|((q, lower), upper)| {
+            let turned = [-1.0, 0.0, 1.0].map(|turn| q + turn * std::f64::consts::TAU);
+            turned.iter().any(|q| lower <= *q && *q <= upper)
+        })
+    }
+
+    fn is_among<'q>(q: &[f64], mut all: impl Iterator<Item = &'q [f64]>) -> bool {
+        all.any(|other| q.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-6))
+    }
+
+    #[test]
+    fn nothing_within_the_limits_is_lost_and_all_is_verified() {
+        for rows in [PANDA, IIWA14] {
+            let chain = AxisChain::of_rows(&rows);
+            let redundant = Redundant::new(&chain).expect("a method");
+            let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+            let limits = FamilyLimits::new(&redundant, &drives, [&LIMITS[0], &LIMITS[1]]);
+            let mut inside = 0;
+            for mut q in random_angles(50) {
+                (0..7).for_each(|k| q[k] = q[k].clamp(LIMITS[0][k], LIMITS[1][k]));
+                let family = PoseFamily::new(&redundant, &drives, &limits, &chain.tip_at(&q));
+                let values: Vec<f64> = family.arcs(&limits).spread(16).collect();
+                let mut visited = Vec::new();
+                family.visit_within(&limits, values.iter().copied(), |branches| {
+                    assert!(branches.iter().all(|(_, error)| error.position < 1e-9 && error.rotation < 1e-9));
+                    visited.extend(branches.iter().map(|(q, _)| q.to_vec()));
+                    true
+                });
+                for value in values {
+                    let (all, likely) = (family.branches_at(value), family.likely_at(value, &limits));
+                    for (q, _) in all.iter().filter(|(q, _)| is_inside(q)) {
+                        assert!(is_among(q, visited.iter().map(Vec::as_slice)) && is_among(q, likely.iter()), "{q:?}");
+                        inside += 1;
+                    }
+                }
+            }
+            assert!(inside > 500, "{inside}");
+        }
+    }
+
+    #[test]
+    fn a_visitor_ends_the_visits() {
+        let chain = AxisChain::of_rows(&IIWA14);
+        let redundant = Redundant::new(&chain).expect("a method");
+        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+        let limits = FamilyLimits::new(&redundant, &drives, [&[-3.2; 7], &[3.2; 7]]);
+        let family = PoseFamily::new(&redundant, &drives, &limits, &chain.tip_at(&[0.4; 7]));
+        let mut visits = 0;
+        family.visit_within(&limits, (0..100).map(|k| 0.06 * f64::from(k)), |_| {
+            visits += 1;
+            visits < 3
+        });
+        assert_eq!(visits, 3);
+    }
+}

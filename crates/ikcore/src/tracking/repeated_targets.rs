@@ -1,0 +1,86 @@
+//! Targets that a fast loop repeats until the next one arrives.
+//!
+//! A camera gives 60 targets a second and the loop runs at 500 Hz: a loop that passes the last target in every tick says
+//! nothing new. Taken for samples, the repetitions would be a target that stops, jumps and stops.
+
+use crate::task::Target;
+
+/// A target that stays this many intervals has stopped.
+const STOPPED: f64 = 2.0;
+
+/// Targets that change less often (s) are not a stream: each stands still until the next.
+const LONGEST_INTERVAL: f64 = 0.1;
+
+/// Recognises repetitions.
+#[derive(Debug)]
+pub(super) struct RepeatedTargets {
+    dt: f64,
+    last: Option<Target>,
+    /// When the target changed (s), and the time between changes.
+    changed: f64,
+    interval: f64,
+}
+
+impl RepeatedTargets {
+    /// In ticks of `dt` (s).
+    pub fn new(dt: f64) -> Self {
+        Self { dt, last: None, changed: f64::NEG_INFINITY, interval: f64::INFINITY }
+    }
+
+    /// Whether this target, which came at `time` (s), repeats the last one while the next is still to come.
+    pub fn is_repetition(&mut self, target: &Target, time: f64) -> bool {
+        let waited = time - self.changed;
+        if self.last == Some(*target) {
+            let stream = self.interval > 1.5 * self.dt && self.interval <= LONGEST_INTERVAL;
+            return stream && waited > 0.0 && waited <= STOPPED * self.interval;
+        }
+        self.interval = if self.interval.is_finite() { 0.5 * (self.interval + waited) } else { waited };
+        (self.last, self.changed) = (Some(*target), time);
+        false
+    }
+
+    /// Forgets the last target, so that the next one is new.
+    pub fn forget(&mut self) {
+        *self = Self::new(self.dt);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Which ticks repeat a target that changes every `every` ticks and stops at tick `stop`.
+    fn repetitions(every: usize, stop: usize) -> Vec<bool> {
+        let mut targets = RepeatedTargets::new(0.002);
+        let target = |tick: usize| Target::Position([(tick.min(stop) / every) as f64, 0.0, 0.0]);
+        (0..300).map(|tick| targets.is_repetition(&target(tick), 0.002 * tick as f64)).collect()
+    }
+
+    #[test]
+    fn a_slow_stream_repeats_until_it_stops() {
+        let found = repetitions(8, 48);
+        for tick in 9..300 {
+            let expected = if tick <= 48 { tick % 8 != 0 } else { tick < 64 };
+            // Rounding decides about the last tick of the second interval.
+            assert!(tick == 64 || found[tick] == expected, "tick {tick}");
+        }
+    }
+
+    #[test]
+    fn new_targets_in_every_tick_and_rare_ones_are_no_stream() {
+        assert!(!repetitions(1, 40).contains(&true));
+        assert!(!repetitions(60, 1000).contains(&true));
+    }
+
+    #[test]
+    fn after_forgetting_a_target_is_new() {
+        let mut targets = RepeatedTargets::new(0.002);
+        for tick in 0..20 {
+            targets.is_repetition(&Target::Position([f64::from(tick / 8), 0.0, 0.0]), 0.002 * f64::from(tick));
+        }
+        let last = Target::Position([2.0, 0.0, 0.0]);
+        assert!(targets.is_repetition(&last, 0.04));
+        targets.forget();
+        assert!(!targets.is_repetition(&last, 0.042));
+    }
+}
