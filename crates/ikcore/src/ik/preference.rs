@@ -81,7 +81,8 @@ impl Preference {
         let inside = configurations.filter_map(|q| self.cost(q).map(|cost| (cost, q)));
         let mut inside: SmallVec<[(f64, &[f64]); 16]> = inside.collect();
         inside.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let turned = |q: &[f64]| self.joints.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
+        let turned =
+            |q: &[f64]| self.joints.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
         inside.iter().filter_map(|(_, q)| turned(q)).collect()
     }
 
