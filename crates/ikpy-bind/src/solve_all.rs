@@ -4,6 +4,7 @@ use ikcore::ik::{self, AllOptions};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Target;
 use numpy::PyArrayDyn;
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyIterator, PyList};
@@ -101,13 +102,15 @@ impl PySolutionSet {
     /// Returns a `Solution`, or a list of them for a slice, a mask or several indices.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let solution = |i: usize| {
-            let found = self.core.solution(i).expect("an index that was checked");
-            PySolution::new(py, found, self.limits.clone_ref(py))
+            let found = self.core.solution(i);
+            let outside =
+                || PyIndexError::new_err(format!("index {i} is outside a set of {}", self.core.solutions.len()));
+            found.map(|found| PySolution::new(py, found, self.limits.clone_ref(py))).ok_or_else(outside)
         };
         match select("a set", index, self.core.solutions.len())? {
-            Selection::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
+            Selection::One(i) => Ok(Bound::new(py, solution(i)?)?.into_any()),
             Selection::Many(rows) => {
-                Ok(PyList::new(py, rows.into_iter().map(solution).collect::<Vec<_>>())?.into_any())
+                Ok(PyList::new(py, rows.into_iter().map(solution).collect::<PyResult<Vec<_>>>()?)?.into_any())
             }
         }
     }
