@@ -10,7 +10,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
 use crate::robot::Carried;
-use crate::shape::{BodyBlock, PlacedBody, Shape, ShapeIndex, clear_of_each_other};
+use crate::shape::{BodyBlock, BoundingBall, PlacedBody, Shape, ShapeIndex, clear_of_each_other};
 
 /// The bodies of a robot by moving element, and the pairs of them that must not touch.
 #[derive(Debug, Clone)]
@@ -27,6 +27,8 @@ pub(super) struct BodyGroups {
 #[derive(Debug, Clone)]
 pub(super) struct Others<'a> {
     pub obstacles: &'a [Shape],
+    /// Balls around them: centre and radius, infinite for a half-space.
+    balls: Vec<(Vector3<f64>, f64)>,
     /// Finds the obstacles near a ball, if there are many.
     index: Option<ShapeIndex>,
     /// The bodies of the robot itself, in the pairs that must not touch.
@@ -36,7 +38,17 @@ pub(super) struct Others<'a> {
 impl<'a> Others<'a> {
     /// `obstacles`, and the robot itself.
     pub fn new(obstacles: &'a [Shape]) -> Self {
-        Self { obstacles, index: ShapeIndex::of_many(obstacles), itself: true }
+        let ball = |shape: &Shape| {
+            let BoundingBall { center, radius } = shape.bounding_ball();
+            (center.into(), radius)
+        };
+        let balls = obstacles.iter().map(ball).collect();
+        Self { obstacles, balls, index: ShapeIndex::of_many(obstacles), itself: true }
+    }
+
+    /// Balls around the obstacles.
+    pub fn balls(&self) -> impl Iterator<Item = (Vector3<f64>, f64)> {
+        self.balls.iter().copied()
     }
 
     /// Whether one configuration at a time is faster: obstacles are then found by a tree.

@@ -257,9 +257,9 @@ impl<'a> Scene<'a> {
                 self.others.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
             }
             BodyPair::Bodies { near, far, .. } => {
-                let radii = self.bodies.carried[near].radius + self.bodies.carried[far].radius;
+                let reach = self.bodies.carried[near].reach + self.bodies.carried[far].reach;
                 let ([a, b], [c, d]) = (&placement.segments[near], &placement.segments[far]);
-                let apart = 0.5 * ((a + b - c - d).norm() - (a - b).norm() - (c - d).norm()) - radii;
+                let apart = 0.5 * (a + b - c - d).norm() - reach;
                 if apart > enough + 1e-9 {
                     return apart - 1e-9;
                 }

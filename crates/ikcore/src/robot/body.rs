@@ -22,13 +22,13 @@ pub struct Body {
 /// Where a body comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BodySource {
-    /// Given by [`with_capsules`](crate::Robot::with_capsules), or made along the links.
+    /// Given by [`with_capsules`](crate::robot::Robot::with_capsules), or made along the links.
     Given,
     /// A sphere, box, cylinder or capsule of the file.
     Primitive,
     /// This mesh, as the file names it.
     Mesh(String),
-    /// [Attached](crate::Robot::with_attached) to a link.
+    /// [Attached](crate::robot::Robot::with_attached) to a link.
     Attached,
 }
 

@@ -3,6 +3,7 @@
 use super::model::Robot;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::vector::distance;
 use crate::shape::{LineSegment, PlacedBody, Shape};
 
 /// A body of the robot, seen from the moving element that carries it.
@@ -15,6 +16,8 @@ pub(crate) struct Carried {
     pub ends: [[f64; 3]; 2],
     /// Radius of this capsule (m).
     pub radius: f64,
+    /// Radius of the ball around it (m).
+    pub reach: f64,
     /// Its shape and the frame in which it is given; `None` if it is the capsule.
     pub solid: Option<(Shape, Frame)>,
 }
@@ -28,7 +31,8 @@ impl Robot {
             let (stages, offset) = self.place_of_link_number(link);
             let ends = [capsule.a, capsule.b].map(|end| offset.place::<NoFma>(&end));
             let solid = (!body.is_capsule()).then(|| (body.shape.clone(), offset));
-            Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius, solid })
+            let reach = capsule.radius + 0.5 * distance(&ends[0], &ends[1]);
+            Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius, reach, solid })
         });
         bodies.collect()
     }
