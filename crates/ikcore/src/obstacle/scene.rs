@@ -160,15 +160,17 @@ impl<'a> Scene<'a> {
         self.fixed.map(|(distance, pair)| self.contact(pair, distance))
     }
 
-    /// The nearest pair of which one body is fixed to the tip, and the other does not move; `None` if there is none.
-    pub(super) fn nearest_of_hand(&self, q: &[f64]) -> Option<Contact> {
+    /// Of the pairs nearer than `margin` (m) with one body fixed to the tip and the other at rest the nearest; `None` if there is none.
+    pub(super) fn contact_of_hand(&self, q: &[f64], margin: f64) -> Option<Contact> {
         let placement = self.place(q);
         let hand = self.robot.tip_frame_number();
-        let is_hand = |pair: &BodyPair| {
-            let (_, own, other) = self.carriers_of(*pair);
-            own == hand && other == 0
+        let stages = |body: usize| self.bodies.carried[body].stages;
+        let is_of_hand = |pair: &BodyPair| match *pair {
+            BodyPair::Obstacle { body, .. } => stages(body) == hand,
+            BodyPair::Bodies { near, far, .. } => stages(near) == 0 && stages(far) == hand,
         };
-        let nearest = self.nearest_of(self.pairs().filter(is_hand), &placement);
+        let distances = self.pairs().filter(is_of_hand).map(|pair| (self.distance(pair, &placement, margin), pair));
+        let nearest = distances.filter(|(distance, _)| *distance < margin).min_by(|(a, _), (b, _)| a.total_cmp(b));
         nearest.map(|(distance, pair)| self.contact(pair, distance))
     }
 
