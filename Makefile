@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 .PHONY: help demo test test-rust test-python zoo lint lint-rust lint-python bench coverage docs papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
-unexport MAKEFLAGS
+unexport MAKEFLAGS MFLAGS
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
