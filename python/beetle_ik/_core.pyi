@@ -1408,6 +1408,7 @@ class LinkManipulability(Goal):
 
     def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
+@final
 class Clearance(Goal):
     """Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of bodies
     whose distance d is below `up_to`. For calls with `obstacles=` or `self_collision=True`, whose margin is kept besides.
