@@ -3,7 +3,7 @@ Solutions that keep clear of obstacles
 ======================================
 
 A pose on a shelf has a curve of solutions for an arm with seven joints. ``solve`` without obstacles takes one that
-hits the shelf; with ``obstacles=`` every body of the arm keeps a margin.
+hits the post beside it; with ``obstacles=`` every body of the arm keeps a margin.
 """
 
 import matplotlib.pyplot as plt
@@ -13,9 +13,9 @@ import beetle_ik as bik
 
 robot = bik.Robot.named("panda").with_capsules(radius=0.06)
 boards = [bik.obstacles.Box(center=(0.62, 0.0, z), size=(0.35, 0.9, 0.02)) for z in (0.25, 0.75)]
-post = bik.obstacles.Box(center=(0.35, -0.2, 0.5), size=(0.06, 0.06, 1.0))
+post = bik.obstacles.Box(center=(0.25, -0.3, 0.5), size=(0.06, 0.06, 1.0))
 scene = bik.Scene([*boards, post])
-target = bik.pose([0.55, 0.1, 0.5], rpy=[0.0, np.pi / 2, 0.0])
+target = bik.pose([0.55, 0.0, 0.5], rpy=[0.0, np.pi / 2, 0.0])
 
 through = bik.solve(robot, target)
 around = bik.solve(robot, target, obstacles=scene, margin=0.02)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _FROM_ABOVE = "#F3D58C"  # orange on white, without showing what is below
 _TOOL = 1e-9  # m: a shorter tool is none
-_SEEN_BEYOND = 0.3  # margin around the arm, as a fraction of its extent
+_SEEN_BEYOND = 0.5  # margin around the arm, as a fraction of its extent
 
 
 def draw_from_above(axes: Any, obstacles: Iterable[Obstacle]) -> None:
