@@ -123,10 +123,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
             }
             (None, _) => {
                 let count = self.blocked.count;
-                format!(
-                    "{} at the best of {count} solutions tried; a larger budget may find others",
-                    said(&nearest.contact)
-                )
+                format!("{} at the best of {count} solutions tried, and others may exist", said(&nearest.contact))
             }
         };
         let status = if exhausted == Exhausted::Interrupted { Status::Interrupted } else { Status::InCollision };
