@@ -12,15 +12,15 @@ use crate::task::{Goal, Goals};
 /// How far beyond the margin a configuration is pushed (m).
 const BEYOND: f64 = 5e-3;
 
-/// BlockedSolutions that are pushed where none is clear.
+/// How many blocked solutions are pushed where none is clear.
 const PUSHED: usize = 8;
 
-/// BlockedSolutions of one target.
+/// The search for a clear solution of one target.
 pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     pub attempt: &'s mut Attempt<'m, 'p>,
     pub space: &'p ClearSpace<'p>,
     blocked: BlockedSolutions,
-    /// What no motion of the arm ends.
+    /// The contact that no motion of the arm ends.
     hopeless: Option<Blocked>,
     push: Goals,
 }
