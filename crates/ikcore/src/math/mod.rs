@@ -8,7 +8,7 @@
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `gram`, `ldl`, `box_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, beside rows |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
@@ -28,6 +28,7 @@ pub mod one_joint;
 pub mod polynomial;
 pub mod pose;
 pub(crate) mod real;
+pub(crate) mod row_step;
 pub(crate) mod sampling_range;
 pub(crate) mod secant;
 pub(crate) mod sincos;

@@ -1,0 +1,396 @@
+//! The bounded step beside rows: damped least squares in a box, with linear inequalities.
+//!
+//! Minimises |residual + J (x - start)|^2 + lambda |x - start|^2 over `lower` <= x <= `upper` and rows g'x >= least. The dual is a
+//! least-squares problem in the multipliers, none of them negative, which the active-set method of Lawson and Hanson ("Solving
+//! Least Squares Problems", 1974, chapter 23) solves in finitely many exchanges. Rows are a little soft: if no point of the box keeps
+//! them all, each falls short by as little as the others allow.
+
+use super::MAX_DOF;
+use super::box_step::ROWS;
+
+/// Violations below this (rad, m) count as rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// A row in use gives way by this fraction of the way that its multiplier moves the point along it.
+const SOFTNESS: f64 = 1e-7;
+
+/// Exchanges of the active set per constraint; a few are enough.
+const EXCHANGES: usize = 3;
+
+/// A linear inequality: `gradient`'x >= `least`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// One entry per joint; further ones do not count.
+    pub gradient: [f64; MAX_DOF],
+    /// What the row keeps at least.
+    pub least: f64,
+}
+
+/// A step of damped least squares in a box, beside rows.
+#[derive(Debug, Clone, Copy)]
+pub struct RowStep<'a> {
+    /// Columns of J, at least one per entry of `start`.
+    pub columns: &'a [[f64; ROWS]],
+    /// Residual to be removed by the step.
+    pub residual: &'a [f64; ROWS],
+    /// The damping, positive.
+    pub lambda: f64,
+    /// The current point.
+    pub start: &'a [f64],
+    /// Lower bounds, one per entry of `start`.
+    pub lower: &'a [f64],
+    /// Upper bounds, one per entry of `start`.
+    pub upper: &'a [f64],
+    /// The inequalities.
+    pub rows: &'a [Row],
+}
+
+/// A constraint in use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Constraint {
+    Lower(usize),
+    Upper(usize),
+    Row(usize),
+}
+
+/// A constraint of the active set.
+#[derive(Debug, Clone)]
+struct Active {
+    constraint: Constraint,
+    multiplier: f64,
+    /// H^-1 a, where the constraint is a'x >= b.
+    along: [f64; MAX_DOF],
+}
+
+/// Solves row steps; owns its scratch.
+#[derive(Debug, Default)]
+pub struct RowSolver {
+    /// Lower Cholesky factor of H = J'J + lambda I, by rows of n.
+    factor: Vec<f64>,
+    active: Vec<Active>,
+    /// Rows of the system of the multipliers, then its right-hand side.
+    system: Vec<f64>,
+    trial: Vec<f64>,
+    /// The minimum without constraints.
+    free: Vec<f64>,
+}
+
+impl RowStep<'_> {
+    fn slack(&self, constraint: Constraint, x: &[f64]) -> f64 {
+        match constraint {
+            Constraint::Lower(j) => x[j] - self.lower[j],
+            Constraint::Upper(j) => self.upper[j] - x[j],
+            Constraint::Row(i) => dot(&self.rows[i].gradient, x) - self.rows[i].least,
+        }
+    }
+
+    /// a'x of a constraint a'x >= b.
+    fn product(constraint: Constraint, rows: &[Row], x: &[f64]) -> f64 {
+        match constraint {
+            Constraint::Lower(j) => x[j],
+            Constraint::Upper(j) => -x[j],
+            Constraint::Row(i) => dot(&rows[i].gradient, x),
+        }
+    }
+
+    /// The constraint that `x` violates most, of those not in use.
+    fn most_violated(&self, x: &[f64], active: &[Active]) -> Option<Constraint> {
+        let bounds = (0..x.len()).flat_map(|j| [Constraint::Lower(j), Constraint::Upper(j)]);
+        let constraints = bounds.chain((0..self.rows.len()).map(Constraint::Row));
+        let mut worst = (-ROUNDING, None);
+        for constraint in constraints {
+            let slack = self.slack(constraint, x);
+            if slack < worst.0 && active.iter().all(|active| active.constraint != constraint) {
+                worst = (slack, Some(constraint));
+            }
+        }
+        worst.1
+    }
+}
+
+impl RowSolver {
+    /// Writes the point after the step into `out`. Returns whether a row holds it back.
+    pub fn write(&mut self, step: &RowStep<'_>, out: &mut [f64]) -> bool {
+        let n = step.start.len();
+        self.factorize(step);
+        self.free.clear();
+        self.free.resize(n, 0.0);
+        for (free, column) in self.free.iter_mut().zip(step.columns) {
+            *free = -dot(column, step.residual);
+        }
+        solve_factored(&self.factor, &mut self.free);
+        self.free.iter_mut().zip(step.start).for_each(|(free, start)| *free += start);
+        out.copy_from_slice(&self.free);
+        self.active.clear();
+        for _ in 0..EXCHANGES * (2 * n + step.rows.len()) {
+            let Some(worst) = step.most_violated(out, &self.active) else { break };
+            self.add(step, worst);
+            self.settle(step);
+            out.copy_from_slice(&self.free);
+            for Active { multiplier, along, .. } in &self.active {
+                out.iter_mut().zip(along).for_each(|(out, along)| *out += multiplier * along);
+            }
+        }
+        for (j, out) in out.iter_mut().enumerate() {
+            *out = out.max(step.lower[j]).min(step.upper[j]);
+        }
+        self.active.iter().any(|active| matches!(active.constraint, Constraint::Row(_)))
+    }
+
+    /// H = L L'.
+    fn factorize(&mut self, step: &RowStep<'_>) {
+        let n = step.start.len();
+        self.factor.clear();
+        self.factor.resize(n * n, 0.0);
+        for i in 0..n {
+            for j in 0..=i {
+                let damping = if i == j { step.lambda } else { 0.0 };
+                let mut entry = dot(&step.columns[i], &step.columns[j]) + damping;
+                for k in 0..j {
+                    entry -= self.factor[i * n + k] * self.factor[j * n + k];
+                }
+                let pivot = if i == j { entry.max(0.5 * step.lambda).sqrt() } else { entry / self.factor[j * n + j] };
+                self.factor[i * n + j] = pivot;
+            }
+        }
+    }
+
+    fn add(&mut self, step: &RowStep<'_>, constraint: Constraint) {
+        let n = step.start.len();
+        let mut along = [0.0; MAX_DOF];
+        match constraint {
+            Constraint::Lower(j) => along[j] = 1.0,
+            Constraint::Upper(j) => along[j] = -1.0,
+            Constraint::Row(i) => along[..n].copy_from_slice(&step.rows[i].gradient[..n]),
+        }
+        solve_factored(&self.factor, &mut along[..n]);
+        self.active.push(Active { constraint, multiplier: 0.0, along });
+    }
+
+    /// Moves the multipliers to where all constraints in use hold exactly; those that would become negative leave.
+    fn settle(&mut self, step: &RowStep<'_>) {
+        while !self.active.is_empty() {
+            self.solve_for_multipliers(step);
+            let mut share = 1.0_f64;
+            for (active, trial) in self.active.iter().zip(&self.trial) {
+                if *trial <= 0.0 {
+                    share = share.min(active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE));
+                }
+            }
+            for (active, trial) in self.active.iter_mut().zip(&self.trial) {
+                active.multiplier += share * (trial - active.multiplier);
+            }
+            if share == 1.0 {
+                return;
+            }
+            let trial = &self.trial;
+            let mut i = 0;
+            self.active.retain(|active| {
+                i += 1;
+                trial[i - 1] > 0.0 || active.multiplier > 0.0
+            });
+        }
+    }
+
+    /// Sets `trial` to the multipliers with which all constraints in use hold exactly.
+    fn solve_for_multipliers(&mut self, step: &RowStep<'_>) {
+        let (m, n) = (self.active.len(), step.start.len());
+        self.system.clear();
+        self.system.resize(m * m, 0.0);
+        self.trial.clear();
+        for i in 0..m {
+            let constraint = self.active[i].constraint;
+            self.trial.push(-step.slack(constraint, &self.free));
+            for j in 0..=i {
+                let mut entry = RowStep::product(constraint, step.rows, &self.active[j].along[..n]);
+                if i == j {
+                    let softness = if matches!(constraint, Constraint::Row(_)) { SOFTNESS } else { 1e-14 };
+                    entry *= 1.0 + softness;
+                }
+                for k in 0..j {
+                    entry -= self.system[i * m + k] * self.system[j * m + k];
+                }
+                self.system[i * m + j] = if i == j {
+                    entry.max(f64::MIN_POSITIVE.sqrt()).sqrt()
+                } else {
+                    entry / self.system[j * m + j]
+                };
+            }
+        }
+        solve_factored(&self.system, &mut self.trial);
+    }
+}
+
+/// Solves L L' x = b in place; `factor` holds L by rows.
+fn solve_factored(factor: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    for i in 0..n {
+        let known: f64 = (0..i).map(|k| factor[i * n + k] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * n + i];
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|k| factor[k * n + i] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * n + i];
+    }
+}
+
+/// a'b over the shorter of both.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    #[derive(Debug)]
+    struct Case {
+        columns: Vec<[f64; 6]>,
+        residual: [f64; 6],
+        lower: Vec<f64>,
+        upper: Vec<f64>,
+        rows: Vec<Row>,
+    }
+
+    const LAMBDA: f64 = 0.05;
+
+    impl Case {
+        fn step<'a>(&'a self, start: &'a [f64]) -> RowStep<'a> {
+            let Self { columns, residual, lower, upper, rows } = self;
+            RowStep { columns, residual, lambda: LAMBDA, start, lower, upper, rows }
+        }
+
+        fn cost(&self, x: &[f64]) -> f64 {
+            let residual = (0..6).map(|k| self.residual[k] + (0..x.len()).map(|j| self.columns[j][k] * x[j]).sum::<f64>());
+            residual.map(|r| r * r).sum::<f64>() + LAMBDA * x.iter().map(|x| x * x).sum::<f64>()
+        }
+
+        /// All constraints as a'x >= b.
+        fn constraints(&self) -> Vec<(Vec<f64>, f64)> {
+            let n = self.columns.len();
+            let unit = |j: usize, sign: f64| (0..n).map(|k| if k == j { sign } else { 0.0 }).collect::<Vec<f64>>();
+            let mut all: Vec<(Vec<f64>, f64)> = (0..n)
+                .flat_map(|j| [(unit(j, 1.0), self.lower[j]), (unit(j, -1.0), -self.upper[j])])
+                .collect();
+            all.extend(self.rows.iter().map(|row| (row.gradient[..n].to_vec(), row.least)));
+            all
+        }
+
+        /// The least cost over all points at which some set of constraints is met exactly: tries each set of up to n.
+        fn by_enumeration(&self) -> Option<f64> {
+            let n = self.columns.len();
+            let all = self.constraints();
+            let j = DMatrix::from_fn(6, n, |k, j| self.columns[j][k]);
+            let hessian = j.transpose() * &j + DMatrix::identity(n, n) * LAMBDA;
+            let slope = j.transpose() * DVector::from_row_slice(&self.residual);
+            let mut best: Option<f64> = None;
+            for set in 0_u32..1 << all.len() {
+                let chosen: Vec<_> = (0..all.len()).filter(|i| set & (1 << i) != 0).map(|i| &all[i]).collect();
+                let m = chosen.len();
+                if m > n {
+                    continue;
+                }
+                let mut kkt = DMatrix::zeros(n + m, n + m);
+                kkt.view_mut((0, 0), (n, n)).copy_from(&hessian);
+                let mut right = DVector::zeros(n + m);
+                right.rows_mut(0, n).copy_from(&-&slope);
+                for (i, (a, b)) in chosen.iter().enumerate() {
+                    for k in 0..n {
+                        kkt[(n + i, k)] = a[k];
+                        kkt[(k, n + i)] = a[k];
+                    }
+                    right[n + i] = *b;
+                }
+                let Some(solution) = kkt.lu().solve(&right) else { continue };
+                let x: Vec<f64> = solution.iter().take(n).copied().collect();
+                if all.iter().all(|(a, b)| dot(a, &x) >= b - 1e-9) {
+                    let cost = self.cost(&x);
+                    best = Some(best.map_or(cost, |best| best.min(cost)));
+                }
+            }
+            best
+        }
+    }
+
+    fn case(n: usize, rows: usize) -> impl Strategy<Value = Case> {
+        let row = (prop::collection::vec(-1.0..1.0, n), -0.6_f64..0.3);
+        (
+            prop::collection::vec(prop::array::uniform6(-1.0..1.0), n),
+            prop::array::uniform6(-1.0..1.0),
+            prop::collection::vec(0.05_f64..1.0, n),
+            prop::collection::vec(row, rows),
+        )
+            .prop_map(move |(columns, residual, width, rows)| Case {
+                columns,
+                residual,
+                lower: width.iter().map(|width| -width).collect(),
+                upper: width,
+                rows: rows
+                    .into_iter()
+                    .map(|(entries, least)| {
+                        let mut gradient = [0.0; MAX_DOF];
+                        gradient[..n].copy_from_slice(&entries);
+                        Row { gradient, least }
+                    })
+                    .collect(),
+            })
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_the_best_of_all_active_sets(case in case(3, 4)) {
+            let start = [0.0; 3];
+            let mut x = [0.0; 3];
+            RowSolver::default().write(&case.step(&start), &mut x);
+            if let Some(least) = case.by_enumeration() {
+                for (a, b) in case.constraints() {
+                    prop_assert!(dot(&a, &x) >= b - 1e-5, "{x:?} {a:?} {b}");
+                }
+                prop_assert!((case.cost(&x) - least).abs() < 1e-5 * (1.0 + least), "{} {least}", case.cost(&x));
+            }
+        }
+
+        #[test]
+        fn it_stays_in_the_box_whatever_the_rows(case in case(7, 12)) {
+            let start = [0.0; 7];
+            let mut x = [f64::NAN; 7];
+            RowSolver::default().write(&case.step(&start), &mut x);
+            prop_assert!((0..7).all(|j| case.lower[j] <= x[j] && x[j] <= case.upper[j]), "{x:?}");
+        }
+    }
+
+    #[test]
+    fn rows_that_contradict_each_other_fall_short_alike() {
+        let row = |slope: f64| {
+            let mut gradient = [0.0; MAX_DOF];
+            gradient[0] = slope;
+            Row { gradient, least: 0.5 }
+        };
+        let case = Case {
+            columns: vec![[0.0; 6]; 2],
+            residual: [0.0; 6],
+            lower: vec![-1.0; 2],
+            upper: vec![1.0; 2],
+            rows: vec![row(1.0), row(-1.0)],
+        };
+        let mut x = [0.3, 0.3];
+        assert!(RowSolver::default().write(&case.step(&[0.3, 0.2]), &mut x));
+        assert!(x[0].abs() < 1e-4 && (x[1] - 0.2).abs() < 1e-12, "{x:?}");
+    }
+
+    #[test]
+    fn a_free_step_is_the_damped_one() {
+        let case = Case {
+            columns: vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]],
+            residual: [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            lower: vec![-9.0],
+            upper: vec![9.0],
+            rows: vec![],
+        };
+        let mut x = [0.0];
+        assert!(!RowSolver::default().write(&case.step(&[0.0]), &mut x));
+        assert!((x[0] - 1.0 / (1.0 + LAMBDA)).abs() < 1e-15);
+    }
+}
