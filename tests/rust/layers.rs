@@ -80,6 +80,8 @@ const LAYERS: &[(&str, &[&str])] = &[
             "objective",
             "limits",
             "motion",
+            "obstacle",
+            "shape",
             "manipulability",
             "task",
             "solver",

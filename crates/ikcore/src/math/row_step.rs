@@ -12,7 +12,7 @@ use super::box_step::ROWS;
 const ROUNDING: f64 = 1e-12;
 
 /// A row in use gives way by this fraction of the way that its multiplier moves the point along it.
-const SOFTNESS: f64 = 1e-7;
+const SOFTNESS: f64 = 1e-9;
 
 /// Exchanges of the active set per constraint; a few are enough.
 const EXCHANGES: usize = 3;
@@ -171,24 +171,22 @@ impl RowSolver {
     fn settle(&mut self, step: &RowStep<'_>) {
         while !self.active.is_empty() {
             self.solve_for_multipliers(step);
-            let mut share = 1.0_f64;
-            for (active, trial) in self.active.iter().zip(&self.trial) {
-                if *trial <= 0.0 {
-                    share = share.min(active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE));
+            // The first that would become negative, and the share of the way until it does.
+            let mut first = (1.0, None);
+            for (i, (active, trial)) in self.active.iter().zip(&self.trial).enumerate() {
+                let share = active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE);
+                if *trial <= 0.0 && share < first.0 {
+                    first = (share, Some(i));
                 }
             }
+            let (share, first) = first;
             for (active, trial) in self.active.iter_mut().zip(&self.trial) {
                 active.multiplier += share * (trial - active.multiplier);
             }
-            if share == 1.0 {
-                return;
-            }
-            let trial = &self.trial;
-            let mut i = 0;
-            self.active.retain(|active| {
-                i += 1;
-                trial[i - 1] > 0.0 || active.multiplier > 0.0
-            });
+            match first {
+                Some(i) => self.active.remove(i),
+                None => return,
+            };
         }
     }
 

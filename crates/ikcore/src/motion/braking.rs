@@ -37,12 +37,20 @@ fn whole(x: f64) -> f64 {
 }
 
 /// Progress of a stop in the direction in which it ends.
-struct Phases {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Phases {
     /// Step of the last tick.
-    step: f64,
-    displacement: f64,
-    lowest: f64,
-    ticks: f64,
+    pub step: f64,
+    pub displacement: f64,
+    pub lowest: f64,
+    pub ticks: f64,
+}
+
+impl Phases {
+    /// At the beginning, with this step.
+    pub fn begin(step: f64) -> Self {
+        Self { step, displacement: 0.0, lowest: 0.0, ticks: 0.0 }
+    }
 }
 
 /// The largest x such that x, x - `change`, x - 2 `change`, ... sum to at most `total` whatever the number of terms.
@@ -61,7 +69,7 @@ pub(super) fn longest_first(total: f64, change: f64) -> f64 {
 }
 
 /// Number of terms and first term of the sequence x, x - `change`, ... of positive terms that sums to `total`.
-fn fade_out(total: f64, change: f64) -> (f64, f64) {
+pub(super) fn fade_out(total: f64, change: f64) -> (f64, f64) {
     let first = |terms: f64| total / terms + 0.5 * change * (terms - 1.0);
     let terms = whole((2.0 * total / change).sqrt()).max(1.0);
     if first(terms + 1.0) < first(terms) { (terms + 1.0, first(terms + 1.0)) } else { (terms, first(terms)) }
@@ -80,6 +88,11 @@ impl Braking {
     /// The step after `change` has faded out without braking.
     fn coasting(&self, step: f64, change: f64) -> f64 {
         step + self.faded(change) - change
+    }
+
+    /// 1 if a stop ends upwards, else -1.
+    pub(super) fn direction(&self, step: f64, change: f64) -> f64 {
+        if self.coasting(step, change) < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// The largest step on the way if the joint brakes at once; negative steps count too.
@@ -105,12 +118,10 @@ impl Braking {
         if step == 0.0 && change.abs() <= self.jerk {
             return StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
         }
-        let sign = if self.coasting(step, change) < 0.0 { -1.0 } else { 1.0 };
-        let mut phases = Phases { step: sign * step, displacement: 0.0, lowest: 0.0, ticks: 0.0 };
+        let sign = self.direction(step, change);
+        let mut phases = Phases::begin(sign * step);
         let braking = self.build_up(-sign * change, &mut phases);
-        if braking + self.jerk >= self.acceleration {
-            self.brake_fully(&mut phases);
-        }
+        self.brake_fully(braking, &mut phases);
         self.fade(&mut phases);
         let Phases { displacement, lowest, ticks, .. } = phases;
         let (lowest, highest) = (lowest.min(displacement), displacement.max(0.0));
@@ -120,7 +131,7 @@ impl Braking {
 
     /// Builds the braking up from `braking` by `jerk` per tick, as long as the joint will not reverse. Returns the braking
     /// reached.
-    fn build_up(&self, braking: f64, phases: &mut Phases) -> f64 {
+    pub(super) fn build_up(&self, braking: f64, phases: &mut Phases) -> f64 {
         let Self { acceleration: most, jerk } = *self;
         if jerk == f64::INFINITY {
             return braking;
@@ -158,9 +169,12 @@ impl Braking {
         braking + ticks * jerk
     }
 
-    /// Brakes with the full acceleration, as long as the joint will not reverse.
-    fn brake_fully(&self, phases: &mut Phases) {
+    /// Brakes with the full acceleration, as long as the joint will not reverse, if the `braking` reached allows it.
+    pub(super) fn brake_fully(&self, braking: f64, phases: &mut Phases) {
         let most = self.acceleration;
+        if braking + self.jerk < most {
+            return;
+        }
         let spare = if most < f64::INFINITY { phases.step - self.faded(most) } else { -1.0 };
         if spare >= 0.0 {
             let ticks = whole(spare / most) + 1.0;
@@ -188,7 +202,7 @@ impl Braking {
 
     /// The change of the first tick of the fastest stop.
     pub fn first_change(&self, step: f64, change: f64) -> f64 {
-        let sign = if self.coasting(step, change) < 0.0 { -1.0 } else { 1.0 };
+        let sign = self.direction(step, change);
         let (step, change) = (sign * step, sign * change);
         let hardest = (change - self.jerk).max(-self.acceleration);
         // A joint that still moves backwards lets its change fade out.

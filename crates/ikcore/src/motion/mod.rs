@@ -8,6 +8,7 @@
 //! | file | what |
 //! |---|---|
 //! | `braking` | `Braking`: how a joint brakes; its fastest stop in closed form |
+//! | `stop_curve` | the same stop, tick by tick |
 //! | `admissible` | the changes of a joint after which it can still stop inside its limits |
 //! | `reachable_set` | these changes for all joints, as the box of a tick |
 //! | `joint_state` | steps and changes of all joints |
@@ -35,6 +36,7 @@ mod noise_level;
 mod pursuit;
 mod reachable_set;
 mod state_to_state;
+mod stop_curve;
 mod synchronised;
 
 pub use arm_state::ArmState;
@@ -46,3 +48,4 @@ pub(crate) use pursuit::Pursuit;
 pub(crate) use reachable_set::ReachableSet;
 pub(crate) use state_to_state::meet;
 pub use state_to_state::{state_to_state, stop};
+pub(crate) use stop_curve::StopCurve;

@@ -3,6 +3,8 @@
 //! Bodies of one moving element form a group with a ball around it. Most balls are clear of most obstacles; only bodies of
 //! the others are tested one by one.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
@@ -26,7 +28,7 @@ pub(super) struct BodyGroups {
 /// What the bodies are to keep clear of.
 #[derive(Debug, Clone)]
 pub(super) struct Others<'a> {
-    pub obstacles: &'a [Shape],
+    pub obstacles: Cow<'a, [Shape]>,
     /// Balls around them: centre and radius, infinite for a half-space.
     balls: Vec<(Vector3<f64>, f64)>,
     /// Finds the obstacles near a ball, if there are many.
@@ -43,7 +45,27 @@ impl<'a> Others<'a> {
             (center.into(), radius)
         };
         let balls = obstacles.iter().map(ball).collect();
-        Self { obstacles, balls, index: ShapeIndex::of_many(obstacles), itself: true }
+        Self { balls, index: ShapeIndex::of_many(obstacles), obstacles: Cow::Borrowed(obstacles), itself: true }
+    }
+
+    /// The same with obstacles of its own.
+    pub fn into_owned(self) -> Others<'static> {
+        let Self { obstacles, balls, index, itself } = self;
+        Others { obstacles: Cow::Owned(obstacles.into_owned()), balls, index, itself }
+    }
+
+    /// Calls `visit` with each obstacle that may be within `radius` (m) of `center`.
+    pub fn each_near(&self, center: &Vector3<f64>, radius: f64, mut visit: impl FnMut(usize)) {
+        match &self.index {
+            Some(index) => index.near_ball(center, radius, visit),
+            None => {
+                for (obstacle, (middle, own)) in self.balls.iter().enumerate() {
+                    if (middle - center).norm() <= radius + own + ROUNDING {
+                        visit(obstacle);
+                    }
+                }
+            }
+        }
     }
 
     /// Balls around the obstacles.
@@ -56,6 +78,9 @@ impl<'a> Others<'a> {
         self.index.is_some()
     }
 }
+
+/// What the distance of two balls may lose to rounding (m).
+const ROUNDING: f64 = 1e-9;
 
 /// All bodies of one moving element, in its frame.
 #[derive(Debug, Clone)]
@@ -168,6 +193,11 @@ impl BodyGroups {
     /// Whether a joint moves a group.
     pub fn is_moving(&self, group: usize) -> bool {
         self.groups[group].stages > 0
+    }
+
+    /// Number of the frame that carries a group.
+    pub fn frame_of(&self, group: usize) -> usize {
+        self.groups[group].stages
     }
 
     /// Centre and radius (m) of a ball that holds a group, with the moving elements at `frames`.
@@ -316,7 +346,7 @@ by_instructions! {
         others: &Others<'_>,
         margin: f64,
     ) -> bool {
-        let obstacles = others.obstacles;
+        let obstacles = &*others.obstacles;
         let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -387,7 +417,7 @@ by_instructions! {
 
 by_instructions! {
     fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], others: &Others<'_>, margin: f64) -> F64x4 {
-        let obstacles = others.obstacles;
+        let obstacles = &*others.obstacles;
         let mut clear = F64x4::splat(1.0);
         let at = |group: &Group| frames[group.stages];
         // Lanes that are not clear no longer matter.

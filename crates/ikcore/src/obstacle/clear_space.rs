@@ -1,6 +1,9 @@
 //! The configurations at which a robot keeps a margin from everything.
 
+use super::chord_check::{ChordCheck, TickedMotion};
 use super::contact::{Contact, NearestContact};
+use super::kept_distance::KeptDistance;
+use super::near_rows::NearRows;
 use super::scene::Scene;
 use crate::shape::{Geometry, Shape};
 
@@ -23,6 +26,11 @@ pub struct ClearSpace<'a> {
 impl<'a> ClearSpace<'a> {
     pub(super) fn new(scene: Scene<'a>, margin: f64) -> Self {
         Self { scene, margin }
+    }
+
+    /// The same space with a robot and obstacles of its own.
+    pub fn into_owned(self) -> ClearSpace<'static> {
+        ClearSpace { scene: self.scene.into_owned(), margin: self.margin }
     }
 
     /// The distance to keep (m).
@@ -56,6 +64,26 @@ impl<'a> ClearSpace<'a> {
     pub(crate) fn blocked_anywhere(&self) -> Option<Blocked> {
         let nearest = self.scene.nearest_fixed_contact().filter(|contact| contact.distance < self.margin);
         nearest.map(Blocked::Base)
+    }
+
+    /// Scratch of [`find_rows`](Self::find_rows).
+    pub(crate) fn near_rows(&self) -> NearRows {
+        NearRows::new(&self.scene)
+    }
+
+    /// Finds the pairs that are nearer than `up_to` (m) at `q`, without bodies that no joint moves.
+    pub(crate) fn find_rows(&self, q: &[f64], up_to: f64, rows: &mut NearRows) {
+        rows.find(&self.scene, q, up_to);
+    }
+
+    /// Whether `motion` keeps these distances for certain, between ticks too; of bodies that no joint moves none is asked.
+    pub(crate) fn is_kept_by(
+        &self,
+        motion: &impl TickedMotion,
+        kept: &KeptDistance<'_>,
+        check: &mut ChordCheck,
+    ) -> bool {
+        check.is_clear(&self.scene, motion, kept)
     }
 
     /// The sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to` (m). Adds `weight` times its

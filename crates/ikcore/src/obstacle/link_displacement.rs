@@ -32,6 +32,35 @@ pub(super) fn displacement(
     moved
 }
 
+/// A bound (m) on how far any point of `body` gets from the straight line between its places at both ends of a joint motion, from the
+/// configuration of `frames` and `body` on. The joints change by `change` (rad, m) in all, and get off the straight line between both
+/// configurations by `off_line` at most.
+///
+/// Along a straight line in joint space, p(s) with s from 0 to 1, a rotation by t_k about axis k accelerates a point at distance l_k
+/// from it by t_k^2 l_k, and the rotation by t_i about an axis i nearer to the base turns its velocity t_k l_k by t_i: once on either
+/// side. A curve with |p''| <= b is within b / 8 of its chord.
+pub(super) fn sagitta(
+    robot: &Robot,
+    frames: &[Frame],
+    body: &PlacedBody,
+    frame: usize,
+    [change, off_line]: [&[f64]; 2],
+) -> f64 {
+    let [start, end] = body.axis;
+    let beside_axis = if body.solid.is_some() { body.radius } else { 0.0 };
+    let (mut moved, mut outer_velocity, mut bend, mut off) = (0.0, 0.0, 0.0, 0.0);
+    for (number, motion) in robot.carriers(frame, 0) {
+        let ([turn, slide], axis) = (motion.travel(change), &frames[number]);
+        let [off_turn, off_slide] = motion.travel(off_line);
+        let lever = distance_to_axis(axis, start).max(distance_to_axis(axis, end)) + beside_axis + moved;
+        bend += turn * (turn * lever + 2.0 * outer_velocity);
+        off += off_turn * lever + off_slide;
+        outer_velocity += turn * lever + slide;
+        moved += (turn + off_turn).min(2.0) * lever + slide + off_slide;
+    }
+    bend / 8.0 + off
+}
+
 fn distance_to_axis(frame: &Frame, point: &Vector3<f64>) -> f64 {
     (point - Vector3::from(frame.origin)).cross(&Vector3::from(frame.axes[2])).norm()
 }
@@ -72,6 +101,25 @@ mod tests {
                 for point in points {
                     let way = (place(&moved[last], point) - place(&frames[last], point)).norm();
                     assert!(way <= bound, "moved {way} m, bound {bound} m");
+                    tightest = tightest.min(bound / way.max(1e-12));
+                }
+            }
+            // Halfway along the straight line in joint space, and a little beside it.
+            let change: Vec<f64> = q.iter().zip(&other).map(|(q, other)| (other - q).abs()).collect();
+            let off_line: Vec<f64> = reach.iter().map(|reach| 0.05 * reach).collect();
+            let share = rng.uniform_in(0.0, 1.0);
+            let halfway: Vec<f64> = (0..q.len())
+                .map(|j| q[j] + share * (other[j] - q[j]) + rng.uniform_in(-off_line[j], off_line[j]))
+                .collect();
+            let mut between = robot.frame_buffer();
+            robot.write_frames(&halfway, &mut between);
+            for (points, solid) in [(&ends[..], None), (&beside[..], Some((&ball, Frame::IDENTITY)))] {
+                let body = PlacedBody { axis: &axis, radius: 0.1, solid };
+                let bound = sagitta(&robot, &frames, &body, last, [&change, &off_line]);
+                for point in points {
+                    let [from, to] = [&frames, &moved].map(|frames| place(&frames[last], point));
+                    let way = (place(&between[last], point) - (from + share * (to - from))).norm();
+                    assert!(way <= bound, "{way} m off the line, bound {bound} m");
                     tightest = tightest.min(bound / way.max(1e-12));
                 }
             }

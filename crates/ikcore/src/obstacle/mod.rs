@@ -10,22 +10,30 @@
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
 //! | `near_pairs` | the nearest pairs |
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
+//! | `near_rows` | near pairs, linearised at a configuration |
+//! | `chord_check`, `kept_distance` | a motion from tick to tick, certified to keep its distances |
 //! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
 
 mod body_groups;
 mod body_model;
+mod chord_check;
 mod clear_space;
 mod contact;
+mod kept_distance;
 mod link_displacement;
 mod near_pairs;
+mod near_rows;
 mod placement;
 mod scene;
 mod surroundings;
 mod sweep;
 
+pub(crate) use chord_check::{ChordCheck, TickedMotion};
 pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
 pub use contact::{Contact, NearestContact, Neighbor};
+pub(crate) use kept_distance::KeptDistance;
+pub(crate) use near_rows::{NearRow, NearRows};
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;

@@ -1,5 +1,6 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -10,10 +11,10 @@ use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
 use super::placement::Placement;
 use crate::error::{Error, Result};
-use crate::math::MAX_DOF;
 use crate::math::f64x4::F64x4;
+use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Carried, Joint, Robot};
-use crate::shape::{PlacedBody, Shape};
+use crate::shape::{LineSegment, PlacedBody, Shape};
 use crate::wording::listed;
 
 /// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
@@ -22,7 +23,7 @@ use crate::wording::listed;
 /// pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
-    robot: &'a Robot,
+    robot: Cow<'a, Robot>,
     pub(super) bodies: Arc<BodyModel>,
     pub(super) others: Others<'a>,
     /// Of the bodies that no joint moves the nearest to an obstacle, at this distance (m).
@@ -48,7 +49,7 @@ impl<'a> Scene<'a> {
             return Err(Error::InvalidObstacle { problem });
         }
         let bodies = BodyModel::of(robot);
-        let mut scene = Self { robot, bodies, others: Others::new(obstacles), fixed: None };
+        let mut scene = Self { robot: Cow::Borrowed(robot), bodies, others: Others::new(obstacles), fixed: None };
         scene.fixed = scene.nearest_fixed();
         Ok(scene)
     }
@@ -80,8 +81,14 @@ impl<'a> Scene<'a> {
     }
 
     /// The robot.
-    pub fn robot(&self) -> &'a Robot {
-        self.robot
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The same scene with a robot and obstacles of its own.
+    pub(super) fn into_owned(self) -> Scene<'static> {
+        let Self { robot, bodies, others, fixed } = self;
+        Scene { robot: Cow::Owned(robot.into_owned()), bodies, others: others.into_owned(), fixed }
     }
 
     /// The nearest pair at `q` (n,), or the deepest one if pairs overlap; `None` if nothing can touch.
@@ -236,50 +243,83 @@ impl<'a> Scene<'a> {
     }
 
     pub(super) fn place(&self, q: &[f64]) -> Placement {
-        let mut placement = Placement::of(self.robot, self.bodies.carried.len());
+        let mut placement = Placement::of(&self.robot, self.bodies.carried.len());
         self.place_into(q, &mut placement);
         placement
     }
 
     pub(super) fn place_into(&self, q: &[f64], placement: &mut Placement) {
-        placement.update(self.robot, &self.bodies.carried, q);
+        placement.update(&self.robot, &self.bodies.carried, q);
     }
 
     #[inline]
     fn placed<'b>(&'b self, body: usize, placement: &'b Placement) -> PlacedBody<'b> {
-        let carried = &self.bodies.carried[body];
-        carried.placed(&placement.segments[body], &placement.frames[carried.stages])
+        self.placed_at(body, &placement.segments[body], &placement.frames)
     }
 
     /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`; to 1e-7 m
     /// for bodies that are no capsules.
     pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
+        self.distance_of(pair, &placement.frames, |body| placement.segments[body], enough)
+    }
+
+    /// [`distance`](Self::distance) with the moving elements at `frames`.
+    pub(super) fn distance_at(&self, pair: BodyPair, frames: &[Frame], enough: f64) -> f64 {
+        self.distance_of(pair, frames, |body| self.axis_at(body, frames), enough)
+    }
+
+    #[inline]
+    fn distance_of(&self, pair: BodyPair, frames: &[Frame], axis: impl Fn(usize) -> LineSegment, enough: f64) -> f64 {
         match pair {
             BodyPair::Obstacle { body, obstacle } => {
-                self.others.obstacles[obstacle].distance_to_body(&self.placed(body, placement), enough)
+                self.others.obstacles[obstacle].distance_to_body(&self.placed_at(body, &axis(body), frames), enough)
             }
             BodyPair::Bodies { near, far, .. } => {
                 let reach = self.bodies.carried[near].reach + self.bodies.carried[far].reach;
-                let ([a, b], [c, d]) = (&placement.segments[near], &placement.segments[far]);
+                let axes = [axis(near), axis(far)];
+                let [[a, b], [c, d]] = &axes;
                 let apart = 0.5 * (a + b - c - d).norm() - reach;
                 if apart > enough + 1e-9 {
                     return apart - 1e-9;
                 }
-                self.placed(far, placement).distance_to(&self.placed(near, placement), enough)
+                let near = self.placed_at(near, &axes[0], frames);
+                self.placed_at(far, &axes[1], frames).distance_to(&near, enough)
             }
         }
     }
 
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
+        self.change_of(pair, &placement.frames, |body| placement.segments[body], reach)
+    }
+
+    /// [`change`](Self::change) with the moving elements at `frames`.
+    pub(super) fn change_at(&self, pair: BodyPair, frames: &[Frame], reach: &[f64]) -> f64 {
+        self.change_of(pair, frames, |body| self.axis_at(body, frames), reach)
+    }
+
+    #[inline]
+    fn change_of(&self, pair: BodyPair, frames: &[Frame], axis: impl Fn(usize) -> LineSegment, reach: &[f64]) -> f64 {
         let (below, own, other) = self.carriers_of(pair);
         let moved = |body: usize, frame: usize| {
-            displacement(self.robot, &placement.frames, &self.placed(body, placement), [below, frame], reach)
+            displacement(&self.robot, frames, &self.placed_at(body, &axis(body), frames), [below, frame], reach)
         };
         match pair {
             BodyPair::Obstacle { body, .. } => moved(body, own),
             BodyPair::Bodies { near, far, .. } => moved(far, own) + moved(near, other),
         }
+    }
+
+    /// Axis of the capsule around a body with the moving elements at `frames`.
+    fn axis_at(&self, body: usize, frames: &[Frame]) -> LineSegment {
+        let carried = &self.bodies.carried[body];
+        carried.axis_at(&frames[carried.stages])
+    }
+
+    #[inline]
+    fn placed_at<'b>(&'b self, body: usize, axis: &'b LineSegment, frames: &[Frame]) -> PlacedBody<'b> {
+        let carried = &self.bodies.carried[body];
+        carried.placed(axis, &frames[carried.stages])
     }
 
     /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.

@@ -26,6 +26,7 @@
 //! | `enclosing_capsule` | capsules that hold other shapes |
 //! | `convex`, `convex_distance` | the signed distance of any two convex sets |
 //! | `placed_body` | a body of a robot, and its distances |
+//! | `extent` | how far bodies and shapes extend along a direction |
 //! | `separation` | where a capsule is nearest to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
 
@@ -41,6 +42,7 @@ mod convex_hull;
 mod cover;
 mod ellipsoid;
 mod enclosing_capsule;
+mod extent;
 mod geometry;
 mod grid;
 mod inside_mesh;

@@ -23,7 +23,7 @@ pub(crate) struct PlacedBody<'a> {
 }
 
 impl<'a> PlacedBody<'a> {
-    fn convex(&self) -> Convex<'a> {
+    pub(super) fn convex(&self) -> Convex<'a> {
         let solid = self.solid.as_ref().and_then(|(shape, frame)| Convex::of(shape.geometry(), frame));
         solid.unwrap_or_else(|| Convex::capsule(*self.axis, self.radius))
     }

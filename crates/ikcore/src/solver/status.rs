@@ -58,7 +58,9 @@ statuses! {
     HeldInRegion = 13, "HELD_IN_REGION":
         "The region of the task keeps the tip from the target; the tip is in the region, as near as possible.";
     InCollision = 14, "IN_COLLISION":
-        "The target is reached, but nearer than the margin to an obstacle, or with two links nearer to each other.";
+        "Nearer than the margin to an obstacle, or with two links nearer to each other; the target may be reached.";
+    HeldByObstacle = 15, "HELD_BY_OBSTACLE":
+        "A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.";
 }
 
 impl Status {
@@ -81,6 +83,7 @@ impl Status {
             Self::PlantFailed => "fix the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::InCollision => "move the target or what is in the way, or lower the margin",
+            Self::HeldByObstacle => "move the target or what is in the way, lower the margin, or plan a way round",
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"

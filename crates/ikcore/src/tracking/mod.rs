@@ -16,6 +16,7 @@
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `clear_motion`, `stop_motion` | the motion of an arm among obstacles, each command certified with the stop after it |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
@@ -24,6 +25,7 @@
 //! | `controller` | controllers, which only command and observe |
 
 mod approach_motion;
+mod clear_motion;
 mod commanded_motion;
 mod controller;
 mod late_sensor;
@@ -35,6 +37,7 @@ mod repeated_targets;
 mod rule;
 mod session;
 mod step;
+mod stop_motion;
 mod target_filter;
 mod target_stream;
 mod tip_pose;

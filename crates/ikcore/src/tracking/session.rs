@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::clear_motion::{ClearMotion, ObstacleMotion, Wish};
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::repeated_targets::RepeatedTargets;
@@ -13,9 +14,11 @@ use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
+use crate::obstacle::{ClearSpace, Surroundings};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
+use crate::shape::Shape;
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, Task};
 
@@ -44,6 +47,9 @@ pub struct Session {
     tick_box: TickBox,
     /// Under acceleration or jerk limits.
     limited: Option<LimitedMotion>,
+    surroundings: Surroundings,
+    /// Where something is to be kept clear of.
+    clear: Option<Box<ClearMotion>>,
     /// The arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -78,7 +84,11 @@ impl Session {
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
+        let surroundings = options.surroundings.clone();
+        let clear = clear_motion(&surroundings, &robot, &limits)?;
         Ok(Self {
+            clear,
+            surroundings,
             robot,
             tick_box: TickBox::around(start, &limits),
             running,
@@ -175,6 +185,7 @@ impl Session {
             true => Status::Solved,
             false => Status::Improved,
         };
+        let status = if self.is_clear(&self.q) { status } else { Status::InCollision };
         let (position, error) = (self.robot.tip_position(&self.q), error.into());
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
@@ -223,11 +234,12 @@ impl Session {
         } else {
             self.run_rule(sampled_ago, monitor)
         };
+        let held = !found.interrupted && self.keep_clear(&mut found);
         let target = self.targets.last().copied();
         if let Some(target) = &target {
             self.keep_in_region(target, &mut found);
         }
-        let status = self.status(target.as_ref(), &found);
+        let status = self.status(target.as_ref(), &found, held);
         if !found.interrupted {
             self.accept(&found.q, found.assessment.score.value);
         }
@@ -275,6 +287,7 @@ impl Session {
             limits: &self.limits,
             velocity_limit: &self.tick_box.velocity,
             limited: self.limited.as_ref(),
+            clear: self.clear.as_deref_mut(),
             sampled_ago,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
@@ -300,16 +313,78 @@ impl Session {
         found
     }
 
-    fn status(&self, target: Option<&Target>, found: &TickResult) -> Status {
+    fn status(&self, target: Option<&Target>, found: &TickResult, held: bool) -> Status {
         let Score { value, solved } = found.assessment.score;
         match self.last_value {
+            _ if !self.is_clear(&found.q) => Status::InCollision,
             _ if solved && target.is_some_and(|target| self.criterion.blocked_by_region(target).is_some()) => {
                 Status::HeldInRegion
             }
             _ if solved => Status::Solved,
+            _ if held || self.clear.as_ref().is_some_and(|clear| clear.goal_is_held()) => Status::HeldByObstacle,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         }
+    }
+
+    /// Changes what the rule has `found` to a command that keeps the arm clear. Returns whether it had to.
+    fn keep_clear(&mut self, found: &mut TickResult) -> bool {
+        let Some(clear) = &mut self.clear else { return false };
+        let wish = Wish {
+            robot: &self.robot,
+            q: &self.q,
+            bounds: &self.tick_box.bounds,
+            limited: self.limited.as_ref(),
+            target: self.targets.last(),
+            criterion: &self.criterion,
+            dt: self.dt,
+        };
+        if !clear.keep(&wish, &mut found.q) {
+            return false;
+        }
+        let tip = self.robot.tip(&found.q);
+        found.evaluations += 1;
+        match self.targets.last() {
+            Some(target) => found.set_tip(&tip, target, &self.criterion),
+            None => found.position = tip.origin,
+        }
+        if self.limited.is_none() {
+            self.running.forget();
+        }
+        true
+    }
+
+    /// Whether everything keeps the margin at `q`; true if nothing is to be kept clear of.
+    fn is_clear(&self, q: &[f64]) -> bool {
+        self.clear.as_ref().is_none_or(|clear| clear.space().holds(q))
+    }
+
+    /// What the arm keeps clear of, if anything.
+    pub fn space(&self) -> Option<&ClearSpace<'static>> {
+        self.clear.as_ref().map(|clear| clear.space())
+    }
+
+    /// What is around the arm.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.surroundings
+    }
+
+    /// Replaces the obstacles by these, where they are now, with their `velocities` (m/s); empty: all are at rest. `None`: none.
+    /// The margin and the choice about the robot's own links stay.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the session is then as before.
+    pub fn set_obstacles(&mut self, obstacles: Option<Vec<Shape>>, velocities: Vec<[f64; 3]>) -> Result<()> {
+        let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
+        self.clear = match clear_motion(&surroundings, &self.robot, &self.limits)? {
+            Some(mut clear) => {
+                clear.set_motion(ObstacleMotion::new(velocities));
+                Some(clear)
+            }
+            None => None,
+        };
+        self.surroundings = surroundings;
+        Ok(())
     }
 
     fn accept(&mut self, q: &[f64], value: f64) {
@@ -402,6 +477,12 @@ impl Session {
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
+}
+
+/// What keeps the arm clear, if that is asked for.
+fn clear_motion(surroundings: &Surroundings, robot: &Robot, limits: &Limits) -> Result<Option<Box<ClearMotion>>> {
+    let space = surroundings.clear_space(robot)?;
+    space.map(|space| ClearMotion::new(space.into_owned(), limits).map(Box::new)).transpose()
 }
 
 /// Writes q + share * (end - q); rounding cannot take it beyond `end`.

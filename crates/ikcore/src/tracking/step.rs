@@ -9,7 +9,8 @@ use crate::task::TipError;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps it out of the band,
-    /// [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one holds the arm
+    /// back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -34,6 +35,12 @@ impl Step {
             Status::Solved => format!("within the tolerances, {error} away{limits}"),
             Status::HeldInRegion => {
                 format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
+            }
+            Status::InCollision => {
+                format!("nearer than the margin to an obstacle or another link, {error} away{limits}: {}", self.status.advice())
+            }
+            Status::HeldByObstacle => {
+                format!("held back by an obstacle or another link, {error} away{limits}: {}", self.status.advice())
             }
             Status::Improved => format!("nearer than in the tick before, {error} away{limits}"),
             status => format!("no nearer than in the tick before, {error} away{limits}: {}", status.advice()),

@@ -4,6 +4,7 @@ use super::rule::TickRule;
 use super::target_filter::TargetFilter;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
+use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::task::{Criterion, Goal, Task, Tolerance};
 
@@ -29,6 +30,8 @@ pub struct TrackOptions {
     /// Whether [`track`](super::track()) begins with an approach that meets the moving path within acceleration and jerk
     /// limits. Sessions ignore it.
     pub ease: bool,
+    /// What the arm keeps clear of. By default nothing.
+    pub surroundings: Surroundings,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }

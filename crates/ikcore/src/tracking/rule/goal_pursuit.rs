@@ -11,6 +11,7 @@ use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
+use crate::tracking::clear_motion::Goal;
 use crate::tracking::limited_motion::LimitedMotion;
 
 /// Steps that Gauss-Newton may take in a tick; they converge quadratically.
@@ -77,6 +78,10 @@ impl GoalPursuit {
             goal.expected(time, &mut self.expected);
         }
         self.solve(time, &positions, found, tick);
+        if let Some(clear) = &mut tick.clear {
+            let goal = Goal { robot: tick.robot, target: tick.target, criterion: tick.criterion, positions: &positions };
+            clear.clear_goal(&goal, &mut self.sample);
+        }
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
         }

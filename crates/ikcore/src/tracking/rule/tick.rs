@@ -7,6 +7,7 @@ use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, Twist};
+use crate::tracking::clear_motion::ClearMotion;
 use crate::tracking::limited_motion::LimitedMotion;
 
 /// The input of a rule for one tick.
@@ -30,6 +31,8 @@ pub(in crate::tracking) struct Tick<'a> {
     pub velocity_limit: &'a [f64],
     /// Steps, changes and limits of an arm under acceleration or jerk limits.
     pub limited: Option<&'a LimitedMotion>,
+    /// What the arm keeps clear of.
+    pub clear: Option<&'a mut ClearMotion>,
     /// Age of the target at the end of the tick, in ticks; `None` if it is the one of an earlier tick.
     pub sampled_ago: Option<f64>,
     /// The box of joint positions at the end of the tick.
