@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `placement` | where the bodies of a robot are at a configuration |
+//! | `allowed_contacts` | which bodies may touch which obstacles |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
@@ -12,6 +13,7 @@
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
 //! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
 
+mod allowed_contacts;
 mod body_groups;
 mod body_model;
 mod clear_space;
