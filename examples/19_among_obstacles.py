@@ -3,7 +3,8 @@ Solutions that keep clear of obstacles
 ======================================
 
 A pose on a shelf has a curve of solutions for an arm with seven joints. ``solve`` without obstacles takes one that
-hits the post beside it; with ``obstacles=`` every body of the arm keeps a margin.
+hits the post beside it; with ``obstacles=`` every body of the arm keeps a margin. The arm stands on a floor that its
+first link may touch.
 """
 
 import matplotlib.pyplot as plt
@@ -14,7 +15,8 @@ import beetle_ik as bik
 robot = bik.Robot.named("panda").with_capsules(radius=0.06)
 boards = [bik.obstacles.Box(center=(0.62, 0.0, z), size=(0.35, 0.9, 0.02)) for z in (0.25, 0.75)]
 post = bik.obstacles.Box(center=(0.25, -0.3, 0.5), size=(0.06, 0.06, 1.0))
-scene = bik.Scene([*boards, post])
+floor = bik.obstacles.HalfSpace(normal=(0, 0, 1), offset=0.0, touch=["link_1"])
+scene = bik.Scene([*boards, post, floor])
 target = bik.pose([0.55, 0.0, 0.5], rpy=[0.0, np.pi / 2, 0.0])
 
 through = bik.solve(robot, target)

@@ -2374,20 +2374,27 @@ class Step:
 
 @disjoint_base
 class Obstacle:
-    """The base class of obstacles: a shape, fixed in the frame of the robot's base."""
+    """The base class of obstacles: a shape, fixed in the frame of the robot's base.
+
+    Each takes `touch=`, a list of link names: those links are not kept clear of it. A floor is `HalfSpace((0, 0, 1), 0.0,
+    touch=["panda_link0"])`.
+    """
 
     @property
     def triangles(self) -> _Array:
         """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
         a point cloud octahedra about at most 2,000 of its points.
         """
+    @property
+    def touch(self) -> tuple[str, ...]:
+        """Names of the links that may touch it, sorted. As the body of a robot (`robot.with_attached`) it may touch them too."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Sphere(Obstacle):
     """A sphere: centre (3,) and radius (m)."""
 
-    def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
+    def __new__(cls, center: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> Sphere: ...
     @property
     def center(self) -> _Array:
         """Centre (3,) (m)."""
@@ -2399,7 +2406,9 @@ class Sphere(Obstacle):
 class Box(Obstacle):
     """A box: centre (3,), edge lengths (3,) along its own axes (m), and the rotation (3, 3) of these axes."""
 
-    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None) -> Box: ...
+    def __new__(
+        cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None, *, touch: Sequence[str] | None = None
+    ) -> Box: ...
     @property
     def center(self) -> _Array:
         """Centre (3,) (m)."""
@@ -2414,7 +2423,7 @@ class Box(Obstacle):
 class Capsule(Obstacle):
     """A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,)."""
 
-    def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
+    def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> Capsule: ...
     @property
     def a(self) -> _Array:
         """One end of its axis (3,) (m)."""
@@ -2429,7 +2438,9 @@ class Capsule(Obstacle):
 class Cylinder(Obstacle):
     """A cylinder with flat ends: centre (3,), axis (3,) of any length, radius and length (m)."""
 
-    def __new__(cls, center: ArrayLike, axis: ArrayLike, radius: float, length: float) -> Cylinder: ...
+    def __new__(
+        cls, center: ArrayLike, axis: ArrayLike, radius: float, length: float, *, touch: Sequence[str] | None = None
+    ) -> Cylinder: ...
     @property
     def center(self) -> _Array:
         """Centre (3,) (m)."""
@@ -2449,7 +2460,7 @@ class HalfSpace(Obstacle):
     normal of another length is scaled; `offset` (m) is not.
     """
 
-    def __new__(cls, normal: ArrayLike, offset: float) -> HalfSpace: ...
+    def __new__(cls, normal: ArrayLike, offset: float, *, touch: Sequence[str] | None = None) -> HalfSpace: ...
     @property
     def normal(self) -> _Array:
         """Outward normal (3,), of unit length."""
@@ -2461,7 +2472,14 @@ class HalfSpace(Obstacle):
 class Ellipsoid(Obstacle):
     """An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3)."""
 
-    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: _Pose | None = None) -> Ellipsoid: ...
+    def __new__(
+        cls,
+        center: ArrayLike,
+        semi_axes: ArrayLike,
+        rotation: _Pose | None = None,
+        *,
+        touch: Sequence[str] | None = None,
+    ) -> Ellipsoid: ...
     @property
     def center(self) -> _Array:
         """Centre (3,) (m)."""
@@ -2478,7 +2496,9 @@ class Ellipse(Obstacle):
     one (rad).
     """
 
-    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
+    def __new__(
+        cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0, *, touch: Sequence[str] | None = None
+    ) -> Ellipse: ...
     @property
     def center(self) -> _Array:
         """Centre (2,) (m)."""
@@ -2493,7 +2513,7 @@ class Ellipse(Obstacle):
 class ConvexMesh(Obstacle):
     """The convex hull of points (k, 3) (m): at least four, not all in one plane."""
 
-    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...
+    def __new__(cls, points: ArrayLike, *, touch: Sequence[str] | None = None) -> ConvexMesh: ...
     @property
     def points(self) -> _Array:
         """The points as given (k, 3) (m)."""
@@ -2504,7 +2524,7 @@ class Mesh(Obstacle):
     its inside counts too; else it is a surface without thickness.
     """
 
-    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Mesh: ...
+    def __new__(cls, vertices: ArrayLike, faces: ArrayLike, *, touch: Sequence[str] | None = None) -> Mesh: ...
     @property
     def vertices(self) -> _Array:
         """The vertices (k, 3) (m)."""
@@ -2519,7 +2539,7 @@ class Mesh(Obstacle):
 class PointCloud(Obstacle):
     """Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera."""
 
-    def __new__(cls, points: ArrayLike, radius: float) -> PointCloud: ...
+    def __new__(cls, points: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> PointCloud: ...
     @property
     def points(self) -> _Array:
         """The points (k, 3) (m)."""
@@ -2533,7 +2553,9 @@ class Grid(Obstacle):
     `occupied` is a boolean array (nx, ny, nz).
     """
 
-    def __new__(cls, origin: ArrayLike, voxel: float, occupied: ArrayLike) -> Grid: ...
+    def __new__(
+        cls, origin: ArrayLike, voxel: float, occupied: ArrayLike, *, touch: Sequence[str] | None = None
+    ) -> Grid: ...
     @property
     def origin(self) -> _Array:
         """Lowest corner of the first voxel (3,) (m)."""

@@ -49,8 +49,8 @@ def write_obstacles(file: str | os.PathLike[str], shapes: Iterable[Obstacle]) ->
 
 def _described(shape: Obstacle) -> dict[str, Any]:
     kind = type(shape)
-    arguments = {name: np.asarray(getattr(shape, name)).tolist() for name in inspect.signature(kind).parameters}
-    return {"type": _TYPES[kind]} | arguments
+    names = [name for name in inspect.signature(kind).parameters if name != "touch" or shape.touch]
+    return {"type": _TYPES[kind]} | {name: np.asarray(getattr(shape, name)).tolist() for name in names}
 
 
 def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:

@@ -136,6 +136,59 @@ def test_a_wall_within_the_hand_is_said_to_be_there_whatever_the_arm_does() -> N
         assert found.clearance < 0
 
 
+def floor(*touch: str) -> bik.obstacles.HalfSpace:
+    return bik.obstacles.HalfSpace((0, 0, 1), 0.0, touch=touch)
+
+
+def test_an_arm_stands_on_a_floor_that_its_foot_may_touch() -> None:
+    """Every call takes the floor; distances to it are those of a scene without the link that stands on it."""
+    tip, allowed = ARM.fk(Q), [floor("link_1"), POST]
+    refused = bik.solve(ARM, tip, obstacles=[floor()])
+    assert refused.status == bik.Status.IN_COLLISION
+    assert (
+        "link 'link_1' is 0.06000 m inside obstacle 0 (HalfSpace) whatever the arm does; if the robot stands there, "
+        'give the obstacle touch=["link_1"]: ' in refused.message
+    )
+    others = ARM.with_capsules([body for body in ARM.capsules if body[0] != "link_1"])
+    for solution in (
+        bik.solve(ARM, tip, obstacles=allowed),
+        bik.solve_all(ARM, tip, obstacles=allowed)[0],
+        bik.solve_batch(ARM, tip[None], obstacles=allowed)[0],
+        bik.solve(ARM, tip, obstacles=allowed, goals=bik.goals.Clearance()),
+    ):
+        assert solution.success
+        over_floor = bik.obstacles.clearance(others, solution.q, [floor()])
+        beside_post = bik.obstacles.clearance(ARM, solution.q, [POST])
+        assert solution.clearance == pytest.approx(min(over_floor, beside_post), abs=1e-9)
+        assert solution.clearance >= 1e-3
+    plan = bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=allowed)
+    assert plan.success
+    assert plan.clearance >= 1e-3
+    with pytest.raises(bik.InvalidInputError, match=r"start: link 'link_1' is .* the obstacle touch=\[\"link_1\"\]$"):
+        bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=[floor()])
+
+
+def test_a_moved_body_meets_the_floor_that_another_may_touch() -> None:
+    down = np.array([0.0, 1.7, 0.0, -0.3, 0.0, 1.8, 0.0])  # the hand below z = 0
+    found = bik.obstacles.nearest(ARM, down, [floor("link_1")])
+    assert found is not None
+    assert (found.body, found.distance < 0) == ("link_7", True)
+    assert bik.obstacles.clearance(ARM, down, [floor("link_1", "link_7")]) > found.distance
+    carrying = ARM.with_attached("flange", bik.obstacles.Sphere((0, 0, 0.1), 0.04), name="ball")
+    assert bik.obstacles.nearest(carrying, down, [floor("link_1", "link_7")]).body == "ball"  # type: ignore[union-attr]
+
+
+def test_a_link_that_an_obstacle_names_must_have_a_body() -> None:
+    bodies = "links with bodies: link_1, link_3, link_4, link_5, link_6, link_7"
+    for link, problem in (
+        ("link_2", "link 'link_2' of robot 'panda' has no body"),
+        ("panda_link0", "robot 'panda' has no link 'panda_link0'"),
+    ):
+        with pytest.raises(bik.InvalidInputError) as caught:
+            bik.solve(ARM, ARM.fk(Q), obstacles=[POST, floor(link)])
+        assert str(caught.value) == f"touch of obstacle 1 (HalfSpace): {problem}; {bodies}"
+
+
 def test_a_goal_of_clearance_is_a_value() -> None:
     goal = bik.goals.Clearance(weight=2.0, up_to=0.3)
     assert repr(goal) == "goals.Clearance(weight=2.0, up_to=0.3)"

@@ -69,13 +69,27 @@ EVERY_KIND = [
     bik.obstacles.PointCloud([[0.1, 0.2, 0.3], [1, 2, 3]], 0.01),
     bik.obstacles.Grid([0, 0, 0], 0.1, [[[True, False]]]),
 ]
+TOUCHED = [
+    bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5, touch=["base", "link_1"]),
+    bik.obstacles.Box([0.1, 0.2, 0.3], [1, 2, 3], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], touch=["base"]),
+    bik.obstacles.Capsule([0, 0, 0], [1, 0, 0], 0.25, touch=["base"]),
+    bik.obstacles.Ellipsoid([0.1, 0.2, 0.3], [1, 2, 3], touch=["base"]),
+    bik.obstacles.Ellipse([0.1, 0.2], [1, 2], touch=["base"]),
+    bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], touch=["base"]),
+    bik.obstacles.Cylinder([0.1, 0.2, 1 / 3], [0.1, 0.2, 0.3], 0.05, 0.4, touch=["base"]),
+    bik.obstacles.HalfSpace([0.0, 0.6, 0.8], -0.1, touch=["base"]),
+    bik.obstacles.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], touch=["base"]),
+    bik.obstacles.PointCloud([[0.1, 0.2, 0.3], [1, 2, 3]], 0.01, touch=["base"]),
+    bik.obstacles.Grid([0, 0, 0], 0.1, [[[True, False]]], touch=["base"]),
+]
 
 
 def test_a_saved_scene_is_loaded_bit_by_bit(scene: Path) -> None:
-    before = bik.Scene(EVERY_KIND)
+    before = bik.Scene(EVERY_KIND + TOUCHED)
     before.save(scene)
     after = bik.Scene.load(scene)
     assert after == before
+    assert [shape.touch for shape in after] == [()] * 11 + [("base", "link_1")] + [("base",)] * 10
     assert json.loads(scene.read_text())["version"] == 1
 
 
@@ -117,6 +131,30 @@ def test_a_scene_is_an_immutable_sequence() -> None:
     assert copy.deepcopy(scene) == scene
     assert repr(scene[:1]) == "Scene([obstacles.Sphere([0.1, 0.2, 0.3], 0.5)])"
     assert repr(scene + OBSTACLES) == "<Scene: 12 obstacles>"
+
+
+@pytest.mark.parametrize("shape", TOUCHED, ids=[type(shape).__name__ for shape in TOUCHED])
+def test_who_may_touch_an_obstacle_is_part_of_its_value(shape: bik.obstacles.Obstacle) -> None:
+    for copied in (pickle.loads(pickle.dumps(shape)), copy.deepcopy(shape)):
+        assert (copied, hash(copied), repr(copied), copied.touch) == (shape, hash(shape), repr(shape), shape.touch)
+    arguments, named = shape.__getnewargs_ex__()
+    free = type(shape)(*arguments, **{**named, "touch": None})
+    assert free != shape
+    assert free.touch == ()
+    assert repr(shape) == f"{repr(free)[:-1]}, touch={json.dumps(list(shape.touch))})"
+
+
+def test_links_that_may_touch_are_a_set() -> None:
+    def ball(touch: Any) -> bik.obstacles.Sphere:
+        return bik.obstacles.Sphere([0, 0, 0], 1, touch=touch)
+
+    assert ball(["b", "a", "b"]) == ball(("a", "b"))
+    assert ball(["b", "a", "b"]).touch == ("a", "b")
+    assert ball([]) == ball(None) == bik.obstacles.Sphere([0, 0, 0], 1)
+    for wrong in ("base", 3, [3], [["base"]]):
+        with pytest.raises(bik.InvalidInputError) as caught:
+            ball(wrong)
+        assert str(caught.value) == f"touch must be a list of link names, got {wrong!r}"
 
 
 @pytest.mark.parametrize(

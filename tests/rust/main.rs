@@ -39,6 +39,7 @@ mod seed_index;
 mod state_to_state;
 mod tasks;
 mod time_optimal;
+mod touch;
 mod tracking;
 mod tracking_paper;
 mod trajectory;

@@ -245,7 +245,7 @@ pub enum Error {
         remedy: String,
     },
     /// A start or end in collision.
-    #[error("{what}: link '{link}' is {depth} {other}")]
+    #[error("{what}: link '{link}' is {depth} {other}{remedy}")]
     InCollision {
         /// The argument, such as "start".
         what: String,
@@ -255,6 +255,8 @@ pub enum Error {
         other: String,
         /// The penetration, such as "0.02 m inside".
         depth: String,
+        /// How to allow it, after a semicolon; empty if a joint moves the link.
+        remedy: String,
     },
     /// A joint with neither a velocity nor an acceleration limit.
     #[error(

@@ -12,7 +12,7 @@ use crate::shape::{Cover, Geometry};
 use crate::stored;
 
 /// Changes whenever covers do: entries of other versions are not found.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Larger entries are damaged (bytes): a cover has few shapes.
 const LARGEST_ENTRY: u64 = 1 << 20;
 

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
+use super::allowed_contacts::AllowedContacts;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
@@ -29,6 +30,8 @@ pub(super) struct BodyGroups {
 #[derive(Debug, Clone)]
 pub(super) struct Others<'a> {
     pub obstacles: Cow<'a, [Shape]>,
+    /// Bodies that may touch some of them.
+    pub allowed: AllowedContacts,
     /// Balls around them: centre and radius, infinite for a half-space.
     balls: Vec<(Vector3<f64>, f64)>,
     /// Finds the obstacles near a ball, if there are many.
@@ -38,20 +41,21 @@ pub(super) struct Others<'a> {
 }
 
 impl<'a> Others<'a> {
-    /// `obstacles`, and the robot itself.
-    pub fn new(obstacles: &'a [Shape]) -> Self {
+    /// `obstacles` but for the contacts that are `allowed`, and the robot itself.
+    pub fn new(obstacles: &'a [Shape], allowed: AllowedContacts) -> Self {
         let ball = |shape: &Shape| {
             let BoundingBall { center, radius } = shape.bounding_ball();
             (center.into(), radius)
         };
         let balls = obstacles.iter().map(ball).collect();
-        Self { balls, index: ShapeIndex::of_many(obstacles), obstacles: Cow::Borrowed(obstacles), itself: true }
+        let index = ShapeIndex::of_many(obstacles);
+        Self { obstacles: Cow::Borrowed(obstacles), allowed, balls, index, itself: true }
     }
 
     /// The same with obstacles of its own.
     pub fn into_owned(self) -> Others<'static> {
-        let Self { obstacles, balls, index, itself } = self;
-        Others { obstacles: Cow::Owned(obstacles.into_owned()), balls, index, itself }
+        let Self { obstacles, allowed, balls, index, itself } = self;
+        Others { obstacles: Cow::Owned(obstacles.into_owned()), allowed, balls, index, itself }
     }
 
     /// Calls `visit` with each obstacle that may be within `radius` (m) of `center`.
@@ -211,22 +215,39 @@ impl BodyGroups {
         if others.itself { &self.pairs } else { &[] }
     }
 
-    /// Whether the bodies of the lanes that are not `clear` by their capsules are `clear_of` an obstacle by their shapes.
+    /// Whether the bodies of the lanes that are not `clear` of an obstacle by their capsules may touch it, or are at least `margin`
+    /// (m) from it by their shapes.
     #[inline(never)]
+    fn others_are_clear(
+        &self,
+        (group, block, obstacle): (usize, usize, usize),
+        clear: &F64x4,
+        carried: &[Carried],
+        frames: &[Frame],
+        (others, margin): (&Others<'_>, f64),
+    ) -> bool {
+        let may_touch = |lane: usize| others.allowed.allow(self.groups[group].body(block, lane), obstacle);
+        let near = (0..4).filter(|lane| clear.0[*lane] == 0.0 && !may_touch(*lane));
+        self.solids_are_clear(near, (group, block), carried, frames, |body| {
+            others.obstacles[obstacle].distance_to_body(body, margin) >= margin
+        })
+    }
+
+    /// Whether the bodies of these lanes, which are not clear by their capsules, are `clear_of` something by their shapes.
+    #[inline]
     fn solids_are_clear(
         &self,
+        mut lanes: impl Iterator<Item = usize>,
         (group, block): (usize, usize),
-        clear: &F64x4,
         carried: &[Carried],
         frames: &[Frame],
         clear_of: impl Fn(&PlacedBody) -> bool,
     ) -> bool {
-        self.solids
-            && (0..4).filter(|lane| clear.0[*lane] == 0.0).all(|lane| {
-                let body = &carried[self.groups[group].body(block, lane)];
-                let frame = &frames[body.stages];
-                clear_of(&body.placed(&body.axis_at(frame), frame))
-            })
+        lanes.all(|lane| {
+            let body = &carried[self.groups[group].body(block, lane)];
+            let frame = &frames[body.stages];
+            self.solids && clear_of(&body.placed(&body.axis_at(frame), frame))
+        })
     }
 
     /// Whether the pairs of the lanes that are not `clear` by their capsules are at least `margin` (m) apart by their shapes.
@@ -241,10 +262,10 @@ impl BodyGroups {
     ) -> bool {
         let own = &carried[self.groups[pair.near].body(test.block, test.lane)];
         let frame = &frames[own.stages];
-        self.solids
-            && self.solids_are_clear((pair.far, test.far_block), clear, carried, frames, |body| {
-                own.placed(&own.axis_at(frame), frame).distance_to(body, margin) >= margin
-            })
+        let near = (0..4).filter(|lane| clear.0[*lane] == 0.0);
+        self.solids_are_clear(near, (pair.far, test.far_block), carried, frames, |body| {
+            own.placed(&own.axis_at(frame), frame).distance_to(body, margin) >= margin
+        })
     }
 
     /// The balls around all groups, four in a block.
@@ -297,11 +318,6 @@ impl Group {
         });
         let blocks = blocks.collect();
         Self { stages, center: center.into(), radius, bodies: indices, blocks }
-    }
-
-    /// Block and lane of each body.
-    fn bodies(&self) -> impl Iterator<Item = (usize, usize)> {
-        (0..self.bodies.len()).map(|i| (i / 4, i % 4))
     }
 
     /// The body in a lane of a block; lanes without one repeat the first.
@@ -388,9 +404,8 @@ by_instructions! {
             }
             for (block, capsules) in placed.1.iter().enumerate() {
                 let clear = obstacles[obstacle].clear_lanes::<A>(capsules, margin);
-                if !all_clear(&clear) && !all.solids_are_clear((group, block), &clear, carried, frames, |body| {
-                    obstacles[obstacle].distance_to_body(body, margin) >= margin
-                }) {
+                let part = (group, block, obstacle);
+                if !all_clear(&clear) && !all.others_are_clear(part, &clear, carried, frames, (others, margin)) {
                     return false;
                 }
             }
@@ -428,12 +443,15 @@ by_instructions! {
         for group in all.groups.iter().filter(|group| group.stages > 0) {
             let at = at(group);
             let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
-            for shape in obstacles {
+            for (obstacle, shape) in obstacles.iter().enumerate() {
                 if settled(shape.clear_lanes::<A>(&ball, margin), &clear) {
                     continue;
                 }
-                for (block, lane) in group.bodies() {
-                    let body = group.blocks[block].body_at::<A>(lane, &at);
+                for (i, number) in group.bodies.iter().enumerate() {
+                    if others.allowed.allow(*number, obstacle) {
+                        continue;
+                    }
+                    let body = group.blocks[i / 4].body_at::<A>(i % 4, &at);
                     clear = A::mul_x4(clear, shape.clear_lanes::<A>(&body, margin));
                 }
                 if none_clear(&clear) {

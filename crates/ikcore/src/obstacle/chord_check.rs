@@ -115,7 +115,8 @@ impl ChordCheck {
             scene.others.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
                 if scene.others.obstacles[obstacle].distance_to_segment(&[from, to], needed + reach) < needed + reach {
-                    pending.extend(bodies.iter().map(|body| BodyPair::Obstacle { body: *body, obstacle }));
+                    let tested = bodies.iter().filter(|body| !scene.others.allowed.allow(**body, obstacle));
+                    pending.extend(tested.map(|body| BodyPair::Obstacle { body: *body, obstacle }));
                 }
             });
         }

@@ -10,7 +10,7 @@ use crate::shape::{Geometry, Shape};
 /// A contact that no motion of the arm alone ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Blocked {
-    /// Of a body that no joint moves.
+    /// Of an obstacle and a body that no joint moves.
     Base(Contact),
     /// Of a body that is fixed to the tip.
     Hand(Contact),
@@ -57,13 +57,13 @@ impl<'a> ClearSpace<'a> {
     /// What makes every configuration unclear that has the tip where `q` (n,) has it: a body that no joint moves, or one that is
     /// fixed to the tip, is nearer than the margin to something that does not move either.
     pub(crate) fn blocked_at_tip(&self, q: &[f64]) -> Option<Blocked> {
-        self.blocked_anywhere().or_else(|| self.scene.contact_of_hand(q, self.margin).map(Blocked::Hand))
+        self.blocked_anywhere(q).or_else(|| self.scene.contact_of_hand(q, self.margin).map(Blocked::Hand))
     }
 
     /// What makes every configuration unclear: a body that no joint moves is nearer to an obstacle than the margin.
-    pub(crate) fn blocked_anywhere(&self) -> Option<Blocked> {
-        let nearest = self.scene.nearest_fixed_contact().filter(|contact| contact.distance < self.margin);
-        nearest.map(Blocked::Base)
+    /// `q` (n,) is any configuration.
+    pub(crate) fn blocked_anywhere(&self, q: &[f64]) -> Option<Blocked> {
+        self.scene.contact_at_rest(q, self.margin).map(Blocked::Base)
     }
 
     /// Scratch of [`find_rows`](Self::find_rows).

@@ -49,6 +49,11 @@ impl Contact {
         }
         format!("only {} m (of a margin of {} m) from", number(self.distance), number(kept))
     }
+
+    /// How to allow it, where the robot stands on the other body.
+    pub(crate) fn remedy(&self) -> String {
+        format!("if the robot stands there, give the obstacle touch=[\"{}\"]", self.link)
+    }
 }
 
 impl fmt::Display for Neighbor {

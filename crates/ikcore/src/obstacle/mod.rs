@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `placement` | where the bodies of a robot are at a configuration |
+//! | `allowed_contacts` | which bodies may touch which obstacles |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
@@ -14,6 +15,7 @@
 //! | `chord_check`, `kept_distance` | a motion from tick to tick, certified to keep its distances |
 //! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
 
+mod allowed_contacts;
 mod body_groups;
 mod body_model;
 mod chord_check;

@@ -114,8 +114,9 @@ impl Scene<'_> {
         match near {
             Near::Groups(i) => self.bodies.pairs_between(i).iter().copied().for_each(visit),
             Near::Obstacle { group, obstacle } => {
-                let bodies = self.bodies.groups.bodies_of(group);
-                bodies.iter().for_each(|body| visit(BodyPair::Obstacle { body: *body, obstacle }));
+                let bodies = self.bodies.groups.bodies_of(group).iter().copied();
+                let tested = bodies.filter(|body| !self.others.allowed.allow(*body, obstacle));
+                tested.for_each(|body| visit(BodyPair::Obstacle { body, obstacle }));
             }
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::allowed_contacts::AllowedContacts;
 use super::body_groups::Others;
 use super::body_model::{BodyModel, BodyPair};
 use super::contact::{Contact, NearestContact, Neighbor};
@@ -17,9 +18,16 @@ use crate::robot::{Carried, Joint, Robot};
 use crate::shape::{LineSegment, PlacedBody, Shape};
 use crate::wording::listed;
 
+/// A joint motion longer than any (rad, m).
+const ANY_MOTION: f64 = 1e9;
+
+/// A body that moves by less (m) does not move.
+const AT_REST: f64 = 1e-6;
+
 /// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// All bodies are tested against the obstacles, those of the base and of held links too. Links are tested against each other in
+/// All bodies are tested against the obstacles, those of the base and of held links too, unless an obstacle names their link
+/// ([`Shape::touch`]). Links are tested against each other in
 /// pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
@@ -33,7 +41,7 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
-    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
+    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, or one that may touch a link without a body.
     pub fn new(robot: &'a Robot, obstacles: &'a [Shape]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
             return Err(no_capsules(robot));
@@ -49,7 +57,9 @@ impl<'a> Scene<'a> {
             return Err(Error::InvalidObstacle { problem });
         }
         let bodies = BodyModel::of(robot);
-        let mut scene = Self { robot: Cow::Borrowed(robot), bodies, others: Others::new(obstacles), fixed: None };
+        let allowed = AllowedContacts::new(robot, &bodies.carried, obstacles)?;
+        let others = Others::new(obstacles, allowed);
+        let mut scene = Self { robot: Cow::Borrowed(robot), bodies, others, fixed: None };
         scene.fixed = scene.nearest_fixed();
         Ok(scene)
     }
@@ -61,10 +71,13 @@ impl<'a> Scene<'a> {
         self.nearest_of(pairs, &self.place(&vec![0.0; self.robot.dof()]))
     }
 
-    /// Each of the bodies that are `wanted` with each obstacle.
+    /// Each of the bodies that are `wanted` with each obstacle that it must not touch.
     fn with_obstacles(&self, wanted: impl Fn(&Carried) -> bool + Clone) -> impl Iterator<Item = BodyPair> + Clone {
-        let count = self.others.obstacles.len();
-        let with_each = move |body| (0..count).map(move |obstacle| BodyPair::Obstacle { body, obstacle });
+        let others = &self.others;
+        let with_each = move |body| {
+            let obstacles = (0..others.obstacles.len()).filter(move |obstacle| !others.allowed.allow(body, *obstacle));
+            obstacles.map(move |obstacle| BodyPair::Obstacle { body, obstacle })
+        };
         (0..self.bodies.carried.len()).filter(move |i| wanted(&self.bodies.carried[*i])).flat_map(with_each)
     }
 
@@ -162,9 +175,20 @@ impl<'a> Scene<'a> {
         [point, normal]
     }
 
-    /// The nearest obstacle and body that no joint moves; `None` if there is none.
-    pub(super) fn nearest_fixed_contact(&self) -> Option<Contact> {
-        self.fixed.map(|(distance, pair)| self.contact(pair, distance))
+    /// The nearest obstacle and body that no joint moves, such as a capsule about the axis of the first joint, if they are nearer
+    /// than `margin` (m); `q` (n,) is any configuration.
+    pub(crate) fn contact_at_rest(&self, q: &[f64], margin: f64) -> Option<Contact> {
+        let (placement, anywhere) = (self.place(q), vec![ANY_MOTION; self.robot.dof()]);
+        let mut nearest = self.fixed;
+        self.for_each_within(margin - AT_REST, &placement, |pair, distance| {
+            let is_nearest = nearest.is_none_or(|(least, _)| distance < least);
+            let is_of_obstacle = matches!(pair, BodyPair::Obstacle { .. });
+            if is_nearest && is_of_obstacle && self.change(pair, &placement, &anywhere) < AT_REST {
+                nearest = Some((distance, pair));
+            }
+        });
+        let (distance, pair) = nearest.filter(|(distance, _)| *distance < margin)?;
+        Some(self.contact(pair, distance))
     }
 
     /// Of the pairs nearer than `margin` (m) with one body fixed to the tip and the other at rest the nearest; `None` if there is none.

@@ -50,8 +50,13 @@ pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64
     let kept = margin + RESERVE;
     match scene.nearest(q)? {
         Some(contact) if contact.distance < kept => {
-            let depth = contact.depth(kept);
-            Err(Error::InCollision { what: what.into(), link: contact.link, other: contact.other.to_string(), depth })
+            let (other, depth) = (contact.other.to_string(), contact.depth(kept));
+            let remedy = if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) {
+                format!("; {}", contact.remedy())
+            } else {
+                String::new()
+            };
+            Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
         }
         _ => Ok(()),
     }

@@ -14,7 +14,7 @@ impl Robot {
     /// name it is "attached", "attached_2" and so on.
     ///
     /// It is tested against obstacles and against the links of the robot but
-    /// `link` itself, those that move with it, and those named in `touch`; and like any link without an SRDF
+    /// `link` itself, those that move with it, and those named in `touch` or by the shape ([`Shape::touch`]); and like any link without an SRDF
     /// ([`collision_pairs`](Self::collision_pairs)) not against those that it always touches or never meets.
     ///
     /// # Errors
@@ -22,6 +22,7 @@ impl Robot {
     /// [`Error::InvalidRobot`] for a name that is taken.
     pub fn with_attached(&self, link: &str, shape: &Shape, touch: &[&str], name: Option<&str>) -> Result<Self> {
         let parent = self.link_number(link)?;
+        let touch: Vec<&str> = touch.iter().copied().chain(shape.touch().iter().map(String::as_str)).collect();
         touch.iter().try_for_each(|link| self.link_number(link).map(|_| ()))?;
         if !shape.can_be_carried() {
             let problem = format!(

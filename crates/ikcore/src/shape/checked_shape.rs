@@ -21,6 +21,8 @@ pub struct Shape {
     bounds: BoundingBall,
     /// Allowance for rounding in distances from points near it (m).
     rounding: f64,
+    /// Sorted names of the links that may touch it; `None`: no link.
+    touch: Option<Arc<[String]>>,
 }
 
 /// What distances lose to rounding, for coordinates of 1 m (m).
@@ -30,7 +32,7 @@ impl Shape {
     fn made(geometry: Geometry, bounds: BoundingBall) -> Self {
         let reach = if bounds.radius.is_finite() { bounds.radius } else { 0.0 };
         let scale = bounds.center.iter().fold(1.0 + reach, |largest, x| largest.max(reach + x.abs()));
-        Self { geometry, bounds, rounding: ROUNDING * scale }
+        Self { geometry, bounds, rounding: ROUNDING * scale, touch: None }
     }
 
     /// A ball about `center` (m).
@@ -201,6 +203,19 @@ impl Shape {
             grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
         let bounds = ball_about(&corners, 0.0);
         Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
+    }
+
+    /// The same shape as an obstacle that the links of these names may touch.
+    pub fn with_touch(mut self, mut links: Vec<String>) -> Self {
+        links.sort_unstable();
+        links.dedup();
+        self.touch = (!links.is_empty()).then(|| links.into());
+        self
+    }
+
+    /// Names of the links that may touch it, sorted.
+    pub fn touch(&self) -> &[String] {
+        self.touch.as_deref().unwrap_or_default()
     }
 
     /// The geometry.

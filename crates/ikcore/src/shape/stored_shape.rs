@@ -25,13 +25,15 @@ enum StoredShape {
 
 impl Serialize for Shape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        StoredShape::from(self).serialize(serializer)
+        (StoredShape::from(self), self.touch()).serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Shape {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        StoredShape::deserialize(deserializer)?.try_into().map_err(serde::de::Error::custom)
+        let (stored, touch): (StoredShape, Vec<String>) = Deserialize::deserialize(deserializer)?;
+        let shape = Self::try_from(stored).map_err(serde::de::Error::custom)?;
+        Ok(shape.with_touch(touch))
     }
 }
 

@@ -1,11 +1,12 @@
 //! Reading of obstacle arguments.
 
 use ikcore::shape::Shape;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::body::PyObstacle;
-use crate::convert::summary;
+use crate::convert::{optional_texts, summary};
 use crate::error::invalid;
 
 /// The obstacles of a call.
@@ -27,6 +28,16 @@ impl Obstacles {
     pub fn read_shapes(value: &Bound<'_, PyAny>) -> PyResult<Vec<Shape>> {
         shapes(&items(value)?)
     }
+}
+
+/// Names of links that may touch something, as passed from Python.
+pub type Touch = Option<Vec<String>>;
+
+/// Reads names of links that may touch something.
+pub fn read_touch(value: &Bound<'_, PyAny>) -> PyResult<Touch> {
+    let wrong = || invalid(format!("touch must be a list of link names, got {}", summary(value)));
+    let named = |error: PyErr| if error.is_instance_of::<PyTypeError>(value.py()) { wrong() } else { error };
+    optional_texts(value).map_err(named)
 }
 
 fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {

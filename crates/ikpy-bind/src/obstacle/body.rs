@@ -5,8 +5,9 @@ use ikcore::nalgebra::Matrix3;
 use ikcore::shape::{Geometry, Grid, Shape};
 use pyo3::PyClass;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::{PyDict, PyTuple};
 
+use super::argument::Touch;
 use super::arrays::{faces, occupied, points};
 use crate::convert::{Array, table};
 use crate::error::raise;
@@ -14,6 +15,9 @@ use crate::hash::content_hash;
 use crate::options::NewArguments;
 
 /// The base class of obstacles: a shape, fixed in the frame of the robot's base.
+///
+/// Each takes `touch=`, a list of link names: those links are not kept clear of it. A floor is `HalfSpace((0, 0, 1), 0.0,
+/// touch=["panda_link0"])`.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
@@ -21,11 +25,12 @@ pub struct PyObstacle {
 }
 
 /// Makes an instance of an obstacle's class, with its own fields.
-pub(super) fn made<C>(core: ikcore::Result<Shape>, own: C) -> PyResult<PyClassInitializer<C>>
+pub(super) fn made<C>(core: ikcore::Result<Shape>, touch: Touch, own: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyObstacle>,
 {
-    Ok(PyClassInitializer::from(PyObstacle { core: core.map_err(raise)? }).add_subclass(own))
+    let core = core.map_err(raise)?.with_touch(touch.unwrap_or_default());
+    Ok(PyClassInitializer::from(PyObstacle { core }).add_subclass(own))
 }
 
 #[pymethods]
@@ -37,6 +42,12 @@ impl PyObstacle {
         let triangles = self.core.triangles();
         let count = triangles.len();
         table(py, triangles.as_flattened().as_flattened().to_vec(), &[count, 3, 3])
+    }
+
+    /// Names of the links that may touch it, sorted. As the body of a robot (`robot.with_attached`) it may touch them too.
+    #[getter]
+    fn touch<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.core.touch())
     }
 
     fn __repr__(&self) -> String {
@@ -65,7 +76,11 @@ impl PyObstacle {
                 format!("{:?}, {:?}, {}", grid.origin(), grid.voxel(), voxels_text(grid))
             }
         };
-        format!("obstacles.{}({arguments})", self.core.name())
+        let touch = match self.core.touch() {
+            [] => String::new(),
+            links => format!(", touch={links:?}"),
+        };
+        format!("obstacles.{}({arguments}{touch})", self.core.name())
     }
 
     fn __hash__(&self) -> u64 {
@@ -73,27 +88,36 @@ impl PyObstacle {
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
-        let none = PyDict::new(py);
-        let turned = |pose: &Pose| rotation_rows(pose).map(|rows| [("rotation", rows)].into_py_dict(py)).transpose();
-        Ok(match self.core.geometry() {
-            Geometry::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
-            Geometry::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
-            Geometry::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
+        let named = PyDict::new(py);
+        if !self.core.touch().is_empty() {
+            named.set_item("touch", self.core.touch())?;
+        }
+        let turned = |pose: &Pose| rotation_rows(pose).map_or(Ok(()), |rows| named.set_item("rotation", rows));
+        let arguments = match self.core.geometry() {
+            Geometry::Sphere { center, radius } => (*center, *radius).into_pyobject(py)?,
+            Geometry::Box { pose, size } => {
+                turned(pose)?;
+                (point_of(pose), *size).into_pyobject(py)?
+            }
+            Geometry::Capsule { a, b, radius } => (*a, *b, *radius).into_pyobject(py)?,
             Geometry::Ellipsoid { pose, semi_axes } => {
-                ((point_of(pose), *semi_axes).into_pyobject(py)?, turned(pose)?.unwrap_or(none))
+                turned(pose)?;
+                (point_of(pose), *semi_axes).into_pyobject(py)?
             }
             Geometry::Ellipse { center, semi_axes, angle } => {
-                ((*center, *semi_axes).into_pyobject(py)?, [("angle", *angle)].into_py_dict(py)?)
+                named.set_item("angle", angle)?;
+                (*center, *semi_axes).into_pyobject(py)?
             }
             Geometry::Cylinder { center, axis, radius, length } => {
-                ((*center, *axis, *radius, *length).into_pyobject(py)?, none)
+                (*center, *axis, *radius, *length).into_pyobject(py)?
             }
-            Geometry::HalfSpace { normal, offset } => ((*normal, *offset).into_pyobject(py)?, none),
-            Geometry::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
-            Geometry::Mesh(mesh) => ((points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?, none),
-            Geometry::PointCloud(cloud) => ((points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?, none),
-            Geometry::Grid(grid) => ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none),
-        })
+            Geometry::HalfSpace { normal, offset } => (*normal, *offset).into_pyobject(py)?,
+            Geometry::ConvexMesh(hull) => (hull.points().to_vec(),).into_pyobject(py)?,
+            Geometry::Mesh(mesh) => (points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?,
+            Geometry::PointCloud(cloud) => (points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?,
+            Geometry::Grid(grid) => (grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?,
+        };
+        Ok((arguments, named))
     }
 }
 

@@ -4,6 +4,7 @@ use ikcore::shape::{Geometry, Shape};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
+use super::argument::{Touch, read_touch};
 use super::arrays::{Coordinates, faces, occupied, points, read_faces, read_occupied, read_points};
 use super::body::{PyObstacle, made};
 use crate::convert::{Array, point, table};
@@ -17,13 +18,15 @@ pub struct PyMesh;
 #[pymethods]
 impl PyMesh {
     #[new]
+    #[pyo3(signature = (vertices, faces, *, touch=None))]
     fn new(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
     ) -> PyResult<PyClassInitializer<Self>> {
         let (vertices, faces) = (read_points("vertices", vertices)?, read_faces(faces)?);
-        made(Ok(on_a_thread(py, move || Shape::mesh(vertices, faces))?), Self)
+        made(Ok(on_a_thread(py, move || Shape::mesh(vertices, faces))?), touch, Self)
     }
 
     /// The vertices (k, 3) (m).
@@ -62,9 +65,15 @@ pub struct PyPointCloud {
 #[pymethods]
 impl PyPointCloud {
     #[new]
-    fn new(py: Python<'_>, points: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (points, radius, *, touch=None))]
+    fn new(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        radius: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let points = read_points("points", points)?;
-        made(Ok(on_a_thread(py, move || Shape::point_cloud(points, radius))?), Self { radius })
+        made(Ok(on_a_thread(py, move || Shape::point_cloud(points, radius))?), touch, Self { radius })
     }
 
     /// The points (k, 3) (m).
@@ -92,16 +101,18 @@ pub struct PyGrid {
 #[pymethods]
 impl PyGrid {
     #[new]
+    #[pyo3(signature = (origin, voxel, occupied, *, touch=None))]
     fn new(
         py: Python<'_>,
         origin: &Bound<'_, PyAny>,
         voxel: f64,
         occupied: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
     ) -> PyResult<PyClassInitializer<Self>> {
         let origin = point("origin", origin)?;
         let (counts, occupied) = read_occupied(occupied)?;
         let grid = on_a_thread(py, move || Shape::grid(origin, voxel, counts, occupied))?;
-        made(Ok(grid), Self { origin: Coordinates(origin), voxel })
+        made(Ok(grid), touch, Self { origin: Coordinates(origin), voxel })
     }
 
     /// Whether each voxel is occupied (nx, ny, nz).

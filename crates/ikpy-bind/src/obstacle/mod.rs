@@ -11,7 +11,7 @@ mod shapes;
 
 use pyo3::prelude::*;
 
-pub use argument::Obstacles;
+pub use argument::{Obstacles, Touch, read_touch};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};

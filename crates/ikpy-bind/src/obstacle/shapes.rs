@@ -4,6 +4,7 @@ use ikcore::shape::{Geometry, Shape};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use super::argument::{Touch, read_touch};
 use super::arrays::{Coordinates, Rotation, read_points, read_rotation};
 use super::body::{PyObstacle, made};
 use crate::convert::{Array, copied, entries, point, table};
@@ -23,9 +24,14 @@ pub struct PySphere {
 #[pymethods]
 impl PySphere {
     #[new]
-    fn new(center: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (center, radius, *, touch=None))]
+    fn new(
+        center: &Bound<'_, PyAny>,
+        radius: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let center = point("center", center)?;
-        made(Shape::sphere(center, radius), Self { center: Coordinates(center), radius })
+        made(Shape::sphere(center, radius), touch, Self { center: Coordinates(center), radius })
     }
 }
 
@@ -46,16 +52,17 @@ pub struct PyBox {
 #[pymethods]
 impl PyBox {
     #[new]
-    #[pyo3(signature = (center, size, rotation=None))]
+    #[pyo3(signature = (center, size, rotation=None, *, touch=None))]
     fn new(
         center: &Bound<'_, PyAny>,
         size: &Bound<'_, PyAny>,
         rotation: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
     ) -> PyResult<PyClassInitializer<Self>> {
         let (center, size) = (point("center", center)?, point("size", size)?);
         let rotation = read_rotation(rotation)?;
         let own = Self { center: Coordinates(center), size: Coordinates(size), rotation: Rotation::or_none(rotation) };
-        made(Shape::cuboid(center, size, rotation), own)
+        made(Shape::cuboid(center, size, rotation), touch, own)
     }
 }
 
@@ -76,9 +83,15 @@ pub struct PyCapsule {
 #[pymethods]
 impl PyCapsule {
     #[new]
-    fn new(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (a, b, radius, *, touch=None))]
+    fn new(
+        a: &Bound<'_, PyAny>,
+        b: &Bound<'_, PyAny>,
+        radius: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let (a, b) = (point("a", a)?, point("b", b)?);
-        made(Shape::capsule(a, b, radius), Self { a: Coordinates(a), b: Coordinates(b), radius })
+        made(Shape::capsule(a, b, radius), touch, Self { a: Coordinates(a), b: Coordinates(b), radius })
     }
 }
 
@@ -99,15 +112,17 @@ pub struct PyCylinder {
 #[pymethods]
 impl PyCylinder {
     #[new]
+    #[pyo3(signature = (center, axis, radius, length, *, touch=None))]
     fn new(
         center: &Bound<'_, PyAny>,
         axis: &Bound<'_, PyAny>,
         radius: f64,
         length: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
     ) -> PyResult<PyClassInitializer<Self>> {
         let (center, axis) = (point("center", center)?, point("axis", axis)?);
         let own = Self { center: Coordinates(center), radius, length };
-        made(Shape::cylinder(center, axis, radius, length), own)
+        made(Shape::cylinder(center, axis, radius, length), touch, own)
     }
 
     /// Axis (3,), of unit length.
@@ -132,9 +147,14 @@ pub struct PyHalfSpace {
 #[pymethods]
 impl PyHalfSpace {
     #[new]
-    fn new(normal: &Bound<'_, PyAny>, offset: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (normal, offset, *, touch=None))]
+    fn new(
+        normal: &Bound<'_, PyAny>,
+        offset: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let normal = point("normal", normal)?;
-        made(Shape::half_space(normal, offset), Self { offset })
+        made(Shape::half_space(normal, offset), touch, Self { offset })
     }
 
     /// Outward normal (3,), of unit length.
@@ -164,11 +184,12 @@ pub struct PyEllipsoid {
 #[pymethods]
 impl PyEllipsoid {
     #[new]
-    #[pyo3(signature = (center, semi_axes, rotation=None))]
+    #[pyo3(signature = (center, semi_axes, rotation=None, *, touch=None))]
     fn new(
         center: &Bound<'_, PyAny>,
         semi_axes: &Bound<'_, PyAny>,
         rotation: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
     ) -> PyResult<PyClassInitializer<Self>> {
         let (center, semi_axes) = (point("center", center)?, point("semi_axes", semi_axes)?);
         let rotation = read_rotation(rotation)?;
@@ -177,7 +198,7 @@ impl PyEllipsoid {
             semi_axes: Coordinates(semi_axes),
             rotation: Rotation::or_none(rotation),
         };
-        made(Shape::ellipsoid(center, semi_axes, rotation), own)
+        made(Shape::ellipsoid(center, semi_axes, rotation), touch, own)
     }
 }
 
@@ -199,11 +220,16 @@ pub struct PyEllipse {
 #[pymethods]
 impl PyEllipse {
     #[new]
-    #[pyo3(signature = (center, semi_axes, angle=0.0))]
-    fn new(center: &Bound<'_, PyAny>, semi_axes: &Bound<'_, PyAny>, angle: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (center, semi_axes, angle=0.0, *, touch=None))]
+    fn new(
+        center: &Bound<'_, PyAny>,
+        semi_axes: &Bound<'_, PyAny>,
+        angle: f64,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let (center, semi_axes) = (entries("center", center)?, entries("semi_axes", semi_axes)?);
         let own = Self { center: Coordinates(center), semi_axes: Coordinates(semi_axes), angle };
-        made(Shape::ellipse(center, semi_axes, angle), own)
+        made(Shape::ellipse(center, semi_axes, angle), touch, own)
     }
 }
 
@@ -216,11 +242,16 @@ pub struct PyConvexMesh {
 #[pymethods]
 impl PyConvexMesh {
     #[new]
-    fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (points, *, touch=None))]
+    fn new(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let points = read_points("points", points)?;
         let given = points.clone();
         let hull = on_a_thread(py, move || Shape::convex_mesh(&given));
-        made(Ok(hull?), Self { points })
+        made(Ok(hull?), touch, Self { points })
     }
 
     /// The points as given (k, 3) (m).

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{count, path_or_text, point, rigid, scalar_or_vector, summary};
 use crate::error::{invalid, raise};
-use crate::obstacle::PyObstacle;
+use crate::obstacle::{PyObstacle, Touch, read_touch};
 
 #[pymethods]
 impl PyRobot {
@@ -68,7 +68,7 @@ impl PyRobot {
         &self,
         #[pyo3(from_py_with = crate::convert::text)] link: &str,
         shape: &Bound<'_, PyAny>,
-        #[pyo3(from_py_with = crate::convert::optional_texts)] touch: Option<Vec<String>>,
+        #[pyo3(from_py_with = read_touch)] touch: Touch,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<Self> {
         let shape = shape.cast::<PyObstacle>().map_err(|_| {

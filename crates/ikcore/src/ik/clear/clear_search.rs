@@ -54,7 +54,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         }
         if self.blocked.count == 0 {
             let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
-            self.hopeless = if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere() };
+            self.hopeless = if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere(q) };
         }
         self.blocked.push(q);
         false
@@ -113,7 +113,9 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
             (Some(Blocked::Hand(contact)), _) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(contact))
             }
-            (Some(Blocked::Base(contact)), _) => format!("{}, and no joint moves it", said(contact)),
+            (Some(Blocked::Base(contact)), _) => {
+                format!("{} whatever the arm does; {}", said(contact), contact.remedy())
+            }
             (None, Exhausted::All) if self.blocked.count == 1 => {
                 format!("{} at the only solution inside the limits", said(&nearest.contact))
             }

@@ -84,10 +84,10 @@ impl<'a> CollisionTest<'a> {
 }
 
 impl UnitDisc {
-    /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape.
+    /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape, or one that some links may touch.
     fn of(obstacle: &Shape, kept: f64) -> Option<Self> {
         match *obstacle.geometry() {
-            Geometry::Ellipse { center, semi_axes, angle } => {
+            Geometry::Ellipse { center, semi_axes, angle } if obstacle.touch().is_empty() => {
                 let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
                 Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })
             }

@@ -1,0 +1,59 @@
+//! Which bodies may touch which obstacles.
+
+use crate::error::{Error, Result, shortened, suggestion};
+use crate::robot::{Carried, Robot};
+use crate::shape::Shape;
+use crate::wording::listed;
+
+/// Pairs of an obstacle and a body that are not compared, such as a floor and the base that stands on it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct AllowedContacts {
+    /// Obstacle and body, sorted.
+    pairs: Vec<[usize; 2]>,
+}
+
+impl AllowedContacts {
+    /// Those that the obstacles name ([`Shape::touch`]), of the `bodies` of `robot`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidObstacle`] for the name of no link, or of a link without a body.
+    pub fn new(robot: &Robot, bodies: &[Carried], obstacles: &[Shape]) -> Result<Self> {
+        let mut pairs = vec![];
+        for (obstacle, shape) in obstacles.iter().enumerate() {
+            for link in shape.touch() {
+                let before = pairs.len();
+                let of_link = (0..bodies.len()).filter(|body| bodies[*body].link == *link);
+                pairs.extend(of_link.map(|body| [obstacle, body]));
+                if pairs.len() == before {
+                    return Err(no_body(robot, bodies, link, &format!("obstacle {obstacle} ({})", shape.name())));
+                }
+            }
+        }
+        pairs.sort_unstable();
+        Ok(Self { pairs })
+    }
+
+    /// Whether no contact is allowed.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Whether a body may touch an obstacle.
+    #[inline]
+    pub fn allow(&self, body: usize, obstacle: usize) -> bool {
+        !self.is_empty() && self.pairs.binary_search(&[obstacle, body]).is_ok()
+    }
+}
+
+fn no_body(robot: &Robot, bodies: &[Carried], link: &str, obstacle: &str) -> Error {
+    let mut known: Vec<&str> = bodies.iter().map(|body| body.link.as_str()).collect();
+    known.dedup();
+    let (name, meant) = (shortened(link), suggestion(link, known.iter().copied()));
+    let lacks = match robot.place_of_link(link) {
+        Some(_) => format!("link '{name}' of robot '{}' has no body", robot.name()),
+        None => format!("robot '{}' has no link '{name}'{meant}", robot.name()),
+    };
+    let known = listed(known);
+    Error::InvalidObstacle { problem: format!("touch of {obstacle}: {lacks}; links with bodies: {known}") }
+}
