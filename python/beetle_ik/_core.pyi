@@ -2079,6 +2079,9 @@ def track(
     goals: _Goals = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
@@ -2151,6 +2154,8 @@ class TrackResult:
     @property
     def qd(self) -> _Array:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
+    @property
+    def clearance(self) -> _Array: ...
     @property
     def velocity_limit(self) -> _Array:
         """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
@@ -2280,6 +2285,9 @@ class Tracker:
         goals: _Goals = None,
         position_tolerance: float = 1e-6,
         rotation_tolerance: float = 1e-6,
+        obstacles: Iterable[Obstacle | Moving] | None = None,
+        margin: float | None = None,
+        self_collision: bool | None = None,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
@@ -2308,6 +2316,10 @@ class Tracker:
         Returns:
             How long the stop takes (s); 0 without acceleration and jerk limits.
         """
+    @property
+    def obstacles(self) -> tuple[Obstacle | Moving, ...] | None: ...
+    @obstacles.setter
+    def obstacles(self, value: Iterable[Obstacle | Moving] | None) -> None: ...
     def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
         """Resets to q (n,) and t = 0, at rest or in motion.
 
@@ -2369,6 +2381,10 @@ class Step:
     @property
     def inside_limits(self) -> bool:
         """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def nearest(self) -> Nearest | None: ...
 
 # --- obstacles ----------------------------------------------------------------------------------
 
@@ -2579,6 +2595,17 @@ class Body:
     @property
     def source(self) -> str:
         """Where it comes from: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
+
+@final
+class Moving:
+    def __new__(cls, shape: Obstacle, velocity: ArrayLike) -> Moving: ...
+    @property
+    def shape(self) -> Obstacle: ...
+    @property
+    def velocity(self) -> _Array: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __getnewargs__(self) -> tuple[Obstacle, list[float]]: ...
 
 @final
 class Nearest:

@@ -1,6 +1,6 @@
 """Obstacles, in the frame of the robot's base, and the distance of a robot from them.
 
-A plan keeps all link capsules of the robot clear of the obstacles:
+Solutions, tracks and plans keep all bodies of the robot clear of the obstacles:
 
     robot = bik.Robot.named("panda").with_capsules(radius=0.06)
     crate = bik.obstacles.Box(center=(0.5, 0, 0.2), size=(0.2, 0.6, 0.4))
@@ -20,6 +20,7 @@ from ._core import (
     Grid,
     HalfSpace,
     Mesh,
+    Moving,
     Nearest,
     Obstacle,
     PointCloud,
@@ -38,6 +39,7 @@ __all__ = [
     "Grid",
     "HalfSpace",
     "Mesh",
+    "Moving",
     "Nearest",
     "Obstacle",
     "PointCloud",

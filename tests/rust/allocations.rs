@@ -7,8 +7,10 @@ use std::cell::Cell;
 
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::math::Frame;
+use ikcore::obstacle::Surroundings;
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::Unattended;
 use ikcore::task::{Goal, Target};
 use ikcore::tracking::{Arrival, OneEuro, Session, TargetFilter, TrackOptions};
@@ -44,9 +46,25 @@ const TICKS: usize = if cfg!(debug_assertions) { 100_000 } else { 1_000_000 };
 
 #[test]
 fn a_step_allocates_nothing() {
-    let arm = Robot::named("panda").unwrap();
+    count_allocations(&Robot::named("panda").unwrap(), Surroundings::default(), TICKS);
+}
+
+#[test]
+fn a_step_among_obstacles_allocates_nothing() {
+    let arm = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+    let tip = arm.tip(&START).origin;
+    let boxes = [[0.0, 0.3, 0.0], [0.0, -0.2, 0.3], [0.3, 0.0, 0.0]].map(|away: [f64; 3]| {
+        let center = std::array::from_fn(|k| tip[k] + away[k]);
+        Shape::cuboid(center, [0.1, 0.2, 0.2], None).unwrap()
+    });
+    let surroundings = Surroundings { obstacles: Some(boxes.to_vec()), margin: Some(0.01), self_collision: None };
+    count_allocations(&arm, surroundings, TICKS / 20);
+}
+
+/// Drives an arm with every option on; the scratch grows in the first tenth of the ticks.
+fn count_allocations(arm: &Robot, surroundings: Surroundings, ticks: usize) {
     let wave = Sinusoid { mean: 1.2, amplitude: 0.5, angular_frequency: 2.0, phase: 0.0 };
-    let limits = Limits::of(&arm)
+    let limits = Limits::of(arm)
         .replace(Field::Velocity, vec![Profile::Sinusoid(wave)])
         .and_then(|limits| limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]))
         .and_then(|limits| limits.replace(Field::Jerk, vec![Profile::Constant(80.0)]))
@@ -56,9 +74,10 @@ fn a_step_allocates_nothing() {
         goals: vec![Goal::Centring { weight: 0.1 }],
         target_filter: Some(TargetFilter::OneEuro(OneEuro { min_cutoff: 5.0, beta: 5.0 })),
         timeout: Some(0.2),
+        surroundings,
         ..TrackOptions::default()
     };
-    let mut session = Session::new(&arm, &START, 0.001, &options).unwrap();
+    let mut session = Session::new(arm, &START, 0.001, &options).unwrap();
     let tip = arm.tip(&START);
     let mut draws = rng::stream(2, 0);
     let mut step = |tick: usize, session: &mut Session| {
@@ -71,9 +90,10 @@ fn a_step_allocates_nothing() {
         let arrival = arrives.then_some(Arrival { target, velocity: None, stamp });
         session.advance(arrival, &mut Unattended).unwrap();
     };
-    step(0, &mut session);
+    let first = if options.surroundings == Surroundings::default() { 1 } else { ticks / 10 };
+    (0..first).for_each(|tick| step(tick, &mut session));
     let before = ALLOCATIONS.with(Cell::get);
-    for tick in 1..TICKS {
+    for tick in first..ticks {
         step(tick, &mut session);
     }
     assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);

@@ -40,6 +40,7 @@ mod state_to_state;
 mod tasks;
 mod time_optimal;
 mod touch;
+mod track_clear;
 mod tracking;
 mod tracking_paper;
 mod trajectory;

@@ -33,6 +33,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
             "max": error[1:].max(),
             "steady_mean": error[len(error) // 2 :].mean(),  # over the second half, when the approach is over
         },
+        "clearance": None if np.isnan(result.clearance).all() else result.clearance.min(),
         "limit_margin": result.limit_margin,
         "max_violation": result.max_violation,
         "velocity_limit": {
@@ -54,12 +55,14 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
 def print_summary(summary: dict[str, Any], out: Path | None) -> None:
     """Prints the summary as a table, a note on limits above the robot's own, and where the files are."""
     error, limit = summary["position_error"], summary["velocity_limit"]
+    clearance = summary["clearance"]
     print_pairs(
         f"{summary['robot']}, {counted(summary['steps'], 'step')} of {summary['dt']:g} s: {summary['message']}",
         [
             ("mean position error [m]", f"{error['mean']:.3g}"),
             ("  second half", f"{error['steady_mean']:.3g}"),
             ("  maximum", f"{error['max']:.3g}"),
+            *([] if clearance is None else [("smallest clearance [m]", f"{clearance:.3g}")]),
             ("smallest velocity margin [rad/s]", f"{summary['limit_margin']:.3g}"),
             ("largest limit violation [rad, m]", f"{summary['max_violation']:.3g}"),
             ("velocity limit [rad/s]", f"{_span(limit['lowest'], limit['highest'])} ({limit['source']})"),

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import InvalidInputError, Limits, Robot
+from .. import InvalidInputError, Limits, Robot, Scene
 from .. import Path as ReferencePath
 from .. import track as track_path
 from .curves import CurveName, make_curve, read_points
@@ -15,7 +15,10 @@ from .options import (
     AsJson,
     BaseLink,
     Jerk,
+    LinkRadius,
+    Margin,
     RobotName,
+    SceneFile,
     Seed,
     SolverName,
     Start,
@@ -101,6 +104,9 @@ def track(
     position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
     dt: Annotated[float, typer.Option(help="Time step in s.")] = 0.2,
     start: Start = None,
+    scene: SceneFile = None,
+    margin: Margin = None,
+    link_radius: LinkRadius = None,
     seed: Seed = 0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, track.png and summary.json.")
@@ -111,7 +117,7 @@ def track(
     as_json: AsJson = False,
 ) -> None:
     """Follow a path with the tip, within the joint limits."""
-    arm = load_robot(robot, urdf, base, tip)
+    arm = load_robot(robot, urdf, base, tip, link_radius)
     triples = {"center": center, "a": a, "b": b}
     others = {
         "diameter": diameter,
@@ -136,6 +142,8 @@ def track(
             solver=None if solver is None else make_solver(solver),
             limits=limits,
             position_tolerance=position_tolerance,
+            obstacles=None if scene is None else Scene.load(scene),
+            margin=margin,
             seed=seed,
             ease=ease,
             progress=not as_json,

@@ -5,9 +5,11 @@
 //! and the box of the tick. It is sent if the command together with the stop after it is certified clear, between ticks too; otherwise
 //! a part of it is, and in the end the stop goes on that was certified before.
 
+use std::sync::Arc;
+
 use super::limited_motion::LimitedMotion;
 use super::stop_motion::StopMotion;
-use crate::error::Result;
+use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
 use crate::math::box_step::ROWS;
 use crate::math::row_step::{Row, RowSolver, RowStep};
@@ -35,6 +37,9 @@ const DAMPING: f64 = 1e-5;
 
 /// Gauss-Newton steps towards the target along the rows.
 const STEPS: usize = 3;
+
+/// Rows of a goal are trusted for joint motions up to this (rad, m).
+const TRUSTED: f64 = 0.05;
 
 /// What an obstacle may do between two calls that say where it is.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -66,7 +71,7 @@ pub(super) struct Goal<'a> {
 /// Keeps an arm clear, tick by tick.
 #[derive(Debug)]
 pub(super) struct ClearMotion {
-    space: ClearSpace<'static>,
+    space: Arc<ClearSpace<'static>>,
     obstacles: ObstacleMotion,
     /// Time since the obstacles were where they are said to be (s).
     since: f64,
@@ -80,10 +85,18 @@ pub(super) struct ClearMotion {
 }
 
 impl ObstacleMotion {
-    /// With these velocities (m/s).
-    pub fn new(velocities: Vec<[f64; 3]>) -> Self {
+    /// With these velocities (m/s): one for each of the obstacles, of which there are `count`, or none.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub fn new(velocities: Vec<[f64; 3]>, count: usize) -> Result<Self> {
+        if !velocities.is_empty() && velocities.len() != count {
+            let what = "velocities".into();
+            return Err(Error::WrongLength { what, expected: format!("{count} obstacles"), got: velocities.len() });
+        }
+        require_finite("velocities", velocities.as_flattened(), |k| format!("obstacle {}", k / 3))?;
         let speeds = velocities.iter().map(|velocity| norm(velocity)).collect();
-        Self { velocities, speeds }
+        Ok(Self { velocities, speeds })
     }
 
     fn fastest(&self) -> f64 {
@@ -106,7 +119,7 @@ impl ClearMotion {
         }
         Ok(Self {
             near: space.near_rows(),
-            space,
+            space: Arc::new(space),
             obstacles: ObstacleMotion::default(),
             since: 0.0,
             rows: vec![],
@@ -118,8 +131,13 @@ impl ClearMotion {
     }
 
     /// The space to stay in.
-    pub fn space(&self) -> &ClearSpace<'static> {
+    pub fn space(&self) -> &Arc<ClearSpace<'static>> {
         &self.space
+    }
+
+    /// Velocities of the obstacles (m/s); empty if all are at rest.
+    pub fn velocities(&self) -> &[[f64; 3]] {
+        &self.obstacles.velocities
     }
 
     /// Sets how the obstacles move.
@@ -163,31 +181,42 @@ impl ClearMotion {
         *q != wanted
     }
 
-    /// Moves `sample`, a configuration that meets a target, to one that also keeps the margin, as near as that allows.
-    pub fn clear_goal(&mut self, goal: &Goal<'_>, sample: &mut Point) {
+    /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
+    /// beside the rows from `expected`, the goal so far.
+    pub fn clear_goal(&mut self, goal: &Goal<'_>, expected: &[f64], sample: &mut Point) {
+        self.goal_is_held = !self.set_goal_rows(sample);
+        if !self.goal_is_held {
+            return;
+        }
         let n = sample.len();
-        self.goal_is_held = false;
+        sample.copy_from_slice(expected);
+        goal.positions.clip(sample);
         for _ in 0..STEPS {
-            let far = self.obstacles.fastest() * (self.since + WARNING);
-            self.space.find_rows(sample, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
-            let short = |row: &Row| dot(&row.gradient[..n], sample) < row.least;
-            self.rows.clear();
-            for near in self.near.rows() {
-                let kept = self.space.margin() + 2.0 * ROOM + self.ahead(near, 0.0);
-                let least = kept - near.distance + dot(&near.gradient[..n], sample);
-                self.rows.push(Row { gradient: near.gradient, least });
-            }
-            if !self.rows.iter().any(short) {
-                return;
-            }
-            let tip = goal.robot.tip_and_jacobian(sample, &mut self.linearization.columns);
+            self.set_goal_rows(sample);
+            let start = sample.clone();
+            let ends = start.iter().zip(goal.positions.lower().iter().zip(goal.positions.upper()));
+            let near = ends.map(|(q, (lower, upper))| ((q - TRUSTED).max(*lower), (q + TRUSTED).min(*upper)));
+            let near = Bounds::from_ranges(near);
+            let tip = goal.robot.tip_and_jacobian(&start, &mut self.linearization.columns);
             goal.target.linearize_tip(&tip, n, goal.criterion, &mut self.linearization);
             let Linearization { columns, residual } = &*self.linearization;
-            let (start, lambda) = (sample.clone(), damping(&columns[..n]));
-            let (lower, upper) = (goal.positions.lower(), goal.positions.upper());
+            let (lower, upper, lambda) = (near.lower(), near.upper(), damping(&columns[..n]));
             let step = RowStep { columns, residual, lambda, start: &start, lower, upper, rows: &self.rows };
-            self.goal_is_held = self.solver.write(&step, sample);
+            self.solver.write(&step, sample);
         }
+    }
+
+    /// Sets the rows of a goal configuration at `q`. Returns whether it keeps them.
+    fn set_goal_rows(&mut self, q: &[f64]) -> bool {
+        let far = self.obstacles.fastest() * (self.since + WARNING);
+        self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
+        self.rows.clear();
+        for near in self.near.rows() {
+            let kept = self.space.margin() + 2.0 * ROOM + self.ahead(near, 0.0);
+            let least = kept - near.distance + dot(&near.gradient[..q.len()], q);
+            self.rows.push(Row { gradient: near.gradient, least });
+        }
+        self.rows.iter().all(|row| dot(&row.gradient, q) >= row.least)
     }
 
     /// Whether obstacles changed the last goal.

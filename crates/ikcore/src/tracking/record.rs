@@ -37,6 +37,8 @@ pub struct Record {
     pub position_error: Vec<f64>,
     /// Angles from the reference orientations (k,) (rad); NaN where the task has no orientation.
     pub rotation_error: Vec<f64>,
+    /// Smallest distances from obstacles and between links (k,) (m); NaN if nothing was to be kept clear of.
+    pub clearance: Vec<f64>,
     /// How each tick ended (k,).
     pub step_status: Vec<Status>,
     /// Evaluations of the forward kinematics per tick (k,).
@@ -83,6 +85,8 @@ pub(super) struct Accepted<'a> {
     pub q: &'a [f64],
     /// The limits that `q` is checked against.
     pub tick_box: &'a TickBox,
+    /// Smallest distance from obstacles and between links (m).
+    pub clearance: f64,
 }
 
 impl Record {
@@ -102,6 +106,7 @@ impl Record {
             reference: Vec::with_capacity(rows),
             position_error: Vec::with_capacity(rows),
             rotation_error: Vec::with_capacity(rows),
+            clearance: Vec::with_capacity(rows),
             step_status: Vec::with_capacity(rows),
             step_evaluations: Vec::with_capacity(rows),
             step_iterations: Vec::with_capacity(rows),
@@ -142,6 +147,7 @@ impl Record {
         self.reference.push(reference);
         self.position_error.push(step.error.position);
         self.rotation_error.push(step.error.rotation);
+        self.clearance.push(accepted.clearance);
         self.step_status.push(step.status);
         self.step_evaluations.push(step.evaluations);
         self.step_iterations.push(step.iterations);
@@ -153,7 +159,7 @@ impl Record {
         if rows == 0 {
             return;
         }
-        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
+        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. }, .. } = *accepted;
         let before = &self.q[self.q.len() - q.len()..];
         let (mut fastest, mut farthest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         let limits = velocity.iter().zip(floor.iter().zip(ceiling));
@@ -171,7 +177,7 @@ impl Record {
 
     /// Finds the joints that violate a limit in the tick from `from` to `to` (s), and by how much.
     fn find_violations(&mut self, accepted: &Accepted<'_>, [from, to]: [f64; 2]) {
-        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
+        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. }, .. } = *accepted;
         for j in 0..q.len() {
             let step = q[j] - self.q[self.q.len() - self.dof + j];
             let too_fast = step.abs() - velocity[j] * self.dt;
@@ -294,12 +300,23 @@ impl Record {
                  within the limits"
                     .into()
             }
-            None => Status::Lost.advice().into(),
+            None => self.held_back().unwrap_or_else(|| Status::Lost.advice().into()),
             Some((beyond, when)) => {
                 format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
             }
         };
         self.message_with(&advice)
+    }
+
+    /// How obstacles or other links were in the way, and what to try; `None` if they were not.
+    fn held_back(&self) -> Option<String> {
+        let count = |wanted: Status| self.step_status.iter().filter(|status| **status == wanted).count();
+        let phrases = [
+            (Status::InCollision, "an obstacle or another link was nearer than the margin"),
+            (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
+        ];
+        let (status, phrase) = phrases.into_iter().find(|(status, _)| count(*status) > 0)?;
+        Some(format!("in {} steps {phrase}: {}", count(status), status.advice()))
     }
 
     /// [`message`](Self::message), with this `advice` if the track failed.

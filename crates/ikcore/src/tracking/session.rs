@@ -1,6 +1,7 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that runs in it.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::clear_motion::{ClearMotion, ObstacleMotion, Wish};
 use super::limited_motion::LimitedMotion;
@@ -14,7 +15,7 @@ use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
-use crate::obstacle::{ClearSpace, Surroundings};
+use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
@@ -162,7 +163,9 @@ impl Session {
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        Accepted { q: &self.q, tick_box: &self.tick_box }
+        let nearest = self.space().map(|space| space.nearest(&self.q));
+        let distance = |nearest: Option<NearestContact>| nearest.map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: nearest.map_or(f64::NAN, distance) }
     }
 
     /// The tracked robot.
@@ -360,8 +363,13 @@ impl Session {
     }
 
     /// What the arm keeps clear of, if anything.
-    pub fn space(&self) -> Option<&ClearSpace<'static>> {
+    pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
         self.clear.as_ref().map(|clear| clear.space())
+    }
+
+    /// Velocities of the obstacles (m/s); empty if all are at rest.
+    pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
+        self.clear.as_ref().map_or(&[], |clear| clear.velocities())
     }
 
     /// What is around the arm.
@@ -375,10 +383,11 @@ impl Session {
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
     pub fn set_obstacles(&mut self, obstacles: Option<Vec<Shape>>, velocities: Vec<[f64; 3]>) -> Result<()> {
+        let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, Vec::len))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         self.clear = match clear_motion(&surroundings, &self.robot, &self.limits)? {
             Some(mut clear) => {
-                clear.set_motion(ObstacleMotion::new(velocities));
+                clear.set_motion(motion);
                 Some(clear)
             }
             None => None,

@@ -4,7 +4,7 @@ use super::approach_motion::ApproachMotion;
 use super::record::Record;
 use super::session::Session;
 use super::track_options::TrackOptions;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ik::{Prefer, SolveOptions, solve};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, Limits, Profile};
@@ -36,6 +36,10 @@ pub fn track(
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
+    if options.ease && session.space().is_some() {
+        let problem = "the approach of ease=True is not kept clear of obstacles: leave one of the two out, or plan to the path first";
+        return Err(Error::Contradiction { problem: problem.into() });
+    }
     let (limits, criterion) = (session.limits().clone(), *session.criterion());
     let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
     let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
@@ -140,9 +144,10 @@ fn first_configuration(
     let target = target(reference, 0);
     let goals = if options.goals.is_empty() { start_goals(&target) } else { options.goals.clone() };
     let TrackOptions { task, seed, .. } = *options;
+    let surroundings = options.surroundings.clone();
     let (limits, prefer) = (Some(limits), Prefer::Best);
     let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
-    let options = SolveOptions { task, goals, prefer, tolerance, limits, stop, seed, ..SolveOptions::default() };
+    let options = SolveOptions { task, goals, prefer, tolerance, limits, surroundings, stop, seed, ..SolveOptions::default() };
     let chosen = solve(robot, &target, &options, monitor)?;
     if chosen.status != Status::BudgetSpent {
         return Ok(chosen.q.to_vec());

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::body::PyObstacle;
+use super::moving::PyMoving;
 use crate::convert::{optional_texts, summary};
 use crate::error::invalid;
 
@@ -40,7 +41,7 @@ pub fn read_touch(value: &Bound<'_, PyAny>) -> PyResult<Touch> {
     optional_texts(value).map_err(named)
 }
 
-fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+pub(super) fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
     if value.cast::<PyObstacle>().is_ok() {
         return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(value))));
     }
@@ -50,12 +51,15 @@ fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
 fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {
     let shape = |(i, item): (usize, &Bound<'_, PyAny>)| match item.cast::<PyObstacle>() {
         Ok(obstacle) => Ok(obstacle.get().core.clone()),
+        Err(_) if item.cast::<PyMoving>().is_ok() => Err(invalid(format!(
+            "obstacle {i} is a Moving; only a Tracker takes obstacles that move: give its shape"
+        ))),
         Err(_) => Err(not_made_here(&format!("obstacle {i}"), item)),
     };
     items.iter().enumerate().map(shape).collect()
 }
 
-fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
+pub(super) fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
     let got = summary(got);
     invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
 }

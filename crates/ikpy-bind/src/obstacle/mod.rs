@@ -6,6 +6,7 @@ mod body;
 mod clearance;
 mod from_core;
 mod large;
+mod moving;
 mod nearest;
 mod shapes;
 
@@ -15,6 +16,8 @@ pub use argument::{Obstacles, Touch, read_touch};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
+use moving::PyMoving;
+pub use moving::MovingObstacles;
 pub use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
@@ -31,6 +34,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyMesh>()?;
     module.add_class::<PyPointCloud>()?;
     module.add_class::<PyGrid>()?;
+    module.add_class::<PyMoving>()?;
     module.add_class::<PyNearest>()?;
     module.add_function(wrap_pyfunction!(nearest::nearest, module)?)?;
     module.add_function(wrap_pyfunction!(clearance::clearance, module)?)

@@ -1,6 +1,7 @@
 //! Reading of the arguments that `track` and `Tracker` share.
 
 use ikcore::limits::{LimitAt, Limits};
+use ikcore::obstacle::Surroundings;
 use ikcore::task::Tolerance;
 use ikcore::tracking::{TickRule, TrackOptions};
 use pyo3::prelude::*;
@@ -19,6 +20,7 @@ pub struct TrackArguments<'a, 'py> {
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub position_tolerance: f64,
     pub rotation_tolerance: f64,
+    pub surroundings: Surroundings,
     pub seed: i128,
     pub limit_at: &'a str,
 }
@@ -32,6 +34,7 @@ impl TrackArguments<'_, '_> {
             goals: read_goals(self.goals)?,
             tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
             limits,
+            surroundings: self.surroundings,
             ease: false,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,

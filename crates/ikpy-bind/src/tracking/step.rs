@@ -1,7 +1,10 @@
 //! `Step`.
 
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::obstacle::{ClearSpace, Contact, NearestContact};
+use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::tracking::Step;
 use numpy::{PyArray1, PyArrayMethods};
@@ -10,6 +13,7 @@ use pyo3::prelude::*;
 use crate::convert::row;
 use crate::error::raise;
 use crate::limits::PyLimits;
+use crate::obstacle::PyNearest;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::traversal::traversed;
@@ -28,7 +32,14 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// What is around the arm, and its configuration; `None` if nothing is to be kept clear of.
+    among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
+    /// Found when asked for.
+    around: OnceLock<Around>,
 }
+
+/// The nearest two bodies: `None` if nothing is to be kept clear of, `Some(None)` if nothing can touch.
+type Around = Option<Option<NearestContact>>;
 
 traversed!(PyStep: limits);
 
@@ -36,9 +47,10 @@ outcome! {
     PyStep = |result|
     /// Whether the tip is within the tolerances.
     success,
-    /// SOLVED within the tolerances, IMPROVED nearer than in the previous step, otherwise CAPPED.
+    /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links; HELD_BY_OBSTACLE if one
+    /// keeps the tip from the target; IMPROVED nearer than in the previous step, otherwise CAPPED.
     status: result.core.status,
-    message: result.core.message(),
+    message: result.message(),
     /// Evaluations of the forward kinematics.
     evaluations: result.core.evaluations,
     elapsed: result.elapsed,
@@ -64,20 +76,37 @@ impl PyStep {
         self.core.inside_limits
     }
 
+    /// Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
+    /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    #[getter]
+    fn clearance(&self) -> f64 {
+        let distance = |nearest: &Option<NearestContact>| {
+            nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.contact.distance)
+        };
+        self.around().as_ref().map_or(f64::NAN, distance)
+    }
+
+    /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    #[getter]
+    fn nearest(&self) -> Option<PyNearest> {
+        self.around().clone().flatten().map(PyNearest::from)
+    }
+
     fn __repr__(&self) -> String {
-        format!("<Step {}: {}>", self.core.status.name(), self.core.message())
+        format!("<Step {}: {}>", self.core.status.name(), self.message())
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed);
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
         pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("step", &state))?, &self.limits))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
-        let (core, q, qd, elapsed): (_, Vec<f64>, Vec<f64>, _) = from_bytes("step", bytes).map_err(raise)?;
-        Ok(Self::new(py, core, [q, qd], limits, elapsed))
+        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Around) =
+            from_bytes("step", bytes).map_err(raise)?;
+        Ok(Self { around: OnceLock::from(around), ..Self::new(py, core, [q, qd], limits, elapsed) })
     }
 }
 
@@ -85,6 +114,27 @@ impl PyStep {
     /// `motion`: the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed }
+        Self { core, q, qd, limits, elapsed, among: None, around: OnceLock::new() }
+    }
+
+    /// The step of an arm that keeps to `space`, at `q`.
+    pub fn among(self, space: Option<Arc<ClearSpace<'static>>>, q: Vec<f64>) -> Self {
+        Self { among: space.map(|space| (space, q)), ..self }
+    }
+
+    fn around(&self) -> &Around {
+        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.nearest(q)))
+    }
+
+    /// What happened, what to try, and what is in the way.
+    fn message(&self) -> String {
+        let message = self.core.message();
+        match (self.core.status, self.around()) {
+            (Status::HeldByObstacle | Status::InCollision, Some(Some(NearestContact { contact, .. }))) => {
+                let Contact { link, other, distance } = contact;
+                format!("{message} ({link} is {distance:.4} m from {other})")
+            }
+            _ => message,
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! `track` and `TrackResult`.
 
+use ikcore::obstacle::Surroundings;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::tracking::{self, Record, TrackOptions};
 use numpy::{PyArray1, PyArrayDyn};
@@ -7,10 +8,11 @@ use pyo3::prelude::*;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
-use crate::convert::{table, vector};
+use crate::convert::{row, table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
+use crate::obstacle::Obstacles;
 use crate::outcome::outcome;
 use crate::path::path_argument;
 use crate::pickling::{self, Reduced};
@@ -24,6 +26,9 @@ use crate::traversal::traversed;
 pub struct PyTrackResult {
     core: Record,
     columns: Columns,
+    /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
+    #[pyo3(get)]
+    clearance: Py<PyArray1<f64>>,
     /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
     #[pyo3(get)]
     velocity_limit: Py<PyArrayDyn<f64>>,
@@ -109,6 +114,7 @@ impl PyTrackResult {
         Ok(Self {
             columns: Columns::new(py, &core)?,
             velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
+            clearance: row(py, core.clearance.clone()).unbind(),
             step_iterations: counts(py, &core.step_iterations),
             robot,
             limits,
@@ -137,6 +143,11 @@ impl PyTrackResult {
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
 ///     position_tolerance: error band of positions (m).
 ///     rotation_tolerance: error band of orientations (rad).
+///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
+///         robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
+///         or stops. None: nothing is checked.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
 ///         "start".
@@ -153,8 +164,8 @@ impl PyTrackResult {
 ///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", ease=false,
-                    progress=None))]
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, obstacles=None, margin=None, self_collision=None, seed=0,
+                    limit_at="interval", ease=false, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -168,6 +179,9 @@ pub fn track(
     goals: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ease: bool,
@@ -181,7 +195,10 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
+    let obstacles = obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?;
+    let surroundings = Surroundings { obstacles, margin, self_collision };
+    let asked =
+        TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, surroundings, seed, limit_at };
     let options = TrackOptions { ease, ..asked.read(resolved)? };
     let record =
         watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;

@@ -2,10 +2,12 @@
 
 use std::sync::Mutex;
 
+use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
@@ -16,6 +18,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
+use crate::obstacle::MovingObstacles;
 use crate::robot::PyRobot;
 use crate::traversal::traversed;
 
@@ -36,6 +39,8 @@ use crate::traversal::traversed;
 ///     goals: as in `track`.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error (rad).
+///     obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
+///         ticks: `tracker.obstacles = [...]`.
 ///     seed: seed of the random draws.
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
@@ -61,7 +66,8 @@ in_progress!(PyTracker, Session);
 impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
-                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", target_filter=None, timeout=None))]
+                        position_tolerance=1e-6, rotation_tolerance=1e-6, obstacles=None, margin=None, self_collision=None, seed=0,
+                        limit_at="interval", target_filter=None, timeout=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -73,6 +79,9 @@ impl PyTracker {
         goals: Option<&Bound<'_, PyAny>>,
         position_tolerance: f64,
         rotation_tolerance: f64,
+        obstacles: Option<&Bound<'_, PyAny>>,
+        margin: Option<f64>,
+        self_collision: Option<bool>,
         seed: i128,
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
         target_filter: Option<&Bound<'_, PyAny>>,
@@ -83,10 +92,17 @@ impl PyTracker {
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let rule = tick_rule(solver)?;
         let runs_solver = matches!(rule, TickRule::Solver(_));
-        let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
+        let given = obstacles.map(MovingObstacles::read).transpose()?;
+        let shapes = given.as_ref().map(|given| given.shapes.clone());
+        let surroundings = Surroundings { obstacles: shapes, margin, self_collision };
+        let asked =
+            TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
+            session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
+        }
         Ok(Self { session: Mutex::new(session), runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
@@ -126,7 +142,8 @@ impl PyTracker {
             session.advance(arrival, &mut Unattended).map_err(raise)?
         };
         let motion = [session.q().to_vec(), session.qd().to_vec()];
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
+        let (space, q) = (session.space().cloned(), session.q().to_vec());
+        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q))
     }
 
     /// Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
@@ -153,6 +170,23 @@ impl PyTracker {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
         let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset_moving(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
+    }
+
+    /// What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
+    /// certified before goes on if the new ones are in the way.
+    #[getter]
+    fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyTuple>>> {
+        let session = self.session();
+        let shapes = session.surroundings().obstacles.as_deref();
+        let tuple = |shapes| PyTuple::new(py, MovingObstacles::objects(py, shapes, session.obstacle_velocities())?);
+        shapes.map(tuple).transpose()
+    }
+
+    #[setter]
+    fn set_obstacles(&self, obstacles: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let given = obstacles.map(MovingObstacles::read).transpose()?;
+        let (shapes, velocities) = given.map_or((None, vec![]), |given| (Some(given.shapes), given.velocities));
+        self.session().set_obstacles(shapes, velocities).map_err(raise)
     }
 
     fn __repr__(&self) -> String {

@@ -80,7 +80,7 @@ impl GoalPursuit {
         self.solve(time, &positions, found, tick);
         if let Some(clear) = &mut tick.clear {
             let goal = Goal { robot: tick.robot, target: tick.target, criterion: tick.criterion, positions: &positions };
-            clear.clear_goal(&goal, &mut self.sample);
+            clear.clear_goal(&goal, &self.expected, &mut self.sample);
         }
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());

@@ -1,0 +1,285 @@
+//! Tracking among obstacles: nothing comes nearer than the margin, at ticks and in between, and every stop is clear.
+
+use std::f64::consts::TAU;
+
+use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::math::Pose;
+use ikcore::obstacle::{Scene, Surroundings};
+use ikcore::path::{Circle, Path, Plane};
+use ikcore::rng::{self, LazyRng};
+use ikcore::robot::Robot;
+use ikcore::shape::Shape;
+use ikcore::solver::{Status, Unattended};
+use ikcore::task::Target;
+use ikcore::tracking::{Session, TrackOptions, track};
+
+const START: [f64; 7] = [0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78];
+const MARGIN: f64 = 0.005;
+
+/// What a distance in the middle of a tick may lose to rounding (m).
+const ROUNDING: f64 = 1e-9;
+
+fn panda() -> Robot {
+    Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap()
+}
+
+fn surroundings(obstacles: Vec<Shape>) -> Surroundings {
+    Surroundings { obstacles: Some(obstacles), margin: Some(MARGIN), self_collision: None }
+}
+
+/// Shapes of several kinds that are clear of the start.
+fn random_obstacles(robot: &Robot, rng: &mut LazyRng) -> Vec<Shape> {
+    let mut obstacles = vec![];
+    while obstacles.len() < 10 {
+        let center = [rng.uniform_in(0.1, 0.8), rng.uniform_in(-0.6, 0.6), rng.uniform_in(0.0, 0.9)];
+        let size: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.04, 0.2));
+        let shape = match obstacles.len() % 4 {
+            0 | 1 => Shape::cuboid(center, size, None),
+            2 => Shape::cylinder(center, size, size[0], 2.0 * size[1]),
+            _ => Shape::point_cloud((0..9).map(|_| center.map(|x| x + rng.uniform_in(-0.1, 0.1))).collect(), 0.02),
+        };
+        let shape = shape.unwrap();
+        if Scene::new(robot, std::slice::from_ref(&shape)).unwrap().clearance(&START).unwrap() > 0.02 {
+            obstacles.push(shape);
+        }
+    }
+    obstacles
+}
+
+fn limits(robot: &Robot, acceleration: Option<f64>, jerk: Option<f64>) -> Limits {
+    let mut limits = Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(1.5); 7]).unwrap();
+    for (field, value) in [(Field::Acceleration, acceleration), (Field::Jerk, jerk)] {
+        if let Some(value) = value {
+            limits = limits.replace(field, vec![Profile::Constant(value); 7]).unwrap();
+        }
+    }
+    limits
+}
+
+/// Limits without rates, with acceleration, and with jerk.
+fn all_limits(robot: &Robot) -> [Limits; 3] {
+    [limits(robot, None, None), limits(robot, Some(5.0), None), limits(robot, Some(5.0), Some(50.0))]
+}
+
+/// A target on a circle, or one that jumps twice a second.
+fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
+    let mut pose: Pose = robot.fk(&START).unwrap();
+    let time = tick as f64 * dt;
+    let moved = match jumps {
+        [] => [0.0, 0.15 * (TAU * time / 2.0).sin(), 0.15 * ((TAU * time / 2.0).cos() - 1.0)],
+        jumps => jumps[(2.0 * time) as usize % jumps.len()],
+    };
+    (0..3).for_each(|k| pose.translation.vector[k] += moved[k]);
+    Target::from(&pose)
+}
+
+/// The smallest distance at several configurations from one tick to the next.
+fn least_between(scene: &Scene<'_>, from: &[f64], to: &[f64]) -> f64 {
+    let at = |share: f64| from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect::<Vec<f64>>();
+    (1..=4).map(|i| scene.clearance(&at(0.25 * f64::from(i))).unwrap()).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn no_tick_comes_nearer_than_the_margin_and_every_stop_is_clear() {
+    let robot = panda();
+    let mut rng = rng::stream(22, 0);
+    let (mut solved, mut held) = (0, 0);
+    for trial in 0..6 {
+        let obstacles = random_obstacles(&robot, &mut rng);
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let jump = |rng: &mut LazyRng| [0.15, 0.3, 0.25].map(|most| rng.uniform_in(-most, most));
+        let jumps: Vec<[f64; 3]> = if trial % 2 == 0 { vec![] } else { (0..5).map(|_| jump(&mut rng)).collect() };
+        for (limits, dt) in all_limits(&robot).into_iter().zip([0.01, 0.004, 0.01]) {
+            let surroundings = surroundings(obstacles.clone());
+            let options = TrackOptions { limits: Some(limits), surroundings, ..TrackOptions::default() };
+            let mut session = Session::new(&robot, &START, dt, &options).unwrap();
+            for tick in 0..(2.0 / dt) as usize {
+                let before = session.q().to_vec();
+                let stops = tick % 100 > 70;
+                let status = if stops {
+                    if tick % 100 == 71 {
+                        session.stop();
+                    }
+                    session.advance(None, &mut Unattended).unwrap().status
+                } else {
+                    session.step(&target(&robot, tick, dt, &jumps), &mut Unattended).unwrap().status
+                };
+                let least = least_between(&scene, &before, session.q());
+                assert!(least >= MARGIN - ROUNDING, "trial {trial}, tick {tick}, stops {stops}: {least}");
+                assert_ne!(status, Status::InCollision);
+                solved += usize::from(status == Status::Solved);
+                held += usize::from(status == Status::HeldByObstacle);
+            }
+        }
+    }
+    assert!(solved > 1000 && held > 300, "{solved} {held}");
+}
+
+#[test]
+fn limits_are_kept_beside_obstacles() {
+    let robot = panda();
+    let (dt, acceleration, jerk) = (0.004, 5.0, 50.0);
+    let obstacles = random_obstacles(&robot, &mut rng::stream(5, 0));
+    let options = TrackOptions {
+        limits: Some(limits(&robot, Some(acceleration), Some(jerk))),
+        surroundings: surroundings(obstacles),
+        ..TrackOptions::default()
+    };
+    let mut session = Session::new(&robot, &START, dt, &options).unwrap();
+    let jumps = [[0.1, 0.3, -0.2], [0.0, -0.3, 0.1], [-0.1, 0.0, -0.3]];
+    let mut last: Vec<Vec<f64>> = vec![START.to_vec(); 4];
+    for tick in 0..1500 {
+        session.step(&target(&robot, tick, dt, &jumps), &mut Unattended).unwrap();
+        last.remove(0);
+        last.push(session.q().to_vec());
+        for j in 0..7 {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| last[i][j]);
+            assert!((d - c).abs() <= 1.5 * dt * (1.0 + 1e-9));
+            assert!((d - 2.0 * c + b).abs() <= acceleration * dt.powi(2) * (1.0 + 1e-9), "tick {tick}, joint {j}");
+            assert!((d - 3.0 * c + 3.0 * b - a).abs() <= jerk * dt.powi(3) * (1.0 + 1e-9), "tick {tick}, joint {j}");
+        }
+    }
+}
+
+#[test]
+fn a_redundant_arm_keeps_its_tip_on_the_path_while_its_elbow_gives_way() {
+    let robot = panda();
+    let elbow = robot.link_poses(&START).unwrap()[4].translation.vector;
+    for limits in all_limits(&robot) {
+        let mut session = {
+            let options = TrackOptions { limits: Some(limits), ..TrackOptions::default() };
+            Session::new(&robot, &START, 0.002, &options).unwrap()
+        };
+        // The post comes nearer, and pushes the elbow aside.
+        let mut worst: f64 = 0.0;
+        for tick in 0..1500 {
+            let closer = 0.04 * (f64::from(tick) / 1000.0).min(1.0);
+            let post = Shape::cuboid([elbow.x, elbow.y - 0.17 + closer, elbow.z], [0.6, 0.02, 0.6], None).unwrap();
+            session.set_obstacles(Some(vec![post]), vec![[0.0, 0.02, 0.0]]).unwrap();
+            let step = session.step(&target(&robot, 0, 0.002, &[[0.0; 3]]), &mut Unattended).unwrap();
+            worst = worst.max(step.error.position);
+            assert_ne!(step.status, Status::InCollision, "tick {tick}");
+        }
+        assert!(worst < 2e-4, "{worst}");
+        let moved = START.iter().zip(session.q()).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+        assert!(moved > 0.02, "{moved}");
+    }
+}
+
+#[test]
+fn an_arm_that_starts_in_collision_moves_out() {
+    let robot = panda();
+    let tip = robot.tip_position(&START);
+    let wall = Shape::cuboid([tip[0], tip[1] + 0.1, tip[2]], [0.3, 0.12, 0.6], None).unwrap();
+    for limits in all_limits(&robot) {
+        let obstacles = vec![wall.clone()];
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let options =
+            TrackOptions { limits: Some(limits), surroundings: surroundings(obstacles.clone()), ..TrackOptions::default() };
+        let mut session = Session::new(&robot, &START, 0.004, &options).unwrap();
+        let mut last = scene.clearance(&START).unwrap();
+        assert!(last < 0.0);
+        let first = session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
+        assert_eq!(first.status, Status::InCollision);
+        for tick in 0..500 {
+            session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
+            let now = scene.clearance(session.q()).unwrap();
+            assert!(now >= last.min(MARGIN) - 1e-6, "tick {tick}: {last} {now}");
+            last = now;
+        }
+        assert!(last >= MARGIN, "{last}");
+    }
+}
+
+#[test]
+fn an_arm_gets_out_of_the_way_of_a_sphere_no_faster_than_said() {
+    let robot = panda();
+    let speed = 0.3;
+    for limits in all_limits(&robot) {
+        for x in [0.3, 0.45, 0.6] {
+            let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };
+            let mut session = Session::new(&robot, &START, 0.004, &options).unwrap();
+            for tick in 0..1000 {
+                let center = [x, 0.7 - speed * 0.004 * f64::from(tick), 0.45];
+                let sphere = vec![Shape::sphere(center, 0.1).unwrap()];
+                session.set_obstacles(Some(sphere.clone()), vec![[0.0, -speed, 0.0]]).unwrap();
+                session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
+                let clear = Scene::new(&robot, &sphere).unwrap().clearance(session.q()).unwrap();
+                assert!(clear >= 1e-3, "x {x}, tick {tick}: {clear}");
+            }
+            let step = session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
+            assert_eq!(step.status, Status::Solved, "x {x}: {}", step.message());
+        }
+    }
+}
+
+#[test]
+fn the_motion_between_ticks_is_clear() {
+    let robot = panda();
+    let tip = robot.tip_position(&START);
+    let wall = Shape::cuboid([tip[0], tip[1] + 0.15, tip[2]], [0.3, 0.04, 0.6], None).unwrap();
+    let obstacles = vec![wall];
+    let plane = Plane::xy([tip[0], tip[1] + 0.05, tip[2]]).unwrap();
+    let reference = Path::new(Circle::new(plane, 0.2, 4.0).unwrap()).sample(0.02).unwrap();
+    for limits in all_limits(&robot) {
+        let options = TrackOptions {
+            limits: Some(limits),
+            surroundings: surroundings(obstacles.clone()),
+            ..TrackOptions::default()
+        };
+        let record = track(&robot, &reference, Some(&START), &options, &mut Unattended).unwrap();
+        assert_eq!(record.status, Status::Lost);
+        assert!(record.message().contains("an obstacle or another link held the arm back"), "{}", record.message());
+        assert!(record.clearance.iter().all(|clear| *clear >= MARGIN));
+        let trajectory = record.trajectory((0..7).map(|j| format!("joint_{j}")).collect()).unwrap();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let [mut q, mut qd, mut qdd] = [[0.0; 7]; 3];
+        for i in 0..1600 {
+            trajectory.at(f64::from(i) * 0.0025, &mut q, &mut qd, &mut qdd).unwrap();
+            let clear = scene.clearance(&q).unwrap();
+            assert!(clear >= MARGIN - ROUNDING, "at {} s: {clear}", f64::from(i) * 0.0025);
+        }
+    }
+}
+
+#[test]
+fn limits_that_vary_over_time_are_refused() {
+    let robot = panda();
+    let wave = Sinusoid { mean: 4.0, amplitude: 1.0, angular_frequency: 1.0, phase: 0.0 };
+    let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Sinusoid(wave)]).unwrap();
+    let options =
+        TrackOptions { limits: Some(limits), surroundings: surroundings(vec![]), ..TrackOptions::default() };
+    let error = Session::new(&robot, &START, 0.01, &options).unwrap_err().to_string();
+    assert!(error.contains("tracking among obstacles") && error.contains("leave obstacles= out"), "{error}");
+}
+
+#[test]
+fn velocities_of_obstacles_are_checked() {
+    let robot = panda();
+    let mut session = Session::new(&robot, &START, 0.01, &TrackOptions::default()).unwrap();
+    let sphere = vec![Shape::sphere([0.5, 0.5, 0.5], 0.1).unwrap()];
+    let error = session.set_obstacles(Some(sphere.clone()), vec![[0.0; 3]; 2]).unwrap_err().to_string();
+    assert!(error.contains("velocities") && error.contains('2'), "{error}");
+    let error = session.set_obstacles(Some(sphere), vec![[f64::NAN, 0.0, 0.0]]).unwrap_err().to_string();
+    assert!(error.contains("velocities"), "{error}");
+    assert!(session.space().is_none());
+}
+
+#[test]
+fn the_same_stream_gives_the_same_bits() {
+    let robot = panda();
+    let obstacles = random_obstacles(&robot, &mut rng::stream(9, 0));
+    let run = || {
+        let options = TrackOptions {
+            limits: Some(limits(&robot, Some(5.0), None)),
+            surroundings: surroundings(obstacles.clone()),
+            ..TrackOptions::default()
+        };
+        let mut session = Session::new(&robot, &START, 0.01, &options).unwrap();
+        for tick in 0..300 {
+            session.step(&target(&robot, tick, 0.01, &[]), &mut Unattended).unwrap();
+        }
+        session.q().to_vec()
+    };
+    assert_eq!(run(), run());
+}
