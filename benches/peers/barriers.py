@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -44,9 +44,9 @@ class Barriers:
 
     def solve(self, target: np.ndarray, judge: CoalScene, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
         """A clear configuration at the pose, or None when the time is up."""
-        random, end = np.random.default_rng(0), perf_counter() + SECONDS
+        random, end = np.random.default_rng(0), process_time() + SECONDS
         self._aim(target)
-        while perf_counter() < end:
+        while process_time() < end:
             start = random.uniform(lower, upper)
             if judge.is_clear(start):
                 q = self._descend(start, end)
@@ -63,7 +63,7 @@ class Barriers:
                 return self._configuration()
             if error < 0.99 * best:
                 best, best_step = error, step
-            if step - best_step > PATIENCE or perf_counter() > end:
+            if step - best_step > PATIENCE or process_time() > end:
                 break
             try:
                 self._step()
@@ -267,8 +267,8 @@ class RoboticsToolbox(Barriers):
         self._ets = roboticstoolbox.Robot.URDF(str(file)).ets(end=ARMS[arm.name])
 
     def solve(self, target: np.ndarray, judge: CoalScene, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
-        random, end = np.random.default_rng(0), perf_counter() + SECONDS
-        while perf_counter() < end:
+        random, end = np.random.default_rng(0), process_time() + SECONDS
+        while process_time() < end:
             start = random.uniform(lower, upper)
             found = self._ets.ik_LM(target, q0=start, tol=TOLERANCE**2 / 2, k=0.1, method="chan", slimit=1)
             if found.success and judge.is_clear(found.q):
