@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).parent / "papers" / "figures"
 FIGURES = {
     "cheng2020": ("figure_2", "search_box", "equation_5"),
-    "khan2022": ("figure_2_limits", "antennae", "theorem_1_still", "repetition"),
+    "khan2022": ("figure_2_limits", "antennae", "theorem_1_still", "repetition", "obstacle"),
     "pso-tracking": ("figure_6", "over_length", "figure_9"),
     "wang2019": ("figure_10", "figure_13"),
     "yuan2016": ("figure_6", "reach"),

@@ -1,6 +1,6 @@
 """Libraries of differential kinematics with obstacles as constraints of their quadratic program, and random starts.
 
-Each gets the same spheres, obstacles and pairs of links. What depends on the scene alone is built before the clock starts.
+Each gets the same spheres, obstacles and pairs of links. Models of scenes are built before the clock starts.
 """
 
 # ruff: noqa: D102, D107
@@ -9,14 +9,11 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
-
-import beetle_ik as bik
 
 from .clear import ARMS, CoalScene, MotionBenchArm, boxes_of, cylinders_of
 from .stepping import DAMPING, LM_DAMPING
@@ -29,7 +26,8 @@ KEPT = 1e-4  # m: with less, a step of finite length enters an obstacle
 SEEN = 0.05  # m: farther pairs are no constraint
 GAIN = 0.85  # of a barrier: mink's own default
 SETTINGS = (
-    f"random starts that coal calls clear, at most {STEPS} steps each, {PATIENCE} without progress, until coal calls an answer clear, for {SECONDS:g} s; "
+    f"random starts that coal calls clear, at most {STEPS} steps each, {PATIENCE} without progress, until coal calls "
+    f"an answer clear, for {SECONDS:g} s; "
     f"distance kept {KEPT:g} m, constraints below {SEEN:g} m, barrier gain {GAIN:g}"
 )
 
@@ -38,6 +36,7 @@ class Barriers:
     """The loop that such a library leaves to its user: starts, steps, and a check of the answer."""
 
     name: str
+    slow = True
     _no_step: type[Exception] | tuple[type[Exception], ...]  # what it raises where the program has no solution
 
     def __init__(self, arm: MotionBenchArm, problem: dict[str, Any], scratch: Path) -> None:
@@ -45,9 +44,9 @@ class Barriers:
 
     def solve(self, target: np.ndarray, judge: CoalScene, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
         """A clear configuration at the pose, or None when the time is up."""
-        random, end = np.random.default_rng(0), perf_counter() + SECONDS
+        random, end = np.random.default_rng(0), process_time() + SECONDS
         self._aim(target)
-        while perf_counter() < end:
+        while process_time() < end:
             start = random.uniform(lower, upper)
             if judge.is_clear(start):
                 q = self._descend(start, end)
@@ -64,7 +63,7 @@ class Barriers:
                 return self._configuration()
             if error < 0.99 * best:
                 best, best_step = error, step
-            if step - best_step > PATIENCE or perf_counter() > end:
+            if step - best_step > PATIENCE or process_time() > end:
                 break
             try:
                 self._step()
@@ -178,7 +177,9 @@ class Pink(Mink):
             model, model.createData(), start, collision_model=geometry, collision_data=pin.GeometryData(geometry)
         )
         self._limits = [pink.limits.ConfigurationLimit(model, config_limit_gain=0.95)]
-        self._barriers = [pink.barriers.SelfCollisionBarrier(BARRIERS_OF_PINK, gain=GAIN, safe_displacement_gain=0.0, d_min=KEPT)]
+        self._barriers = [
+            pink.barriers.SelfCollisionBarrier(BARRIERS_OF_PINK, gain=GAIN, safe_displacement_gain=0.0, d_min=KEPT)
+        ]
         tip = ARMS[arm.name]
         self._task = pink.tasks.FrameTask(tip, position_cost=1.0, orientation_cost=1.0, lm_damping=LM_DAMPING)
         self._no_step = (pink.exceptions.NoSolutionFound, pink.exceptions.PinkError)
@@ -255,7 +256,8 @@ class Placo(Barriers):
 class RoboticsToolbox(Barriers):
     """`ets.ik_LM` from random starts of its own, each answer tested by coal."""
 
-    name = "roboticstoolbox and coal"
+    name = "rejection: roboticstoolbox and coal"
+    slow = False
 
     def __init__(self, arm: MotionBenchArm, problem: dict[str, Any], scratch: Path) -> None:  # noqa: ARG002
         import roboticstoolbox
@@ -265,8 +267,8 @@ class RoboticsToolbox(Barriers):
         self._ets = roboticstoolbox.Robot.URDF(str(file)).ets(end=ARMS[arm.name])
 
     def solve(self, target: np.ndarray, judge: CoalScene, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
-        random, end = np.random.default_rng(0), perf_counter() + SECONDS
-        while perf_counter() < end:
+        random, end = np.random.default_rng(0), process_time() + SECONDS
+        while process_time() < end:
             start = random.uniform(lower, upper)
             found = self._ets.ik_LM(target, q0=start, tol=TOLERANCE**2 / 2, k=0.1, method="chan", slimit=1)
             if found.success and judge.is_clear(found.q):
@@ -276,15 +278,9 @@ class RoboticsToolbox(Barriers):
 
 def placed(at: np.ndarray) -> dict[str, Any]:
     """A pose as keywords of MuJoCo."""
-    w, x, y, z = bik_quaternion(at[:3, :3])
-    return {"pos": at[:3, 3], "quat": [w, x, y, z]}
-
-
-def bik_quaternion(rotation: np.ndarray) -> np.ndarray:
-    """The unit quaternion (w, x, y, z) of a rotation."""
     import pinocchio as pin
 
-    return np.roll(pin.Quaternion(rotation).coeffs(), 1)
+    return {"pos": at[:3, 3], "quat": np.roll(pin.Quaternion(at[:3, :3]).coeffs(), 1)}
 
 
 def held(arm: MotionBenchArm, *, for_mujoco: bool = False) -> str:

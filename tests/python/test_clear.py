@@ -233,6 +233,23 @@ def test_a_tracker_has_no_goal_of_clearance() -> None:
         bik.Tracker(ARM, Q, dt=0.01, goals=bik.goals.Clearance())
 
 
+@pytest.mark.parametrize("solver", [bik.PSO(), bik.DifferentialEvolution(), bik.BAS(variant="greedy")])
+def test_solvers_of_values_take_obstacles_as_a_penalty(solver: Any) -> None:
+    rng = np.random.default_rng(9)
+    found = avoided = 0
+    for target in poses(ARM, 20, seed=9)[:, :3, 3]:
+        scene = boxes(rng)
+        options: dict[str, Any] = {"solver": solver, "position_tolerance": 5e-3, "seed": 1}
+        solution = bik.solve(ARM, target, obstacles=scene, margin=0.01, **options)
+        is_clear = bik.obstacles.clearance(ARM, solution.q, scene) >= 0.01
+        assert solution.success == (is_clear and solution.position_error <= 5e-3)
+        found += solution.success
+        free = bik.solve(ARM, target, **options)
+        avoided += solution.success and bik.obstacles.clearance(ARM, free.q, scene) < 0.01
+    assert found > 10
+    assert avoided > 0
+
+
 def test_the_command_line_solves_in_a_scene(tmp_path: Path) -> None:
     SCENE.save(tmp_path / "scene.json")
     options = ["--scene", str(tmp_path / "scene.json"), "--margin", "0.02", "--link-radius", "0.06", "--json"]

@@ -1,13 +1,19 @@
 """Distances of bodies from obstacles and from each other against coal, an independent collision library."""
 
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import beetle_ik as bik
 
-coal = pytest.importorskip("coal")
+pytest.importorskip("coal")
+sys.path.insert(0, str(Path(__file__).parents[2] / "benches"))
+
+import coal
+import random_pairs
 
 ARM = bik.Robot.planar([1.0])
 LINK, PLACE = ARM.link_names[-1], ARM.link_poses([0.0])[-1, :3, 3]
@@ -107,6 +113,15 @@ def apart(one: object, place: object, other: object, other_place: object) -> flo
     return float(coal.distance(one, place, other, other_place, REQUEST, coal.DistanceResult()))
 
 
+def agrees(found: float, exact: float) -> bool:
+    """Whether the bodies are apart; the distance is compared, or the fact that they overlap."""
+    if exact <= 0:
+        assert found <= 1e-6
+        return False
+    assert exact - 1e-6 < found < exact + 1e-6
+    return True
+
+
 @pytest.mark.parametrize("own", SOLIDS)
 @pytest.mark.parametrize("make", [sphere, capsule, *SOLIDS, mesh])
 def test_bodies_of_any_shape_are_as_far_as_coal_says(
@@ -122,11 +137,7 @@ def test_bodies_of_any_shape_are_as_far_as_coal_says(
         found = bik.obstacles.clearance(ARM.with_attached(LINK, body), [0.0], [obstacle])
         at = coal.Transform3s(np.eye(3) if make is sphere else twist, there)
         exact = apart(model, coal.Transform3s(turn, center), shape, at)
-        if exact <= 0:
-            assert found <= 1e-6
-            continue
-        compared += 1
-        assert exact - 1e-6 < found < exact + 1e-6
+        compared += agrees(found, exact)
     assert compared > 20
 
 
@@ -145,9 +156,24 @@ def test_bodies_of_two_links_are_as_far_apart_as_coal_says(
         robot = ARM.with_attached(LINK, body, name="moving").with_attached(ARM.link_names[0], fixed, name="still")
         found = bik.obstacles.clearance(robot.with_collision_pairs([("moving", "still")]), [0.0])
         exact = apart(model, coal.Transform3s(turn, center), shape, coal.Transform3s(twist, there))
-        if exact <= 0:
-            assert found <= 1e-6
-            continue
-        compared += 1
-        assert exact - 1e-6 < found < exact + 1e-6
+        compared += agrees(found, exact)
     assert compared > 12
+
+
+def test_no_distance_of_random_pairs_is_above_that_of_coal() -> None:
+    """A small count of `benches/random_pairs.py`."""
+    outcomes = random_pairs.run(pairs=36 * random_pairs.POSES, seed=4)
+    assert len(outcomes) == 36
+    assert sum(outcome.overlapping for outcome in outcomes.values()) > 100
+    for kinds, outcome in outcomes.items():
+        assert outcome.above < random_pairs.EXACT, kinds
+        assert outcome.below < 1e-6, kinds
+        assert outcome.disagreeing == 0, kinds
+
+
+def test_a_body_that_is_too_small_is_noticed() -> None:
+    rng, outcome = np.random.default_rng(5), random_pairs.Outcome()
+    shape, model, center, turn = random_pairs.box(rng, 0.1, 0.15)
+    smaller = bik.obstacles.Box(shape.center, shape.size - 1e-4, shape.rotation)  # type: ignore[attr-defined]
+    random_pairs.compare((smaller, model, center, turn), random_pairs.sphere(rng, 0.6, 0.4), rng, outcome)
+    assert outcome.above > 2e-5

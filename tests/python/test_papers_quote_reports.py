@@ -262,6 +262,12 @@ FREE_OFF, FREE_TURNED = "orientation free: off [mm]", "orientation free: turned 
 HELD_OFF, HELD_TURNED = "orientation held: off [mm]", "orientation held: turned [mrad]"
 
 
+def beside_a_ball(row: int) -> Callable[[Rows], list[float]]:
+    return cells(
+        (row, "evaluations a point (mean)"), (row, "tool off (rms) [mm]"), (row, "points nearer than the margin")
+    )
+
+
 def in_method(row: int) -> Callable[[Rows], list[float]]:
     return cells((row, CIRCLE))
 
@@ -310,6 +316,11 @@ KHAN_QUOTES = [
     khan_quote("stays within 2.5 mm", "servos", cells((3, ZNNBAS_OFF))),
     khan_quote("0.14 mm there, 0.0003 mm at 50 ms", "servos",
                cells((2, BROYDEN_OFF), (4, BROYDEN_OFF), (4, "tick [ms]"))),
+    khan_quote("| beetle, as many evaluations | 4.2 | 49 mm | 49 |", "beside_a_ball", beside_a_ball(2)),
+    khan_quote("| 42 | 13 mm | 41 |", "beside_a_ball", beside_a_ball(3)),
+    khan_quote("| 235 | 0.88 mm | 30 |", "beside_a_ball", beside_a_ball(4)),
+    khan_quote("| 554 | 0.078 mm | 7 |", "beside_a_ball", beside_a_ball(5)),
+    khan_quote("steps aside by up to 0.3 rad", "beside_a_ball", cells((1, "largest joint step [rad]"))),
     khan_quote("its tool shakes by 6 cm", "figures_2_and_3",
                lambda table: [100 * float(table[0][f"{WHERE_SENT} mean"]) ** 0.5], "README.md"),
 ]  # fmt: skip

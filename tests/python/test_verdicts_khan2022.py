@@ -16,6 +16,7 @@ from beetle_ik.experiments.khan2022.figures import (
     star_equation,
     traced,
 )
+from beetle_ik.experiments.khan2022.obstacle import is_farther, keeps_clear
 from beetle_ik.experiments.khan2022.other_methods import any_path, continuous, expensive, global_solution, real_time
 from beetle_ik.experiments.khan2022.repetition import adds_up, closes, not_repeatable
 from beetle_ik.experiments.khan2022.sensor import averages
@@ -101,6 +102,9 @@ def test_a_rule_decides(claim: Claim, verdict: Verdict) -> None:
         (law([3.1, 4.2]), law([3.1, 9.0])),
         (proof_holds(0.0), proof_holds(0.1)),
         (closes(1e-8, 10), closes(0.6, 10)),
+        (keeps_clear(np.array([1e-9]), np.array([0.04])), keeps_clear(np.array([1e-9]), np.array([0.04, 0.02]))),
+        (keeps_clear(np.array([1e-9]), np.array([0.03])), keeps_clear(np.array([1e-3]), np.array([0.03]))),
+        (is_farther(np.array([1e-2]), np.array([1e-9])), is_farther(np.array([1e-9]), np.array([1e-2]))),
         (averages({1e-4: 2e-4}), averages({1e-4: 2e-3})),
         (on_servos_as_printed(0.6), on_servos_as_printed(1e-3)),
         (follows_on_servos(0.02, 2e-3), follows_on_servos(0.02, 2e-2)),

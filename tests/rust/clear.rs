@@ -7,8 +7,8 @@ use ikcore::obstacle::{Scene, Surroundings};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::shape::Shape;
-use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::{Goal, Target};
+use ikcore::solver::{Algorithm, AnySolver, Bas, DifferentialEvolution, Pso, PsoForm, Status, Stop, Unattended};
+use ikcore::task::{Goal, Target, Tolerance};
 
 const MARGIN: f64 = 0.01;
 
@@ -209,6 +209,10 @@ fn the_derivative_of_nearness_is_its_difference() {
     let mut compared = 0;
     for _ in 0..300 {
         let q = robot.random_configurations(1, &mut rng).unwrap();
+        let (short, near) = (space.squared_shortfall(&q), space.nearness(&q, MARGIN, 1.0, &mut [0.0; 7]));
+        assert!(
+            (short - MARGIN * MARGIN * near).abs() < 1e-9 * short && (short == 0.0) == space.holds(&q) || short < 1e-12
+        );
         if space.nearest(&q).unwrap().contact.distance < 0.01 {
             continue;
         }
@@ -308,4 +312,31 @@ fn an_open_mesh_is_said_to_have_no_inside() {
     let found = solved(&robot, &target, &among(&[Shape::sphere([2.0; 3], 0.1).unwrap(), triangle]));
     let end = " m clear of everything; the mesh of obstacle 1 is open, so that its inside is unknown";
     assert!(found.message().ends_with(end), "{}", found.message());
+}
+
+#[test]
+fn solvers_that_need_values_alone_take_obstacles_as_a_penalty() {
+    let robot = arm("iiwa14");
+    let solvers =
+        [Pso::of(PsoForm::Constriction).into(), DifferentialEvolution::default().into(), Bas::default().into()];
+    for (seed, solver) in (16..).zip(solvers.map(AnySolver::<Algorithm>::Single)) {
+        let mut rng = rng::stream(seed, 0);
+        let (mut avoided, mut solved_clear) = (0, 0);
+        for _ in 0..30 {
+            let (obstacles, target) = cluttered(&robot, &mut rng);
+            let Target::Pose(pose) = target else { unreachable!() };
+            let (target, scene) = (Target::Position(pose.origin), Scene::new(&robot, &obstacles).unwrap());
+            let tolerance = Tolerance { position: 1e-2, rotation: 1.0 };
+            let stop = Stop { max_evaluations: 20_000, ..Stop::default() };
+            let free = SolveOptions { solver: Some(solver.clone()), tolerance, stop, ..SolveOptions::default() };
+            let among = SolveOptions { surroundings: among(&obstacles).surroundings, ..free.clone() };
+            let found = solved(&robot, &target, &among);
+            let is_clear = scene.is_clear(&found.q, MARGIN);
+            assert!(found.evaluations <= 20_100, "{}", found.evaluations);
+            assert_eq!(found.status == Status::Solved, is_clear && found.error.position <= 1e-2, "{}", found.message());
+            solved_clear += usize::from(found.status == Status::Solved);
+            avoided += usize::from(is_clear && !scene.is_clear(&solved(&robot, &target, &free).q, MARGIN));
+        }
+        assert!(solved_clear > 10 && avoided > 0, "{solver:?}: {solved_clear} {avoided}");
+    }
 }

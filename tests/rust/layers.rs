@@ -33,7 +33,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
     ("solver", &["objective"]),
-    ("problem", &["kinematics", "starts", "robot", "task", "limits", "objective"]),
+    ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
     (
         "ik",

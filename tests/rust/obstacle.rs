@@ -306,6 +306,24 @@ fn with_random_bodies(name: &str, rng: &mut LazyRng) -> Robot {
     robot.with_capsules(bodies.collect()).unwrap()
 }
 
+/// Slopes of the smallest distance by joints, by differences of `step` (rad). Where another pair or another face becomes the nearest, the
+/// distance has a corner: slopes to both sides differ by `corner` or more, and are left out.
+fn slopes(scene: &Scene, q: &[f64], step: f64, corner: f64) -> Vec<(usize, f64)> {
+    let here = scene.clearance(q).unwrap();
+    let slope = |j: usize| {
+        let at = |sign: f64| {
+            let mut moved = q.to_vec();
+            moved[j] += sign * step;
+            scene.nearest(&moved).unwrap().unwrap()
+        };
+        let [low, high] = [at(-1.0), at(1.0)];
+        let (slope, one_sided) = ((high.distance - low.distance) / (2.0 * step), (high.distance - here) / step);
+        let is_smooth = low.other == high.other && low.link == high.link && (slope - one_sided).abs() < corner;
+        is_smooth.then_some((j, slope))
+    };
+    (0..q.len()).filter_map(slope).collect()
+}
+
 #[test]
 fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
     let mut rng = rng::stream(11, 0);
@@ -333,20 +351,8 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
                 continue;
             }
         }
-        let step = 1e-6;
-        for j in 0..7 {
-            let at = |sign: f64| {
-                let mut moved = q.clone();
-                moved[j] += sign * step;
-                scene.nearest(&moved).unwrap().unwrap()
-            };
-            let [low, high] = [at(-1.0), at(1.0)];
-            // Where another pair or another face becomes the nearest, the distance has a corner.
-            let slope = (high.distance - low.distance) / (2.0 * step);
-            let one_sided = (high.distance - found.contact.distance) / step;
-            if low.other == high.other && low.link == high.link && (slope - one_sided).abs() < 1e-4 {
-                assert!((slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
-            }
+        for (j, slope) in slopes(&scene, &q, 1e-6, 1e-4) {
+            assert!((slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
         }
     }
     assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
@@ -433,24 +439,10 @@ fn the_gradient_of_bodies_of_any_shape_is_the_slope() {
         if found.contact.distance < 1e-3 {
             continue; // of overlapping faces several may be equally deep
         }
-        let step = 1e-5;
-        for j in 0..7 {
-            let at = |sign: f64| {
-                let mut moved = q.clone();
-                moved[j] += sign * step;
-                scene.nearest(&moved).unwrap().unwrap()
-            };
-            let [low, high] = [at(-1.0), at(1.0)];
-            let slope = (high.distance - low.distance) / (2.0 * step);
-            let one_sided = (high.distance - found.contact.distance) / step;
-            if low.other == high.other && low.link == high.link && (slope - one_sided).abs() < 1e-3 {
-                assert!((slope - found.gradient[j]).abs() < 1e-2, "case {case}, joint {j}: {slope} {found:?}");
-                *(if matches!(found.contact.other, Neighbor::Link(_)) {
-                    &mut with_links
-                } else {
-                    &mut with_obstacles
-                }) += 1;
-            }
+        for (j, slope) in slopes(&scene, &q, 1e-5, 1e-3) {
+            assert!((slope - found.gradient[j]).abs() < 1e-2, "case {case}, joint {j}: {slope} {found:?}");
+            *(if matches!(found.contact.other, Neighbor::Link(_)) { &mut with_links } else { &mut with_obstacles }) +=
+                1;
         }
     }
     assert!(with_links > 20 && with_obstacles > 50, "{with_links} {with_obstacles}");

@@ -112,7 +112,7 @@ fn no_tick_comes_nearer_than_the_margin_and_every_stop_is_clear() {
             }
         }
     }
-    assert!(solved > 1000 && held > 300, "{solved} {held}");
+    assert!(solved > 400 && held > 400, "{solved} {held}");
 }
 
 #[test]
@@ -144,18 +144,17 @@ fn limits_are_kept_beside_obstacles() {
 #[test]
 fn a_redundant_arm_keeps_its_tip_on_the_path_while_its_elbow_gives_way() {
     let robot = panda();
-    let elbow = robot.link_poses(&START).unwrap()[4].translation.vector;
     for limits in all_limits(&robot) {
         let mut session = {
             let options = TrackOptions { limits: Some(limits), ..TrackOptions::default() };
             Session::new(&robot, &START, 0.002, &options).unwrap()
         };
-        // The post comes nearer, and pushes the elbow aside.
-        let mut worst: f64 = 0.0;
+        // A post comes nearer, and pushes the elbow aside.
+        let (speed, mut worst) = (0.04, 0.0_f64);
         for tick in 0..1500 {
-            let closer = 0.04 * (f64::from(tick) / 1000.0).min(1.0);
-            let post = Shape::cuboid([elbow.x, elbow.y - 0.17 + closer, elbow.z], [0.6, 0.02, 0.6], None).unwrap();
-            session.set_obstacles(Some(vec![post]), vec![[0.0, 0.02, 0.0]]).unwrap();
+            let y = -0.17 + speed * 0.002 * f64::from(tick);
+            let post = Shape::cuboid([-0.12, y, 0.64], [0.1, 0.02, 0.1], None).unwrap();
+            session.set_obstacles(Some(vec![post]), vec![[0.0, speed, 0.0]]).unwrap();
             let step = session.step(&target(&robot, 0, 0.002, &[[0.0; 3]]), &mut Unattended).unwrap();
             worst = worst.max(step.error.position);
             assert_ne!(step.status, Status::InCollision, "tick {tick}");
@@ -217,9 +216,9 @@ fn an_arm_gets_out_of_the_way_of_a_sphere_no_faster_than_said() {
 fn the_motion_between_ticks_is_clear() {
     let robot = panda();
     let tip = robot.tip_position(&START);
-    let wall = Shape::cuboid([tip[0], tip[1] + 0.15, tip[2]], [0.3, 0.04, 0.6], None).unwrap();
+    let wall = Shape::cuboid([tip[0] - 0.1, tip[1] + 0.12, tip[2]], [0.3, 0.04, 0.6], None).unwrap();
     let obstacles = vec![wall];
-    let plane = Plane::xy([tip[0], tip[1] + 0.05, tip[2]]).unwrap();
+    let plane = Plane::xy([tip[0] - 0.1, tip[1], tip[2]]).unwrap();
     let reference = Path::new(Circle::new(plane, 0.2, 4.0).unwrap()).sample(0.02).unwrap();
     for limits in all_limits(&robot) {
         let options = TrackOptions {

@@ -131,7 +131,8 @@ impl<'a> SolveContext<'a> {
 
     /// The problem of reaching `target`.
     pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
-        Problem::new(self.robot(), target, self.criterion).disregarding_turns()
+        let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
+        Problem::new(self.robot(), target, self.criterion).disregarding_turns().penalized(penalty)
     }
 
     /// Returns the part of `wanted` that the task uses, validated.

@@ -72,9 +72,9 @@ impl<'a> Others<'a> {
         }
     }
 
-    /// Balls around the obstacles.
-    pub fn balls(&self) -> impl Iterator<Item = (Vector3<f64>, f64)> {
-        self.balls.iter().copied()
+    /// Centre and radius (m) of a ball around an obstacle.
+    pub fn ball(&self, obstacle: usize) -> (Vector3<f64>, f64) {
+        self.balls[obstacle]
     }
 
     /// Whether one configuration at a time is faster: obstacles are then found by a tree.
@@ -120,7 +120,8 @@ const BLOCKS: usize = 8;
 /// Groups beyond this many are placed on the heap.
 const GROUPS: usize = 12;
 type Placed = SmallVec<[BodyBlock; BLOCKS]>;
-type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
+pub(super) type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
+pub(super) type NearBodies = SmallVec<[usize; 4 * BLOCKS]>;
 
 impl BodyGroups {
     /// Groups of `carried`, of which these pairs must not touch. Bodies that no joint moves are not compared with obstacles: the
@@ -187,6 +188,17 @@ impl BodyGroups {
     /// The group of a body.
     pub fn group_of(&self, body: usize) -> usize {
         self.places[body][0]
+    }
+
+    /// The groups that a joint moves and that may be nearer than `margin` >= 0 (m) to a shape; `balls` are around all groups.
+    pub fn near_groups(&self, balls: &Balls, shape: &Shape, margin: f64) -> SmallVec<[usize; GROUPS]> {
+        near_groups(self, balls, shape, margin)
+    }
+
+    /// The bodies of a group that may be nearer than `margin` >= 0 (m) to a shape, with the moving elements at `frames`.
+    pub fn near_bodies(&self, group: usize, frames: &[Frame], shape: &Shape, margin: f64) -> NearBodies {
+        let group = &self.groups[group];
+        near_bodies(group, &frames[group.stages], shape, margin)
     }
 
     /// The bodies of a group.
@@ -270,7 +282,7 @@ impl BodyGroups {
 
     /// The balls around all groups, four in a block.
     #[inline(always)]
-    fn balls(&self, frames: &[Frame]) -> Balls {
+    pub fn balls(&self, frames: &[Frame]) -> Balls {
         let mut balls = Balls::new();
         for (i, group) in self.groups.iter().enumerate() {
             if i % 4 == 0 {
@@ -427,6 +439,31 @@ by_instructions! {
             }
         }
         true
+    }
+}
+
+by_instructions! {
+    fn near_groups(all: &BodyGroups, balls: &Balls, shape: &Shape, margin: f64) -> SmallVec<[usize; GROUPS]> {
+        let mut near = SmallVec::new();
+        for (i, block) in balls.iter().enumerate() {
+            let clear = shape.clear_lanes::<A>(block, margin);
+            let groups = (4 * i..all.groups.len()).zip(clear.0).filter(|(_, clear)| *clear == 0.0);
+            near.extend(groups.map(|(group, _)| group).filter(|group| all.is_moving(*group)));
+        }
+        near
+    }
+}
+
+by_instructions! {
+    fn near_bodies(group: &Group, frame: &Frame, shape: &Shape, margin: f64) -> NearBodies {
+        let mut near = NearBodies::new();
+        for (bodies, block) in group.bodies.chunks(4).zip(&group.blocks) {
+            let clear = shape.clear_lanes::<A>(&block.placed::<A>(frame), margin);
+            if !all_clear(&clear) {
+                near.extend(bodies.iter().zip(clear.0).filter(|(_, clear)| *clear == 0.0).map(|(body, _)| *body));
+            }
+        }
+        near
     }
 }
 

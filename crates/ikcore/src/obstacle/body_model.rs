@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::body_groups::BodyGroups;
+use super::placement::Placement;
 use crate::robot::{Carried, Robot};
 
 /// Two things that could touch.
@@ -31,7 +32,9 @@ pub(super) struct BodyModel {
     pub groups: BodyGroups,
     /// In the order of the robot's pairs.
     pub pairs: Vec<BodyPair>,
-    /// The same by pairs of groups.
+    /// The bodies with all joints at zero: where those that no joint moves always are.
+    pub rest: Placement,
+    /// The pairs by pairs of groups.
     by_groups: Vec<([usize; 2], Vec<BodyPair>)>,
 }
 
@@ -60,7 +63,9 @@ impl BodyModel {
                 }
             }
         }
-        Self { carried, groups, pairs, by_groups }
+        let mut rest = Placement::of(robot, carried.len());
+        rest.update(robot, &carried, &vec![0.0; robot.dof()]);
+        Self { carried, groups, pairs, rest, by_groups }
     }
 
     /// The pairs of groups with bodies that must not touch.

@@ -86,6 +86,15 @@ impl<'a> ClearSpace<'a> {
         check.is_clear(&self.scene, motion, kept)
     }
 
+    /// The sum of (margin - d)^2 (m^2) over all pairs of bodies whose distance d is below the margin, but for those that no joint moves.
+    pub fn squared_shortfall(&self, q: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.scene.for_each_within(self.margin, &self.scene.place(q), |_, distance| {
+            sum += (self.margin - distance) * (self.margin - distance);
+        });
+        sum
+    }
+
     /// The sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to` (m). Adds `weight` times its
     /// derivative by the joints to `gradient`.
     pub fn nearness(&self, q: &[f64], up_to: f64, weight: f64, gradient: &mut [f64]) -> f64 {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
+use super::body_groups::Balls;
 use super::body_model::BodyPair;
 use super::placement::Placement;
 use super::scene::Scene;
@@ -10,44 +11,28 @@ use super::scene::Scene;
 /// Distances that differ by less (m) are equal but for rounding.
 const EQUALLY_NEAR: f64 = 1e-9;
 
-/// Groups of bodies that may be near.
-#[derive(Debug, Clone, Copy)]
-enum Near {
-    /// A group and an obstacle.
-    Obstacle { group: usize, obstacle: usize },
-    /// This entry of the pairs of groups.
-    Groups(usize),
-}
-
-/// A ball around a group, at its place.
+/// A ball around a group, or an obstacle.
 type Ball = (Vector3<f64>, f64);
 
-/// What may be near, each with a lower bound of the distance (m); and the balls that the bounds come from.
-struct Candidates {
-    bounded: SmallVec<[(f64, Near); 128]>,
-    balls: SmallVec<[Ball; 16]>,
+/// The balls around all groups at a placement: one by one, and in the lanes of the registers.
+struct GroupBalls {
+    each: SmallVec<[Ball; 16]>,
+    lanes: Balls,
 }
 
 impl Scene<'_> {
     /// The nearest pair, and its distance (m); of those that are equally near the first.
     pub(super) fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
-        let candidates = self.candidates(f64::INFINITY, placement);
-        let count = candidates.bounded.len();
-        // What is likely to be nearest comes first: it leaves out most of the others.
-        let likely = (0..count).min_by(|i, j| candidates.bounded[*i].0.total_cmp(&candidates.bounded[*j].0));
         let mut least = self.fixed.map_or(f64::INFINITY, |(distance, _)| distance);
         let mut nearest: SmallVec<[(f64, BodyPair); 8]> = SmallVec::new();
-        for i in likely.into_iter().chain((0..count).filter(|i| Some(*i) != likely)) {
-            let enough = least + EQUALLY_NEAR;
-            let Some(near) = self.within(&candidates, i, enough) else { continue };
-            self.for_each_pair(near, |pair| {
-                let distance = self.distance(pair, placement, least + EQUALLY_NEAR);
-                if distance < least + EQUALLY_NEAR {
-                    least = least.min(distance);
-                    nearest.push((distance, pair));
-                }
-            });
-        }
+        self.for_each_near(least + EQUALLY_NEAR, placement, |pair| {
+            let distance = self.distance(pair, placement, least + EQUALLY_NEAR);
+            if distance < least + EQUALLY_NEAR {
+                least = least.min(distance);
+                nearest.push((distance, pair));
+            }
+            least + EQUALLY_NEAR
+        });
         let equal = |distance: f64| distance < least + EQUALLY_NEAR;
         let fixed = self.fixed.filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
         let moving = nearest.into_iter().filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
@@ -56,70 +41,86 @@ impl Scene<'_> {
 
     /// Calls `visit` with each pair that is nearer than `up_to` (m), and its distance; not with bodies that no joint moves.
     pub(super) fn for_each_within(&self, up_to: f64, placement: &Placement, mut visit: impl FnMut(BodyPair, f64)) {
-        let candidates = self.candidates(up_to, placement);
-        for i in 0..candidates.bounded.len() {
-            let Some(near) = self.within(&candidates, i, up_to) else { continue };
-            self.for_each_pair(near, |pair| {
-                let distance = self.distance(pair, placement, up_to);
-                if distance < up_to {
-                    visit(pair, distance);
-                }
-            });
-        }
+        self.for_each_near(up_to, placement, |pair| {
+            let distance = self.distance(pair, placement, up_to);
+            if distance < up_to {
+                visit(pair, distance);
+            }
+            up_to
+        });
     }
 
-    /// What may be nearer than `up_to` (m), by the balls around groups and obstacles.
-    fn candidates(&self, up_to: f64, placement: &Placement) -> Candidates {
+    /// Calls `visit` with all pairs that are nearer than `up_to` (m), and some others; it returns the next `up_to`.
+    fn for_each_near(&self, up_to: f64, placement: &Placement, mut visit: impl FnMut(BodyPair) -> f64) {
         let groups = &self.bodies.groups;
-        let balls: SmallVec<[Ball; 16]> =
-            (0..groups.count()).map(|group| groups.ball(group, &placement.frames)).collect();
-        let mut bounded = SmallVec::new();
-        let mut keep = |bound: f64, one: Near| {
-            if bound < up_to {
-                bounded.push((bound, one));
-            }
-        };
-        let gap = |(one, radius): Ball, (other, other_radius): Ball| (one - other).norm() - radius - other_radius;
-        if self.others.itself {
-            for (i, [one, other]) in self.bodies.pairs_of_groups().enumerate() {
-                keep(gap(balls[one], balls[other]), Near::Groups(i));
-            }
-        }
-        for group in (0..balls.len()).filter(|group| groups.is_moving(*group)) {
-            for (obstacle, ball) in self.others.balls().enumerate() {
-                keep(unless_inside(gap(balls[group], ball)), Near::Obstacle { group, obstacle });
-            }
-        }
-        Candidates { bounded, balls }
+        let each = (0..groups.count()).map(|group| groups.ball(group, &placement.frames)).collect();
+        let balls = GroupBalls { each, lanes: groups.balls(&placement.frames) };
+        let up_to = self.for_each_near_link(up_to, &balls, &mut visit);
+        self.for_each_near_obstacle(up_to, &balls, placement, &mut visit);
     }
 
-    /// Candidate `i` if it may be nearer than `up_to` (m).
-    fn within(&self, candidates: &Candidates, i: usize, up_to: f64) -> Option<Near> {
-        let (bound, near) = candidates.bounded[i];
-        if bound > up_to {
-            return None;
+    /// The pairs of two links.
+    fn for_each_near_link(&self, mut up_to: f64, balls: &GroupBalls, visit: &mut impl FnMut(BodyPair) -> f64) -> f64 {
+        if !self.others.itself {
+            return up_to;
         }
-        if let Near::Obstacle { group, obstacle } = near
-            && self.bodies.groups.bodies_of(group).len() > 1
-        {
-            // The obstacle itself is farther away than the ball around it.
-            let (center, radius) = candidates.balls[group];
-            let distance = self.others.obstacles[obstacle].distance_to_segment(&[center, center], up_to + radius);
-            return (unless_inside(distance - radius) <= up_to).then_some(near);
+        let gap_of = |[one, other]: [usize; 2]| gap(balls.each[one], balls.each[other]);
+        let mut gaps: SmallVec<[(f64, usize); 64]> = self.bodies.pairs_of_groups().map(gap_of).zip(0..).collect();
+        // The nearest balls first: their bodies leave out most of the others.
+        if let Some(first) = (0..gaps.len()).min_by(|i, j| gaps[*i].0.total_cmp(&gaps[*j].0)) {
+            gaps.swap(0, first);
         }
-        Some(near)
+        for (gap, i) in gaps {
+            if gap <= up_to {
+                self.bodies.pairs_between(i).iter().for_each(|pair| up_to = visit(*pair));
+            }
+        }
+        up_to
     }
 
-    fn for_each_pair(&self, near: Near, mut visit: impl FnMut(BodyPair)) {
-        match near {
-            Near::Groups(i) => self.bodies.pairs_between(i).iter().copied().for_each(visit),
-            Near::Obstacle { group, obstacle } => {
-                let bodies = self.bodies.groups.bodies_of(group).iter().copied();
-                let tested = bodies.filter(|body| !self.others.allowed.allow(*body, obstacle));
-                tested.for_each(|body| visit(BodyPair::Obstacle { body, obstacle }));
+    /// The pairs of a link and an obstacle.
+    fn for_each_near_obstacle(
+        &self,
+        mut up_to: f64,
+        balls: &GroupBalls,
+        placement: &Placement,
+        visit: &mut impl FnMut(BodyPair) -> f64,
+    ) {
+        let groups = &self.bodies.groups;
+        for (obstacle, shape) in self.others.obstacles.iter().enumerate() {
+            let mut visit = |body: usize, up_to: f64| {
+                let may_touch = self.others.allowed.allow(body, obstacle);
+                if may_touch { up_to } else { visit(BodyPair::Obstacle { body, obstacle }) }
+            };
+            if shape.has_lanes() && (0.0..f64::INFINITY).contains(&up_to) {
+                for group in groups.near_groups(&balls.lanes, shape, up_to) {
+                    for body in groups.near_bodies(group, &placement.frames, shape, up_to) {
+                        up_to = visit(body, up_to);
+                    }
+                }
+                continue;
+            }
+            for group in (0..groups.count()).filter(|group| groups.is_moving(*group)) {
+                if self.may_be_near(balls.each[group], groups.bodies_of(group).len(), obstacle, up_to) {
+                    groups.bodies_of(group).iter().for_each(|body| up_to = visit(*body, up_to));
+                }
             }
         }
     }
+
+    /// Whether one of `count` bodies in a ball may be nearer than `up_to` (m) to an obstacle.
+    fn may_be_near(&self, (center, radius): Ball, count: usize, obstacle: usize, up_to: f64) -> bool {
+        if unless_inside(gap((center, radius), self.others.ball(obstacle))) > up_to {
+            return false;
+        }
+        // The obstacle itself is farther away than the ball around it.
+        let distance = || self.others.obstacles[obstacle].distance_to_segment(&[center, center], up_to + radius);
+        count == 1 || unless_inside(distance() - radius) <= up_to
+    }
+}
+
+fn gap((one, radius): Ball, (other, other_radius): Ball) -> f64 {
+    (one - other).norm() - radius - other_radius
 }
 
 /// A bound on the distance of an obstacle. How deep a body reaches into a shape of many pieces is not bounded by how deep its ball

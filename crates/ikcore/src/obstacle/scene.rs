@@ -67,8 +67,7 @@ impl<'a> Scene<'a> {
     /// The nearest pair of an obstacle and a body that no joint moves, which is in the same place at any configuration.
     fn nearest_fixed(&self) -> Option<(f64, BodyPair)> {
         let pairs = self.with_obstacles(|body| body.stages == 0);
-        pairs.clone().next()?;
-        self.nearest_of(pairs, &self.place(&vec![0.0; self.robot.dof()]))
+        self.nearest_of(pairs, &self.bodies.rest)
     }
 
     /// Each of the bodies that are `wanted` with each obstacle that it must not touch.

@@ -2,6 +2,7 @@
 
 use crate::math::box_step::ROWS;
 use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
+use crate::obstacle::ClearSpace;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::starts::Starts;
@@ -17,6 +18,8 @@ pub struct Problem<'a> {
     /// Looked up when the first start is needed.
     seeds: Option<Starts<'a>>,
     turns: Turns,
+    /// What a solution must keep clear of, for solvers that need values alone.
+    space: Option<&'a ClearSpace<'a>>,
 }
 
 /// Whether configurations that differ by whole turns count as different.
@@ -31,12 +34,17 @@ enum Turns {
 impl<'a> Problem<'a> {
     /// The problem of moving the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct }
+        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct, space: None }
     }
 
     /// The same problem, in which full turns of a joint do not matter.
     pub fn disregarding_turns(self) -> Self {
         Self { turns: Turns::Equivalent, ..self }
+    }
+
+    /// The same problem with a penalty on its values outside `space`, where no configuration is a solution.
+    pub(crate) fn penalized(self, space: Option<&'a ClearSpace<'a>>) -> Self {
+        Self { space, ..self }
     }
 
     /// The target of the tip.
@@ -66,7 +74,8 @@ impl Objective for Problem<'_> {
 
     #[inline]
     fn evaluate(&mut self, q: &[f64]) -> Score {
-        self.assess(q).score
+        let score = self.assess(q).score;
+        self.space.map_or(score, |space| kept_clear(score, space, q))
     }
 
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
@@ -76,6 +85,11 @@ impl Objective for Problem<'_> {
                 *score = assessment.score;
             }
         });
+        if let Some(space) = self.space {
+            for (q, score) in qs.chunks_exact(self.robot.dof()).zip(out) {
+                *score = kept_clear(*score, space, q);
+            }
+        }
     }
 
     fn period(&self, joint: usize) -> Option<f64> {
@@ -102,6 +116,14 @@ impl Objective for Problem<'_> {
             q[i] = rng.uniform_in(lower, upper);
         }
     }
+}
+
+/// The score of `q` with the penalty: squares of distances, beside the squares of errors of position.
+fn kept_clear(score: Score, space: &ClearSpace<'_>, q: &[f64]) -> Score {
+    if space.holds(q) {
+        return score;
+    }
+    Score { value: score.value + space.squared_shortfall(q), solved: false }
 }
 
 impl Residual for Problem<'_> {

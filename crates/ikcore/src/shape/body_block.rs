@@ -138,6 +138,12 @@ impl Shape {
         }
     }
 
+    /// Whether [`clear_lanes`](Self::clear_lanes) takes four bodies at once.
+    pub(crate) fn has_lanes(&self) -> bool {
+        use Geometry::{Box, Capsule, Cylinder, HalfSpace, Sphere};
+        matches!(self.geometry(), Sphere { .. } | Capsule { .. } | HalfSpace { .. } | Box { .. } | Cylinder { .. })
+    }
+
     /// [`clear_lanes`](Self::clear_lanes) for shapes whose distances are found one by one.
     #[inline(never)]
     fn clear_one_by_one(&self, block: &BodyBlock, enough: &F64x4) -> F64x4 {

@@ -69,10 +69,15 @@ impl AnySolver {
         self.validate_restarts().and(self.algorithm().validate())
     }
 
+    /// Whether it needs only the values of an objective.
+    pub(crate) fn needs_values_alone(&self) -> bool {
+        matches!(self.algorithm(), Algorithm::DerivativeFree(_))
+    }
+
     /// Whether a tick of a track may end once it beats the previous one (line 16 of Algorithm 1 in Cheng et al. 2020).
     /// A random search could otherwise run for long; a descent converges in a few iterations.
     pub(crate) fn settles_for_improvement(&self) -> bool {
-        matches!(self.algorithm(), Algorithm::DerivativeFree(_))
+        self.needs_values_alone()
     }
 
     /// Whether it ends by itself even without a budget.

@@ -295,12 +295,13 @@ impl Record {
             None if self.ease == Ease::Impossible => {
                 "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
             }
+            None if self.was_held_back() => self.held_back(),
             None if self.starts_too_fast() => {
                 "the path moves at its start, where the arm is at rest: ease=True (--ease) begins with an approach \
                  within the limits"
                     .into()
             }
-            None => self.held_back().unwrap_or_else(|| Status::Lost.advice().into()),
+            None => Status::Lost.advice().into(),
             Some((beyond, when)) => {
                 format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
             }
@@ -308,15 +309,19 @@ impl Record {
         self.message_with(&advice)
     }
 
-    /// How obstacles or other links were in the way, and what to try; `None` if they were not.
-    fn held_back(&self) -> Option<String> {
+    /// Whether obstacles or other links were in the way.
+    fn was_held_back(&self) -> bool {
+        self.step_status.iter().any(|status| matches!(status, Status::InCollision | Status::HeldByObstacle))
+    }
+
+    /// How they were, and what to try.
+    fn held_back(&self) -> String {
         let count = |wanted: Status| self.step_status.iter().filter(|status| **status == wanted).count();
-        let phrases = [
-            (Status::InCollision, "an obstacle or another link was nearer than the margin"),
-            (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
-        ];
-        let (status, phrase) = phrases.into_iter().find(|(status, _)| count(*status) > 0)?;
-        Some(format!("in {} steps {phrase}: {}", count(status), status.advice()))
+        let (status, phrase) = match count(Status::InCollision) {
+            0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
+            _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
+        };
+        format!("in {} steps {phrase}: {}", count(status), status.advice())
     }
 
     /// [`message`](Self::message), with this `advice` if the track failed.
@@ -366,7 +371,8 @@ impl Record {
     fn starts_too_fast(&self) -> bool {
         let limited = [Field::Acceleration, Field::Jerk].into_iter().any(|field| self.limits.is_finite(field));
         let lost_at_once = self.joined() == Some(0) && self.step_status.get(1) != Some(&Status::Solved);
-        limited && lost_at_once && self.ease == Ease::NotAsked
+        let eases = self.ease == Ease::NotAsked && self.clearance[0].is_nan();
+        limited && lost_at_once && eases
     }
 
     /// Formats errors (m, rad) with their units; components that the task leaves out are omitted.

@@ -50,7 +50,7 @@ outcome! {
     /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links; HELD_BY_OBSTACLE if one
     /// keeps the tip from the target; IMPROVED nearer than in the previous step, otherwise CAPPED.
     status: result.core.status,
-    message: result.message(),
+    message: result.sentence(),
     /// Evaluations of the forward kinematics.
     evaluations: result.core.evaluations,
     elapsed: result.elapsed,
@@ -93,7 +93,7 @@ impl PyStep {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Step {}: {}>", self.core.status.name(), self.message())
+        format!("<Step {}: {}>", self.core.status.name(), self.sentence())
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
@@ -127,7 +127,7 @@ impl PyStep {
     }
 
     /// What happened, what to try, and what is in the way.
-    fn message(&self) -> String {
+    fn sentence(&self) -> String {
         let message = self.core.message();
         match (self.core.status, self.around()) {
             (Status::HeldByObstacle | Status::InCollision, Some(Some(NearestContact { contact, .. }))) => {

@@ -5,6 +5,7 @@ from ..experiment import Context, Experiment
 from .antennae import antennae
 from .constants import constants
 from .figures import figures
+from .obstacle import obstacle
 from .orientation import orientation
 from .other_methods import other_methods
 from .repetition import repetition
@@ -35,7 +36,18 @@ def run(context: Context) -> Report:
     """Run all of it."""
     parts = [
         part(context)
-        for part in (figures, antennae, constants, theorem, other_methods, repetition, sensor, orientation, servo_arm)
+        for part in (
+            figures,
+            antennae,
+            constants,
+            theorem,
+            other_methods,
+            repetition,
+            sensor,
+            orientation,
+            servo_arm,
+            obstacle,
+        )
     ]
     return Report.of(_SUMMARY, parts)
 

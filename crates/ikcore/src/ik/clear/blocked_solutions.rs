@@ -38,6 +38,11 @@ impl BlockedSolutions {
         self.count += 1;
     }
 
+    /// The first of all.
+    pub fn first(&self) -> Option<&Point> {
+        self.kept.first()
+    }
+
     /// Those kept, the least deep in collision first.
     pub fn by_clearance(&self, space: &ClearSpace<'_>) -> Vec<(NearestContact, Point)> {
         let nearest = |q: &Point| Some((space.nearest(q)?, q.clone()));

@@ -13,6 +13,9 @@ const SCANNED: usize = 2048;
 /// Values of the parameter between two looks at the monitor.
 const VALUES_BETWEEN_LOOKS: usize = 64;
 
+/// Values after which it is asked whether any can have a clear branch: most poses have one before.
+const VALUES_BEFORE_DOUBT: usize = 4;
+
 /// A clear solution, or why no branch is clear; `None` where the closed form does not apply, or no branch is inside the limits.
 pub(super) type BranchOutcome = Option<Result<Point, Exhausted>>;
 
@@ -50,7 +53,8 @@ impl ClearSearch<'_, '_, '_> {
             if let Some(q) = self.first_clear(preference, family.likely_at(value, &limits).iter()) {
                 return Some(Ok(q));
             }
-            if self.is_hopeless() || self.attempt.budget.left() < half_the_budget {
+            let is_hopeless = k >= VALUES_BEFORE_DOUBT && self.is_hopeless();
+            if is_hopeless || self.attempt.budget.left() < half_the_budget {
                 break;
             }
             if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {

@@ -1,5 +1,7 @@
 //! The state of a search for a clear solution: what was tried, and why it was not clear.
 
+use std::cell::OnceCell;
+
 use super::blocked_solutions::BlockedSolutions;
 use crate::ik::attempt::Attempt;
 use crate::ik::solution::{Nearest, Solution};
@@ -20,8 +22,8 @@ pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     pub attempt: &'s mut Attempt<'m, 'p>,
     pub space: &'p ClearSpace<'p>,
     blocked: BlockedSolutions,
-    /// The contact that no motion of the arm ends.
-    hopeless: Option<Blocked>,
+    /// The contact that no motion of the arm ends, looked for when first asked for.
+    hopeless: OnceCell<Option<Blocked>>,
     push: Goals,
 }
 
@@ -43,7 +45,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn new(attempt: &'s mut Attempt<'m, 'p>, space: &'p ClearSpace<'p>) -> Self {
         let away = Goal::Clearance { up_to: space.margin() + BEYOND, weight: 1.0 };
         let push = Goals::new(&[away], attempt.context.robot(), attempt.context.bounds());
-        Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: None, push }
+        Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: OnceCell::new(), push }
     }
 
     /// Whether the solution `q` is clear. If not, it is remembered.
@@ -52,17 +54,20 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         if self.space.holds(q) {
             return true;
         }
-        if self.blocked.count == 0 {
-            let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
-            self.hopeless = if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere(q) };
-        }
         self.blocked.push(q);
         false
     }
 
     /// Whether no solution is clear, whatever the arm does.
     pub fn is_hopeless(&self) -> bool {
-        self.hopeless.is_some()
+        self.blocked_for_good().is_some()
+    }
+
+    fn blocked_for_good(&self) -> Option<&Blocked> {
+        let q = self.blocked.first()?;
+        let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
+        let found = || if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere(q) };
+        self.hopeless.get_or_init(found).as_ref()
     }
 
     /// The solution `q`, or one near it on its self-motion that is clear.
@@ -109,7 +114,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         let margin = self.space.margin();
         let said =
             |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
-        let obstruction = match (&self.hopeless, exhausted) {
+        let obstruction = match (self.blocked_for_good(), exhausted) {
             (Some(Blocked::Hand(contact)), _) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(contact))
             }

@@ -14,6 +14,7 @@ impl ClearSearch<'_, '_, '_> {
         for _ in 0..PATIENCE {
             let solution = self.attempt.solve_from(&x0);
             if solution.status != Status::Solved {
+                self.remember_reached(&solution.q);
                 return Err(self.missed(solution));
             }
             if let Some(q) = self.cleared(solution.q.clone()) {
@@ -29,6 +30,13 @@ impl ClearSearch<'_, '_, '_> {
         }
         let reached = self.attempt.solution(Status::Stalled, x0);
         Err(self.missed(reached))
+    }
+
+    /// Remembers `q` if it solves the target but is not clear, as solvers that need values alone may end.
+    fn remember_reached(&mut self, q: &Point) {
+        if self.attempt.problem.assess(q).score.solved {
+            self.is_clear(q);
+        }
     }
 
     /// The result after `last`, which is neither clear nor on the way to anything better.
