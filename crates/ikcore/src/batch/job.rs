@@ -17,7 +17,7 @@ use super::targets::Targets;
 use crate::error::{Error, Result};
 use crate::ik::{Query, SolveContext, solve_query};
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 
 /// The data that all threads share.
@@ -27,6 +27,7 @@ pub(super) struct Job<'a> {
     starts: Option<&'a [f64]>,
     common_start: Option<&'a [f64]>,
     dof: usize,
+    rows_are_checked: bool,
 }
 
 /// Rows checked between two polls of the monitor: about 100 microseconds.
@@ -51,26 +52,42 @@ impl<'a> Job<'a> {
         let common_start = options.each.start.as_deref();
         common_start.map_or(Ok(()), |q| context.check_start(q))?;
         context.require_reference(options.starts.or(common_start))?;
-        Ok(Self { context, targets, starts: options.starts, common_start, dof })
+        Ok(Self { context, targets, starts: options.starts, common_start, dof, rows_are_checked: false })
+    }
+
+    /// Checks all rows before any is solved.
+    pub fn check_rows(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
+        for row in 0..self.targets.len() {
+            if row.is_multiple_of(CHECKED_AT_ONCE) && !monitor.keep_going() {
+                return Ok(());
+            }
+            self.check(row).map_err(|error| Error::InRow { row, error: Box::new(error) })?;
+        }
+        self.rows_are_checked = true;
+        Ok(())
+    }
+
+    fn check(&self, i: usize) -> Result<()> {
+        self.targets.check(i)?;
+        if i == 0 {
+            // Whether the task takes targets of this kind.
+            self.context.part_used(&self.targets.read(i))?;
+        }
+        self.own_start(i).map_or(Ok(()), |start| self.context.check_start(start))
     }
 
     /// Returns target `i` and its start, validated.
     fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
-        let target = self.context.read(&self.targets.read(i)?)?;
-        let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
-        let start = &starts[i * self.dof..(i + 1) * self.dof];
-        self.context.check_start(start).map(|()| (target, Some(start)))
+        if !self.rows_are_checked {
+            self.check(i)?;
+        }
+        let target = self.context.part_used(&self.targets.read(i))?;
+        Ok((target, self.own_start(i).or(self.common_start)))
     }
 
-    /// Checks all rows before any is solved.
-    pub fn check_rows(&self, monitor: &mut dyn Monitor) -> Result<()> {
-        for row in 0..self.targets.len() {
-            if row.is_multiple_of(CHECKED_AT_ONCE) && !monitor.keep_going() {
-                break;
-            }
-            self.read(row).map_err(|error| Error::InRow { row, error: Box::new(error) })?;
-        }
-        Ok(())
+    /// The start given for target `i` alone.
+    fn own_start(&self, i: usize) -> Option<&'a [f64]> {
+        self.starts.map(|starts| &starts[i * self.dof..(i + 1) * self.dof])
     }
 
     /// Solves the targets from index `first` on, one per entry of `items`, and calls `done` after each.
@@ -86,13 +103,16 @@ impl<'a> Job<'a> {
         if !monitor.keep_going() {
             return;
         }
+        // Read once a target: each begins where the one before ended.
+        let mut stopwatch = Stopwatch::start();
         for ((row, item), q) in items.iter_mut().enumerate().zip(qs.chunks_mut(self.dof)) {
             *item = match self.read(first + row) {
                 Err(_) => BatchItem::untouched(Status::Invalid),
                 Ok((target, start)) => {
-                    let query = Query { target, start, stream: (first + row) as u64 };
+                    let query = Query { target, start, stream: (first + row) as u64, stopwatch };
                     let solution = solve_query(&self.context, &query, monitor);
                     q.copy_from_slice(&solution.q);
+                    stopwatch = stopwatch.started_later(solution.elapsed);
                     BatchItem::from(solution)
                 }
             };

@@ -24,7 +24,7 @@ pub fn solve_batch(
     monitor: &mut dyn Monitor,
 ) -> Result<Batch> {
     let stopwatch = Stopwatch::start();
-    let job = Job::new(robot, targets, options)?;
+    let mut job = Job::new(robot, targets, options)?;
     let threads = pool::thread_count(options.threads)?;
     if options.on_invalid == OnInvalid::Raise {
         job.check_rows(monitor)?;

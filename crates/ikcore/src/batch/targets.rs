@@ -29,13 +29,23 @@ impl Targets<'_> {
         self.len() == 0
     }
 
-    /// Target `i`; a pose is checked to be rigid.
-    pub(super) fn read(&self, i: usize) -> Result<Target> {
+    /// Checks target `i`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`](crate::Error::NotFinite), or [`Error::NotRigid`](crate::Error::NotRigid) for a pose.
+    pub(super) fn check(&self, i: usize) -> Result<()> {
         match self {
-            Self::Positions(rows) => Ok(Target::Position(rows[i])),
-            Self::Poses(rows) => {
-                pose::from_matrix("target", &Matrix4::from_row_slice(&rows[i])).map(|pose| Target::from(&pose))
-            }
+            Self::Positions(rows) => Target::Position(rows[i]).validate(),
+            Self::Poses(rows) => pose::check_matrix("target", &Matrix4::from_row_slice(&rows[i])),
+        }
+    }
+
+    /// Target `i`, which was checked.
+    #[inline]
+    pub(super) fn read(&self, i: usize) -> Target {
+        match self {
+            Self::Positions(rows) => Target::Position(rows[i]),
+            Self::Poses(rows) => Target::from(&pose::from_checked(&Matrix4::from_row_slice(&rows[i]))),
         }
     }
 }

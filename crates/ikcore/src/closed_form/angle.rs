@@ -74,7 +74,8 @@ impl Angle {
     /// The displacement that turns about the line through `point` along the unit vector `axis`.
     #[inline]
     pub fn about_line(self, axis: &Vector, point: &Vector) -> Frame {
-        let axes = Frame::IDENTITY.axes.map(|e| self.about(axis, &e));
+        let [x, y, z] = &Frame::IDENTITY.axes;
+        let axes = [self.about(axis, x), self.about(axis, y), self.about(axis, z)];
         Frame { axes, origin: sub(point, &self.about(axis, point)) }
     }
 }

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use super::angle::Angle;
 
-/// Polishing may move a candidate by so much (rad): double roots are kept up to there, see [`super::subproblem::CLAMP`].
-const SLACK: f64 = 0.03;
+/// Polishing moves a candidate by less (rad): double roots are kept up to there, see [`super::subproblem::CLAMP`].
+pub(crate) const MOVED_BY_POLISHING: f64 = 0.03;
 
 /// The angles from one limit to another and a little beyond, whole turns aside.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,11 @@ impl AngleRange {
     /// Between limits (rad).
     pub fn of([lower, upper]: [f64; 2]) -> Self {
         let half = 0.5 * (upper - lower);
-        if half < PI { Self { middle: Angle::by(lower + half), least: half.cos() - SLACK } } else { Self::ANY }
+        if half < PI {
+            Self { middle: Angle::by(lower + half), least: half.cos() - MOVED_BY_POLISHING }
+        } else {
+            Self::ANY
+        }
     }
 
     /// False only for angles that no branch within the limits is near.

@@ -2,7 +2,8 @@
 
 use super::arm_branches::ArmBranches;
 use super::axis_chain::{AxisChain, JointAxis};
-use super::configurations::{ArmConfigurations, Drives, MOST_JOINTS};
+use super::branches::MOST_JOINTS;
+use super::configurations::{ArmConfigurations, Drives};
 use super::five_joints::FiveJoints;
 use super::planar::Planar;
 use super::pose_family::{FamilyLimits, PoseFamily};
@@ -134,17 +135,18 @@ impl ClosedFormArm {
         })
     }
 
-    /// ArmConfigurations that bring the tip of the chain to `target` unless forward kinematics says otherwise, at less cost than
+    /// Finds configurations that bring the tip of the chain to `target` unless forward kinematics says otherwise, at less cost than
     /// [`Self::solve`] where that is possible; none for redundant arms.
     #[inline]
-    pub fn likely(&self, target: &Frame) -> ArmConfigurations {
+    pub fn likely(&self, target: &Frame, found: &mut ArmConfigurations) {
         match &self.method {
-            Method::Six(method) if method.has_exact_candidates() => method.likely(target, &self.drives),
-            _ => self.solve(target).map_or_else(ArmConfigurations::none, ArmBranches::into_configurations),
+            Method::Six(method) if method.has_exact_candidates() => method.likely(target, &self.drives, found),
+            _ => *found = self.solve(target).map_or_else(ArmConfigurations::none, |found| found.configurations()),
         }
     }
 
     /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
+    #[inline]
     pub fn family(&self, target: &Frame) -> Option<PoseFamily<'_>> {
         match &self.method {
             Method::Seven(method) => Some(PoseFamily::new(&method.0, &self.drives, &method.1, target)),

@@ -91,11 +91,12 @@ impl ArmAngle {
         for q4 in q4.iter() {
             let arm = sub(&q4.about(&self.elbow_axis, &from_elbow), &to_shoulder);
             let at_zero = self.frame(&arm, &self.elbow_axis);
-            let back = q4.back();
+            let [x, y, z] = &at_zero.axes;
+            let turned = |v: &Vector| q4.back().about(&self.elbow_axis, v);
             pose.elbows[pose.count] = Elbow {
                 q4: *q4,
                 first: self.first.pointing(&at_zero.inverse()),
-                to_wrist: Frame { axes: at_zero.axes.map(|v| back.about(&self.elbow_axis, &v)), origin: [0.0; 3] },
+                to_wrist: Frame { axes: [turned(x), turned(y), turned(z)], origin: [0.0; 3] },
             };
             pose.count += 1;
         }
@@ -104,7 +105,7 @@ impl ArmAngle {
 
     /// All joint angles at an arm angle, as far as `ranges` may hold them.
     #[inline(always)]
-    pub fn solve(&self, pose: &ArmAnglePose, arm_angle: Angle, ranges: &[AngleRange; 7], found: &mut Candidates<7>) {
+    pub fn solve(&self, pose: &ArmAnglePose, arm_angle: Angle, ranges: &[AngleRange; 7], found: &mut Candidates) {
         let [a, b, c, of_elbow, d, e, f] = *ranges;
         let target = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
         let back = |v: &Vector| about_z(arm_angle.back(), v);

@@ -1,12 +1,14 @@
 //! All branches of an arm for one pose.
 
-use crate::closed_form::branches::{BranchError, Branches, MOST};
+use crate::closed_form::branches::{BranchError, Branches, MOST, MOST_JOINTS};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 
-/// ArmConfigurations of an arm for one pose, each at one of its whole turns, and verified by forward kinematics.
+/// Configurations of an arm for one pose, each at one of its whole turns, and verified by forward kinematics.
 #[derive(Debug, Clone)]
 pub(crate) struct ArmBranches {
-    configurations: ArmConfigurations,
+    sets: [[f64; MOST_JOINTS]; MOST],
+    count: usize,
+    joints: usize,
     errors: [BranchError; MOST],
     /// A configuration that was no solution was near one: the pose may be reached within wide tolerances.
     pub nearly: bool,
@@ -22,29 +24,30 @@ impl ArmBranches {
     /// From the values of the axes.
     #[inline]
     pub fn of<const N: usize>(branches: &Branches<N>, drives: &Drives) -> Self {
-        let configurations = ArmConfigurations::new(drives, branches.len(), |sets| {
-            for (set, values) in sets.iter_mut().zip(branches.iter()) {
-                set[..N].copy_from_slice(values);
-            }
-        });
+        let (count, joints) = (branches.len(), drives.len());
+        let mut sets = [[0.0; MOST_JOINTS]; MOST];
+        for (set, values) in sets.iter_mut().zip(branches.iter()) {
+            set[..N].copy_from_slice(values);
+            drives.joints_of(set);
+        }
         let mut errors = [BranchError::default(); MOST];
-        errors[..branches.len()].copy_from_slice(branches.errors());
+        errors[..count].copy_from_slice(branches.errors());
         let Branches { nearly, complete, singular, evaluations, .. } = *branches;
-        Self { configurations, errors, nearly, complete, singular, evaluations }
+        Self { sets, count, joints, errors, nearly, complete, singular, evaluations }
     }
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.configurations.len()
+        self.count
     }
 
     /// The configurations (n,) (rad, m), and by how much they miss the pose.
     pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchError)> {
-        self.configurations.iter().zip(self.errors)
+        self.sets[..self.count].iter().map(|set| &set[..self.joints]).zip(self.errors)
     }
 
     /// The configurations alone.
-    pub fn into_configurations(self) -> ArmConfigurations {
-        self.configurations
+    pub fn configurations(&self) -> ArmConfigurations {
+        ArmConfigurations::of_sets(&self.sets[..self.count], self.joints)
     }
 }

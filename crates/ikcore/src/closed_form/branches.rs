@@ -5,26 +5,47 @@ use crate::closed_form::angle::Angle;
 /// Most branches of one pose: sixteen for six joints (Raghavan and Roth 1990).
 pub const MOST: usize = 16;
 
-/// Unverified branches, each number for all of them side by side.
+/// Most joints that a closed form has.
+pub const MOST_JOINTS: usize = 7;
+
+/// Unverified branches of an arm of up to seven joints, each number for all of them side by side.
 #[derive(Debug, Clone, Copy)]
-pub struct Candidates<const N: usize> {
+pub struct Candidates {
     /// Cosines; of a joint that slides, 1.
-    pub cos: [[f64; MOST]; N],
+    pub cos: [[f64; MOST]; MOST_JOINTS],
     /// Sines; of a joint that slides, the displacement (m).
-    pub sin: [[f64; MOST]; N],
+    pub sin: [[f64; MOST]; MOST_JOINTS],
     /// How many there are.
     pub count: usize,
     /// One candidate at least stands for a family, in which a joint is free.
     pub singular: bool,
     /// The method cannot tell whether there are others.
     pub unsettled: bool,
+    /// Beside the six joints that a method solves.
+    given: Option<Given>,
 }
 
-impl<const N: usize> Candidates<N> {
+/// The turn of a joint beside six.
+#[derive(Debug, Clone, Copy)]
+pub enum Given {
+    /// Of the first of seven joints.
+    First(Angle),
+    /// Of the last.
+    Last(Angle),
+}
+
+impl Candidates {
     /// None yet.
     #[inline(always)]
     pub fn new() -> Self {
-        Self { cos: [[1.0; MOST]; N], sin: [[0.0; MOST]; N], count: 0, singular: false, unsettled: false }
+        Self {
+            cos: [[1.0; MOST]; MOST_JOINTS],
+            sin: [[0.0; MOST]; MOST_JOINTS],
+            count: 0,
+            singular: false,
+            unsettled: false,
+            given: None,
+        }
     }
 
     /// Removes the first `count`.
@@ -35,42 +56,41 @@ impl<const N: usize> Candidates<N> {
         self.count -= count;
     }
 
-    /// Adds one; ignored when full.
+    /// Sets the turn of the first or the last joint beside the six of those that follow.
+    pub fn give(&mut self, given: Given) {
+        self.given = Some(given);
+    }
+
+    /// Adds one of six joints, beside the given one if there is one; ignored when full.
     #[inline(always)]
-    pub fn push(&mut self, turns: &[Angle; N]) {
+    pub fn push_six(&mut self, turns: &[Angle; 6]) {
+        let [a, b, c, d, e, f] = *turns;
+        match self.given {
+            None => self.push(turns),
+            Some(Given::First(first)) => self.push(&[first, a, b, c, d, e, f]),
+            Some(Given::Last(last)) => self.push(&[a, b, c, d, e, f, last]),
+        }
+    }
+
+    /// Adds one of all joints; ignored when full.
+    #[inline(always)]
+    pub fn push<const N: usize>(&mut self, turns: &[Angle; N]) {
         if self.count < MOST {
             for k in 0..N {
-                self.cos[k][self.count] = turns[k].cos;
-                self.sin[k][self.count] = turns[k].sin;
+                self.write(k, turns[k]);
             }
             self.count += 1;
         }
     }
-}
 
-impl Candidates<7> {
-    /// Adds those of six joints, with the turn of one more at place `joint`; as many as there is room for.
-    pub fn add_with(&mut self, six: &Candidates<6>, joint: usize, turn: Angle) {
-        let count = six.count.min(MOST - self.count);
-        let places = self.count..self.count + count;
-        for k in 0..7 {
-            let (cos, sin) = (&mut self.cos[k][places.clone()], &mut self.sin[k][places.clone()]);
-            if k == joint {
-                cos.fill(turn.cos);
-                sin.fill(turn.sin);
-            } else {
-                let k = if k < joint { k } else { k - 1 };
-                cos.copy_from_slice(&six.cos[k][..count]);
-                sin.copy_from_slice(&six.sin[k][..count]);
-            }
-        }
-        self.count += count;
-        self.singular |= six.singular;
-        self.unsettled |= six.unsettled;
+    #[inline(always)]
+    fn write(&mut self, joint: usize, turn: Angle) {
+        self.cos[joint][self.count] = turn.cos;
+        self.sin[joint][self.count] = turn.sin;
     }
 }
 
-impl<const N: usize> Default for Candidates<N> {
+impl Default for Candidates {
     fn default() -> Self {
         Self::new()
     }

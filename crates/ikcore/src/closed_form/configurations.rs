@@ -1,14 +1,11 @@
-//! ArmConfigurations of an arm, made from the values of its axes.
+//! Configurations of an arm, made from the values of its axes.
 
 use smallvec::SmallVec;
 
-use crate::closed_form::branches::MOST;
+use crate::closed_form::branches::{MOST, MOST_JOINTS};
 
-/// Most joints that a closed form has.
-pub(crate) const MOST_JOINTS: usize = 7;
-
-/// Values of the axes of sixteen configurations.
-pub type Sets = [[f64; MOST_JOINTS]; MOST];
+/// Values of the axes, those of an axis for all configurations side by side.
+pub type AxisColumns = [[f64; MOST]; MOST_JOINTS];
 
 /// Which joint drives each axis, and its factor on q.
 #[derive(Debug, Clone)]
@@ -31,6 +28,22 @@ impl Drives {
         self.axes[axis].0
     }
 
+    /// How many axes there are.
+    pub fn len(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Replaces the values of the axes by those of the joints.
+    #[inline]
+    pub fn joints_of(&self, values: &mut [f64; MOST_JOINTS]) {
+        if !self.is_plain {
+            let of_axes = *values;
+            for (value, (joint, scale)) in of_axes.iter().zip(&self.axes) {
+                values[*joint] = value / scale;
+            }
+        }
+    }
+
     /// The limits of seven axes where the joints have the limits `lower` and `upper` (n,).
     pub fn of_axes(&self, lower: &[f64], upper: &[f64]) -> [[f64; 2]; MOST_JOINTS] {
         std::array::from_fn(|axis| {
@@ -41,10 +54,10 @@ impl Drives {
     }
 }
 
-/// ArmConfigurations of an arm, each at one of its whole turns.
+/// Configurations of an arm, each at one of its whole turns. The values of a joint lie side by side.
 #[derive(Debug, Clone)]
 pub(crate) struct ArmConfigurations {
-    sets: Sets,
+    columns: AxisColumns,
     count: usize,
     joints: usize,
 }
@@ -52,21 +65,27 @@ pub(crate) struct ArmConfigurations {
 impl ArmConfigurations {
     /// None.
     pub fn none() -> Self {
-        Self { sets: Sets::default(), count: 0, joints: 0 }
+        Self { columns: AxisColumns::default(), count: 0, joints: 0 }
     }
 
-    /// From the values of the axes that `write` leaves in the first `count` sets.
+    /// Replaces all by those whose values of the axes `write` leaves in the first `count` places of each column.
     #[inline]
-    pub fn new(drives: &Drives, count: usize, write: impl FnOnce(&mut Sets)) -> Self {
-        let mut all = Self { sets: Sets::default(), count, joints: drives.axes.len() };
-        write(&mut all.sets);
+    pub fn replace(&mut self, drives: &Drives, count: usize, write: impl FnOnce(&mut AxisColumns)) {
+        (self.count, self.joints) = (count, drives.axes.len());
+        write(&mut self.columns);
         if !drives.is_plain {
-            for set in &mut all.sets[..count] {
-                let values = *set;
-                for (value, (joint, scale)) in values.iter().zip(&drives.axes) {
-                    set[*joint] = value / scale;
-                }
+            let of_axes = self.columns;
+            for (values, (joint, scale)) in of_axes.iter().zip(&drives.axes) {
+                self.columns[*joint] = values.map(|value| value / scale);
             }
+        }
+    }
+
+    /// From the values of `joints` joints, one configuration after the other.
+    pub fn of_sets(sets: &[[f64; MOST_JOINTS]], joints: usize) -> Self {
+        let mut all = Self { columns: AxisColumns::default(), count: sets.len(), joints };
+        for (place, set) in sets.iter().enumerate() {
+            (0..joints).for_each(|j| all.columns[j][place] = set[j]);
         }
         all
     }
@@ -81,8 +100,13 @@ impl ArmConfigurations {
         self.count == 0
     }
 
-    /// Each of them (n,) (rad, m).
-    pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
-        self.sets[..self.count].iter().map(|set| &set[..self.joints])
+    /// The values of each joint (rad, m), writable.
+    pub fn columns_mut(&mut self) -> &mut [[f64; MOST]] {
+        &mut self.columns[..self.joints]
+    }
+
+    /// The values of each joint (rad, m): the first [`Self::len`] count.
+    pub fn columns(&self) -> &[[f64; MOST]] {
+        &self.columns[..self.joints]
     }
 }

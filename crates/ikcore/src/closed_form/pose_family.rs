@@ -31,6 +31,7 @@ impl FamilyLimits {
 
 impl<'a> PoseFamily<'a> {
     /// The arm with the tip of its chain at `target`.
+    #[inline]
     pub fn new(redundant: &'a Redundant, drives: &'a Drives, own: &'a FamilyLimits, target: &Frame) -> Self {
         Self { redundant, drives, own, pose: redundant.pose(target) }
     }
@@ -57,16 +58,18 @@ impl<'a> PoseFamily<'a> {
         ArmBranches::of(&self.redundant.solve(&self.pose, value), self.drives)
     }
 
-    /// ArmConfigurations with the parameter at `value` that bring the tip to the pose unless forward kinematics says otherwise, at less
+    /// Finds configurations with the parameter at `value` that bring the tip to the pose unless forward kinematics says otherwise, at less
     /// cost than [`Self::branches_at`]. All that are within the limits are among them.
-    pub fn likely_at(&self, value: f64, limits: &FamilyLimits) -> ArmConfigurations {
+    #[inline]
+    pub fn likely_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
         if !self.redundant.has_exact_candidates() {
-            return self.branches_at(value).into_configurations();
+            *found = self.branches_at(value).configurations();
+            return;
         }
         let mut candidates = Candidates::new();
         self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
         let verifier = self.redundant.verifier();
-        ArmConfigurations::new(self.drives, candidates.count, |sets| values_of_seven(verifier, &candidates, sets))
+        found.replace(self.drives, candidates.count, |columns| values_of_seven(verifier, &candidates, columns));
     }
 
     /// Calls `visit` with configurations at each of `values`, several values together, until it returns false. All that are within
@@ -93,7 +96,7 @@ impl<'a> PoseFamily<'a> {
     }
 
     /// Removes as many candidates as are verified together.
-    fn first_verified(&self, candidates: &mut Candidates<7>) -> ArmBranches {
+    fn first_verified(&self, candidates: &mut Candidates) -> ArmBranches {
         let all = candidates.count;
         candidates.count = all.min(LANES);
         let verified = ArmBranches::of(&self.redundant.verified(&self.pose, candidates), self.drives);
@@ -119,6 +122,10 @@ mod tests {
         })
     }
 
+    fn sets(all: &ArmConfigurations) -> Vec<[f64; 7]> {
+        (0..all.len()).map(|place| std::array::from_fn(|joint| all.columns()[joint][place])).collect()
+    }
+
     fn is_among<'q>(q: &[f64], mut all: impl Iterator<Item = &'q [f64]>) -> bool {
         all.any(|other| q.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-6))
     }
@@ -142,9 +149,11 @@ mod tests {
                     true
                 });
                 for value in values {
-                    let (all, likely) = (family.branches_at(value), family.likely_at(value, &limits));
+                    let (all, mut likely) = (family.branches_at(value), ArmConfigurations::none());
+                    family.likely_at(value, &limits, &mut likely);
                     for (q, _) in all.iter().filter(|(q, _)| is_inside(q)) {
-                        assert!(is_among(q, visited.iter().map(Vec::as_slice)) && is_among(q, likely.iter()), "{q:?}");
+                        assert!(is_among(q, visited.iter().map(Vec::as_slice)), "{q:?}");
+                        assert!(is_among(q, sets(&likely).iter().map(|row| &row[..])), "{q:?}");
                         inside += 1;
                     }
                 }

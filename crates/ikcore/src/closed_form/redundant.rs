@@ -8,7 +8,7 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
-use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::branches::{Branches, Candidates, Given};
 use crate::closed_form::elbow_distance::ElbowDistance;
 use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::six::{ClosedForm, Structure};
@@ -152,22 +152,21 @@ impl Redundant {
     }
 
     /// Adds all joint values that may reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
-    fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates<7>) {
+    fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
         let [a, b, c, d, e, f, g] = *ranges;
         let [first, .., last] = &self.chain.joints;
-        let mut six = Candidates::new();
         match (&self.method, &pose.by_arm_angle) {
             (Method::First(form), _) => {
                 let turn = first.turn(value);
                 let left = first.displacement_by(turn.back()).then::<Baseline>(&pose.goal);
-                form.add_candidates(&left, &[b, c, d, e, f, g], &mut six);
-                found.add_with(&six, 0, turn);
+                found.give(Given::First(turn));
+                form.add_candidates(&left, &[b, c, d, e, f, g], found);
             }
             (Method::Last(form), _) => {
                 let turn = last.turn(value);
                 let left = pose.goal.then::<Baseline>(&last.displacement_by(turn.back()));
-                form.add_candidates(&left, &[a, b, c, d, e, f], &mut six);
-                found.add_with(&six, 6, turn);
+                found.give(Given::Last(turn));
+                form.add_candidates(&left, &[a, b, c, d, e, f], found);
             }
             (Method::ArmAngle(method), Some(pose)) => {
                 arm_angle_candidates(method, pose, Angle::by(value), ranges, found);
@@ -177,18 +176,12 @@ impl Redundant {
     }
 
     /// The same for limits.
-    pub fn add_candidates_within(
-        &self,
-        pose: &RedundantPose,
-        value: f64,
-        limits: &AxisLimits,
-        found: &mut Candidates<7>,
-    ) {
+    pub fn add_candidates_within(&self, pose: &RedundantPose, value: f64, limits: &AxisLimits, found: &mut Candidates) {
         self.add_candidates(pose, value, &limits.ranges, found);
     }
 
     /// The candidates that reach a pose.
-    pub fn verified(&self, pose: &RedundantPose, candidates: &Candidates<7>) -> Branches<7> {
+    pub fn verified(&self, pose: &RedundantPose, candidates: &Candidates) -> Branches<7> {
         verified_seven(&self.verifier, &pose.goal, candidates)
     }
 
@@ -238,7 +231,7 @@ by_instructions! {
         pose: &ArmAnglePose,
         arm_angle: Angle,
         ranges: &[AngleRange; 7],
-        found: &mut Candidates<7>,
+        found: &mut Candidates,
     ) {
         method.solve(pose, arm_angle, ranges, found);
     }

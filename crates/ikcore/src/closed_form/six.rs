@@ -194,7 +194,7 @@ impl ClosedForm {
     /// Adds all joint angles that may displace the tip by `goal`, as far as `ranges` may hold them. Not for the general method, which
     /// knows of none before it has verified them.
     #[inline]
-    pub fn add_candidates(&self, goal: &Frame, ranges: &[AngleRange; 6], candidates: &mut Candidates<6>) {
+    pub fn add_candidates(&self, goal: &Frame, ranges: &[AngleRange; 6], candidates: &mut Candidates) {
         match &self.method {
             Method::Spherical(method) => spherical_candidates(method, goal, ranges, candidates),
             Method::Parallel(method) => parallel_candidates(method, goal, candidates),
@@ -203,12 +203,12 @@ impl ClosedForm {
         }
     }
 
-    /// Joint values that bring the tip to `target` unless forward kinematics says otherwise; for exact candidates.
+    /// Finds joint values that bring the tip to `target` unless forward kinematics says otherwise; for exact candidates.
     #[inline]
-    pub fn likely(&self, target: &Frame, drives: &Drives) -> ArmConfigurations {
+    pub fn likely(&self, target: &Frame, drives: &Drives, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
         self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
-        ArmConfigurations::new(drives, candidates.count, |sets| values_of_six(&self.verifier, &candidates, sets))
+        found.replace(drives, candidates.count, |columns| values_of_six(&self.verifier, &candidates, columns));
     }
 
     /// Whether candidates are solutions but for rounding.
@@ -239,7 +239,7 @@ impl ClosedForm {
     }
 
     /// The structure lies elsewhere in the loop that chain and pose close: opens it after `at` joints.
-    fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates<6>) {
+    fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates) {
         let joints = AxisChain::rotated(&self.chain.joints, goal, at);
         let mut turned = Candidates::new();
         match self.structure {
@@ -250,13 +250,16 @@ impl ClosedForm {
                 }
                 None => turned.unsettled = true,
             },
-            _ => ThreeParallel::new(&joints, self.size, tolerance).solve(goal, &mut turned),
+            _ => ThreeParallel::new(&joints, self.size, tolerance).solve::<Baseline>(goal, &mut turned),
         }
-        candidates.count = turned.count;
-        (candidates.singular, candidates.unsettled) = (turned.singular, turned.unsettled);
-        for k in 0..6 {
-            candidates.cos[(k + at) % 6] = turned.cos[k];
-            candidates.sin[(k + at) % 6] = turned.sin[k];
+        candidates.singular |= turned.singular;
+        candidates.unsettled |= turned.unsettled;
+        for place in 0..turned.count {
+            // Joint `at` is the first of the opened loop.
+            candidates.push_six(&std::array::from_fn(|k| {
+                let k = (k + 6 - at) % 6;
+                Angle { cos: turned.cos[k][place], sin: turned.sin[k][place] }
+            }));
         }
     }
 }
@@ -266,15 +269,15 @@ by_instructions! {
         method: &SphericalWrist,
         goal: &Frame,
         ranges: &[AngleRange; 6],
-        candidates: &mut Candidates<6>,
+        candidates: &mut Candidates,
     ) {
         method.solve(goal, ranges, candidates);
     }
 }
 
 by_instructions! {
-    fn parallel_candidates(method: &ThreeParallel, goal: &Frame, candidates: &mut Candidates<6>) {
-        method.solve(goal, candidates);
+    fn parallel_candidates(method: &ThreeParallel, goal: &Frame, candidates: &mut Candidates) {
+        method.solve::<A>(goal, candidates);
     }
 }
 

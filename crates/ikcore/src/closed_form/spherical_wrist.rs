@@ -64,7 +64,7 @@ impl SphericalWrist {
 
     /// All joint angles whose displacements make `goal`, as far as `ranges` may hold them.
     #[inline(always)]
-    pub fn solve(&self, goal: &Frame, ranges: &[AngleRange; 6], found: &mut Candidates<6>) {
+    pub fn solve(&self, goal: &Frame, ranges: &[AngleRange; 6], found: &mut Candidates) {
         let [a, b, c, d, e, f] = *ranges;
         // Reversed: E6^-1 ... E1^-1 = H^-1, and a negative axis turns E^-1 into E.
         if self.reversed {
@@ -83,7 +83,7 @@ impl SphericalWrist {
         &self,
         goal: &Frame,
         [of_arm, of_wrist]: [&[AngleRange; 3]; 2],
-        found: &mut Candidates<6>,
+        found: &mut Candidates,
         order: impl Fn(&Three, &Three) -> [Angle; 6],
     ) {
         let reached = goal.place::<Baseline>(&self.centre);
@@ -99,7 +99,7 @@ impl SphericalWrist {
             let wrists = self.wrist.turns(&left);
             found.singular |= wrists.aligned;
             for wrist in wrists.sets[..wrists.count].iter().filter(|wrist| may_hold(of_wrist, *wrist)) {
-                found.push(&order(arm, wrist));
+                found.push_six(&order(arm, wrist));
             }
         }
     }

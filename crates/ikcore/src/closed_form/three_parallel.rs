@@ -8,13 +8,16 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::branches::Candidates;
+use crate::closed_form::four_angles::{self, FourAngles};
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{Linear, angle_to_plane, line_on_circle, two_linear_equations};
 use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
 use crate::closed_form::wrist::{ALIGNED, Bend};
 use crate::math::Frame;
-use crate::math::arithmetic::Baseline;
+use crate::math::arithmetic::{Arithmetic, Baseline};
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
 
 /// An arm with three parallel axes, prepared.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +38,18 @@ pub struct ThreeParallel {
     wrist: Orbit,
     /// The links from axis 2 to 3 and from 3 to 4, in the plane across them.
     links: [[f64; 2]; 2],
+    elbow: Elbow,
+    floor: f64,
+}
+
+/// The equation of q3, a cos q3 + b sin q3 = c: the sum of the links is as long as the way to be reached.
+#[derive(Debug, Clone, Copy)]
+struct Elbow {
+    a: f64,
+    b: f64,
+    /// The squared lengths of the links.
+    squares: [f64; 2],
+    /// Below this c counts as zero where a and b are.
     floor: f64,
 }
 
@@ -46,6 +61,18 @@ struct Shoulder {
     axes: [Vector; 3],
     /// Where p6 lies in the plane across the three axes, from axis 2.
     offset: [f64; 2],
+}
+
+/// Shoulder and wrist of up to four branches, side by side.
+#[derive(Debug, Clone, Copy)]
+struct Wrists {
+    /// The first two of [`Shoulder::axes`].
+    x: [F64x4; 3],
+    y: [F64x4; 3],
+    offset: [F64x4; 2],
+    /// Joints 1, 5 and 6: cosines and sines.
+    turns: [[F64x4; 2]; 3],
+    count: usize,
 }
 
 /// How axes 5 and 6 lie, which decides how q1 and q5 come apart.
@@ -80,12 +107,15 @@ impl ThreeParallel {
         let in_plane = |v: &Vector| [dot(&flat[0], v), dot(&flat[1], v)];
         let links = [1, 2].map(|k| in_plane(&sub(&points[k + 1], &points[k])));
         let (mark, seen) = (circle(&flat[0]), circle(&flat[2]));
-        Self { axes, points, last, bend, senses, flat, end, mark, seen, wrist, links, floor: 1e-11 * size }
+        let floor = 1e-11 * size;
+        let elbow = Elbow::new(&links, senses[0], floor);
+        Self { axes, points, last, bend, senses, flat, end, mark, seen, wrist, links, elbow, floor }
     }
 
     /// All joint angles whose displacements make `goal`.
     #[inline(always)]
-    pub fn solve(&self, goal: &Frame, found: &mut Candidates<6>) {
+    pub fn solve<A: Arithmetic>(&self, goal: &Frame, found: &mut Candidates) {
+        let mut wrists = Wrists::NONE;
         let [h1, h, _, _, h5, h6] = &self.axes;
         let [p1, _, _, _, p5, p6] = &self.points;
         let (n, a) = (goal.turn::<Baseline>(h6), sub(&goal.place::<Baseline>(p6), p1));
@@ -98,7 +128,7 @@ impl ThreeParallel {
                     let shoulder = self.shoulder(goal, *q1);
                     let (q5, _) = self.bend.angles(&q1.back().about(h1, &n));
                     for q5 in q5.iter() {
-                        self.wrist(&shoulder, *q5, found);
+                        self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
                 }
             }
@@ -109,16 +139,25 @@ impl ThreeParallel {
                     let shoulder = self.shoulder(goal, *q1);
                     let height = dot(h, &q1.back().about(h1, &a)) - offset;
                     for q5 in angle_to_plane(h, h5, &sub(p6, p5), height, self.floor).iter() {
-                        self.wrist(&shoulder, *q5, found);
+                        self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
                 }
             }
-            Last::Skew => self.both(goal, &n, &a, offset, found),
+            Last::Skew => self.both::<A>(goal, &n, &a, offset, &mut wrists, found),
         }
+        self.planar::<A>(&mut wrists, found);
     }
 
     /// q1 and q5 from both equations together.
-    fn both(&self, goal: &Frame, n: &Vector, a: &Vector, offset: f64, found: &mut Candidates<6>) {
+    fn both<A: Arithmetic>(
+        &self,
+        goal: &Frame,
+        n: &Vector,
+        a: &Vector,
+        offset: f64,
+        wrists: &mut Wrists,
+        found: &mut Candidates,
+    ) {
         let [h1, h, _, _, h5, h6] = &self.axes;
         let lever = sub(&self.points[5], &self.points[4]);
         // h'rot(axis, q) v as constant, factor of the cosine, factor of the sine.
@@ -138,53 +177,74 @@ impl ThreeParallel {
         };
         found.unsettled |= q1.free;
         for (q1, q5) in q1.iter().zip(&q5) {
-            self.wrist(&self.shoulder(goal, *q1), *q5, found);
+            self.wrist::<A>(&self.shoulder(goal, *q1), *q5, wrists, found);
         }
     }
 
     #[inline(always)]
     fn shoulder(&self, goal: &Frame, q1: Angle) -> Shoulder {
         let [p1, p2, .., p6] = &self.points;
-        let [x, y, h] = self.flat.map(|v| q1.about(&self.axes[0], &v));
-        let axes = [x, y, h].map(|v| seen(&self.end, &goal.turn_back(&v)));
+        let [x, y, h] = &self.flat;
+        let turned = |v: &Vector| q1.about(&self.axes[0], v);
+        let (x, y, h) = (turned(x), turned(y), turned(h));
+        let from_tip = |v: &Vector| seen(&self.end, &goal.turn_back(v));
+        let axes = [from_tip(&x), from_tip(&y), from_tip(&h)];
         // rot1' (H p6 - p1) - (p2 - p1).
         let (from_p1, second) = (sub(&goal.place::<Baseline>(p6), p1), sub(p2, p1));
         let offset = [dot(&x, &from_p1) - dot(&self.flat[0], &second), dot(&y, &from_p1) - dot(&self.flat[1], &second)];
         Shoulder { q1, axes, offset }
     }
 
-    /// q6, the sum of the three parallel joints, and their planar arm.
+    /// Adds q6.
     #[inline(always)]
-    fn wrist(&self, shoulder: &Shoulder, q5: Angle, found: &mut Candidates<6>) {
+    fn wrist<A: Arithmetic>(&self, shoulder: &Shoulder, q5: Angle, wrists: &mut Wrists, found: &mut Candidates) {
+        if wrists.count == 4 {
+            self.planar::<A>(wrists, found);
+        }
         let seen = self.seen.at(q5);
         if seen[0] * seen[0] + seen[1] * seen[1] < ALIGNED * ALIGNED {
-            return self.wrist_aligned(shoulder, q5, found);
+            return self.wrist_aligned(shoulder, q5, wrists, found);
         }
         let [.., up] = &shoulder.axes;
         let q6 = Angle::towards(up[0] * seen[0] + up[1] * seen[1], up[0] * seen[1] - up[1] * seen[0]);
-        self.planar(shoulder, q5, q6, found);
+        wrists.push(shoulder, q5, q6);
     }
 
-    /// q2, q3, q4 by the two links between axes 2, 3 and 4.
+    /// The sum of the three parallel joints, and q2, q3, q4 by the two links between axes 2, 3 and 4; empties `wrists`.
     #[inline(always)]
-    fn planar(&self, shoulder: &Shoulder, q5: Angle, q6: Angle, found: &mut Candidates<6>) {
-        let [x, y, _] = &shoulder.axes;
+    fn planar<A: Arithmetic>(&self, wrists: &mut Wrists, found: &mut Candidates) {
+        let Wrists { x, y, offset, turns, count } = wrists;
+        let four = |stored: &F64x4| Four::<A>::of(*stored);
+        let angles = |turn: &[F64x4; 2]| FourAngles { cos: four(&turn[0]), sin: four(&turn[1]) };
+        let (x, y) = ([four(&x[0]), four(&x[1]), four(&x[2])], [four(&y[0]), four(&y[1]), four(&y[2])]);
+        let (q5, back) = (angles(&turns[1]), angles(&turns[2]).back());
         // The sum of the three turns a vector across h as rot1' R_H rot6' rot5' does.
-        let mark = about_z(q6.back(), &self.mark.at(q5));
-        let sum = Angle::towards(dot(x, &mark), dot(y, &mark));
-        let [rx, ry] = self.reached(shoulder, q5, q6);
-        let [[ax, ay], [bx, by]] = self.links;
-        // |a + rot3 b| = |reached|.
-        let sense = self.senses[0];
-        let product = 0.5 * (rx * rx + ry * ry - (ax * ax + ay * ay) - (bx * bx + by * by));
-        let floor = self.floor * (ax * ax + ay * ay).sqrt();
-        for q3 in line_on_circle(ax * bx + ay * by, sense * (ay * bx - ax * by), product, floor).iter() {
-            let (cos, sin) = (q3.cos, sense * q3.sin);
-            let (ex, ey) = (ax + cos * bx - sin * by, ay + sin * bx + cos * by);
-            let q2 = Angle::towards(ex * rx + ey * ry, ex * ry - ey * rx);
-            let q4 = sum.and(q2.back()).and(q3.signed(-sense)).signed(self.senses[1]);
-            found.push(&[shoulder.q1, q2, *q3, q4, q5, q6]);
+        let mark = back.about_z(q5.on(&self.mark));
+        let sum = FourAngles::towards(four_angles::dot(&x, &mark), four_angles::dot(&y, &mark));
+        let wrist = back.about_z(q5.on(&self.wrist));
+        let reached =
+            [four_angles::dot(&x, &wrist) + four(&offset[0]), four_angles::dot(&y, &wrist) + four(&offset[1])];
+        let bends = self.elbow.bends(&reached, *count);
+        let [first, second] = [self.bent(bends.q3[0], sum, &reached), self.bent(bends.q3[1], sum, &reached)];
+        for lane in 0..std::mem::take(count) {
+            let (q1, q5, q6) = (angles(&turns[0]).lane(lane), q5.lane(lane), back.back().lane(lane));
+            for [q2, q3, q4] in &[first, second][..bends.counts[lane]] {
+                found.push_six(&[q1, q2.lane(lane), q3.lane(lane), q4.lane(lane), q5, q6]);
+            }
         }
+    }
+
+    /// q2, q3, q4 for q3.
+    #[inline(always)]
+    fn bent<R: Real>(&self, q3: FourAngles<R>, sum: FourAngles<R>, reached: &[R; 2]) -> [FourAngles<R>; 3] {
+        let [[ax, ay], [bx, by]] = self.links;
+        let (ax, ay, bx, by) = (R::splat(ax), R::splat(ay), R::splat(bx), R::splat(by));
+        let [rx, ry] = *reached;
+        let sense = self.senses[0];
+        let (cos, sin) = (q3.cos, R::splat(sense) * q3.sin);
+        let (ex, ey) = (ax + cos * bx - sin * by, ay + sin * bx + cos * by);
+        let q2 = FourAngles::towards(ex * rx + ey * ry, ex * ry - ey * rx);
+        [q2, q3, sum.and(q2.back()).and(q3.signed(-sense)).signed(self.senses[1])]
     }
 
     /// Where p4 lies in the plane across the three axes, from axis 2: rot1' (H rot6' rot5' p4 - p1) - (p2 - p1).
@@ -197,7 +257,7 @@ impl ThreeParallel {
 
     /// Axis 6 parallel to the three: q6 is free as far as the planar arm reaches. The middle of the reach stands for all.
     #[cold]
-    fn wrist_aligned(&self, shoulder: &Shoulder, q5: Angle, found: &mut Candidates<6>) {
+    fn wrist_aligned(&self, shoulder: &Shoulder, q5: Angle, wrists: &mut Wrists, found: &mut Candidates) {
         let [first, second] = self.links.map(|[x, y]| x.hypot(y));
         // The squared distance of axis 4 from axis 2 is base + a cos q6 + b sin q6.
         let quarter = |cos: f64, sin: f64| {
@@ -214,7 +274,77 @@ impl ThreeParallel {
         }
         found.singular = true;
         for q6 in line_on_circle(a, b, 0.5 * (low + high) - base, 1e-12 * most).iter().take(1) {
-            self.planar(shoulder, q5, *q6, found);
+            wrists.push(shoulder, q5, *q6);
         }
+    }
+}
+
+impl Wrists {
+    const NONE: Self = Self {
+        x: [F64x4::ZERO; 3],
+        y: [F64x4::ZERO; 3],
+        offset: [F64x4::ZERO; 2],
+        turns: [[F64x4::ZERO; 2]; 3],
+        count: 0,
+    };
+
+    /// Adds one; there is room for four.
+    #[inline(always)]
+    fn push(&mut self, shoulder: &Shoulder, q5: Angle, q6: Angle) {
+        let Shoulder { q1, axes: [x, y, _], offset } = shoulder;
+        let lane = self.count;
+        for k in 0..3 {
+            self.x[k].0[lane] = x[k];
+            self.y[k].0[lane] = y[k];
+        }
+        (self.offset[0].0[lane], self.offset[1].0[lane]) = (offset[0], offset[1]);
+        for (lanes, turn) in self.turns.iter_mut().zip([*q1, q5, q6]) {
+            (lanes[0].0[lane], lanes[1].0[lane]) = (turn.cos, turn.sin);
+        }
+        self.count += 1;
+    }
+}
+
+/// The at most two values of q3 of four branches.
+#[derive(Debug, Clone, Copy)]
+struct Bends<R> {
+    q3: [FourAngles<R>; 2],
+    /// How many values count in each lane.
+    counts: [usize; 4],
+}
+
+impl Elbow {
+    /// By the links in the plane across the axes; `sense` is that of axis 3.
+    fn new(links: &[[f64; 2]; 2], sense: f64, floor: f64) -> Self {
+        let [[ax, ay], [bx, by]] = *links;
+        let squares = [ax * ax + ay * ay, bx * bx + by * by];
+        Self { a: ax * bx + ay * by, b: sense * (ay * bx - ax * by), squares, floor: floor * squares[0].sqrt() }
+    }
+
+    /// The values of q3 that reach as far as `reached`, as [`line_on_circle`] finds them; for the first `count` lanes.
+    #[inline(always)]
+    fn bends<R: Real>(&self, reached: &[R; 2], count: usize) -> Bends<R> {
+        let Self { a, b, squares, floor } = *self;
+        let [rx, ry] = *reached;
+        let c = R::splat(0.5) * (rx * rx + ry * ry - R::splat(squares[0]) - R::splat(squares[1]));
+        let square = a * a + b * b;
+        let (radius, inverse) = (R::splat(square.sqrt()), R::splat(1.0 / square));
+        let radicand = (radius - c) * (radius + c);
+        let root = radicand.larger(R::splat(0.0)).sqrt();
+        let (ac, bc, to_a, to_b) = (R::splat(a) * c, R::splat(b) * c, R::splat(a) * root, R::splat(b) * root);
+        let first = FourAngles { cos: (ac - to_b) * inverse, sin: (bc + to_a) * inverse };
+        let second = FourAngles { cos: (ac + to_b) * inverse, sin: (bc - to_a) * inverse };
+        let mut bends = Bends { q3: [first, second], counts: [2; 4] };
+        for lane in 0..count {
+            // The links are in line, or one has no length: not for NaN.
+            if !(radicand.lane(lane) > 0.0) || square <= floor * floor {
+                let turns = line_on_circle(a, b, c.lane(lane), floor);
+                bends.counts[lane] = turns.len();
+                if let Some(turn) = turns.first() {
+                    bends.q3[0] = bends.q3[0].with_lane(lane, *turn);
+                }
+            }
+        }
+        bends
     }
 }

@@ -143,7 +143,8 @@ impl Wrist {
                 let [q1, _, q3] = &found.sets[0];
                 [q1.opposite(), *q2, q3.opposite()]
             } else {
-                let [to_mark, to_across, to_end] = self.inner.map(|circle| circle.at(*q2));
+                let [to_mark, to_across, to_end] = &self.inner;
+                let (to_mark, to_across, to_end) = (to_mark.at(*q2), to_across.at(*q2), to_end.at(*q2));
                 let towards = Angle::towards(to_end[0] * x + to_end[1] * y, to_end[0] * y - to_end[1] * x);
                 let q1 = if found.aligned { Angle::NONE } else { towards };
                 let left = about_z(q1.back(), &mark);

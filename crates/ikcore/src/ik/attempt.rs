@@ -7,8 +7,8 @@ use super::solution::Solution;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, run};
-use crate::task::{Assessment, Criterion, Goals, SquaredError, Tolerance};
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
+use crate::task::{Assessment, Criterion, Goals, TipError, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
 pub(super) const APPROACHES: usize = 8;
@@ -33,7 +33,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         rng: &'m mut LazyRng,
         monitor: &'m mut dyn Monitor,
     ) -> Self {
-        Self { context, problem, rng, monitor, budget: Budget::new(context.options().stop) }
+        let budget = Budget::new(context.options().stop, Stopwatch::start());
+        Self { context, problem, rng, monitor, budget }
     }
 
     /// The caller's start, or the indexed configuration nearest to the target.
@@ -175,21 +176,30 @@ impl<'m, 'p> Attempt<'m, 'p> {
 
     /// The result at `q` if that solves the target.
     pub fn solved_at(&mut self, q: Point) -> Option<Solution> {
+        let error = self.error_if_solved(&q)?;
+        Some(self.result(Status::Solved, q, error))
+    }
+
+    /// The errors at `q` if that solves the target.
+    #[inline]
+    pub fn error_if_solved(&mut self, q: &[f64]) -> Option<TipError> {
         self.budget.evaluations += 1;
-        let Assessment { score, error } = self.problem.assess(&q);
-        score.solved.then(|| self.result(Status::Solved, q, error))
+        let Assessment { score, error } = self.problem.assess(q);
+        score.solved.then(|| error.into())
     }
 
     /// The result at `q`.
     pub fn solution(&self, status: Status, q: Point) -> Solution {
         let error = self.problem.assess(&q).error;
-        self.result(status, q, error)
+        self.result(status, q, error.into())
     }
 
-    fn result(&self, status: Status, q: Point, error: SquaredError) -> Solution {
+    /// The result at `q`, where the errors are known.
+    #[inline]
+    pub fn result(&self, status: Status, q: Point, error: TipError) -> Solution {
         Solution {
             status,
-            error: error.into(),
+            error,
             obstruction: String::new(),
             nearest: None,
             iterations: self.budget.iterations,
@@ -202,12 +212,11 @@ impl<'m, 'p> Attempt<'m, 'p> {
 
     /// Gives a solved `solution` the status [`Status::HeldInRegion`] if the region keeps the tip from the target
     /// itself.
-    pub fn mark_held_in_region(&self, solution: Solution) -> Solution {
-        match self.problem.criterion().blocked_by_region(self.problem.target()) {
-            Some(obstruction) if solution.status == Status::Solved => {
-                Solution { status: Status::HeldInRegion, obstruction, ..solution }
-            }
-            _ => solution,
+    pub fn mark_held_in_region(&self, solution: &mut Solution) {
+        if solution.status == Status::Solved
+            && let Some(obstruction) = self.problem.criterion().blocked_by_region(self.problem.target())
+        {
+            (solution.status, solution.obstruction) = (Status::HeldInRegion, obstruction);
         }
     }
 }

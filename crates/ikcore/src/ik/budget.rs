@@ -17,9 +17,9 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Nothing spent yet.
-    pub fn new(stop: Stop) -> Self {
-        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
+    /// Nothing spent yet but the time on `stopwatch`.
+    pub fn new(stop: Stop, stopwatch: Stopwatch) -> Self {
+        Self { stop, stopwatch, iterations: 0, restarts: 0, evaluations: 0 }
     }
 
     /// Time since the first run began.

@@ -13,7 +13,7 @@ use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::solver::AnySolver;
+use crate::solver::{AnySolver, Stopwatch};
 use crate::task::{Criterion, Goals, Target, Task};
 
 /// A validated target and start.
@@ -25,6 +25,8 @@ pub(crate) struct Query<'a> {
     pub start: Option<&'a [f64]>,
     /// The random stream of the seed.
     pub stream: u64,
+    /// Runs since the solve began.
+    pub stopwatch: Stopwatch,
 }
 
 /// Validated robot and options, ready to solve any number of targets.
@@ -141,7 +143,16 @@ impl<'a> SolveContext<'a> {
     /// [`Error::NotFinite`] or [`Error::WrongTarget`].
     pub(crate) fn read(&self, wanted: &Target) -> Result<Target> {
         wanted.validate()?;
-        self.options.task.map_or(Ok(*wanted), |task| task.target(wanted))
+        self.part_used(wanted)
+    }
+
+    /// Returns the part of `wanted` that the task uses.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`].
+    #[inline]
+    pub(crate) fn part_used(&self, wanted: &Target) -> Result<Target> {
+        self.options.task.as_ref().map_or(Ok(*wanted), |task| task.target(wanted))
     }
 
     /// Checks a start.

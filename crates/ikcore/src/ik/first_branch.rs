@@ -2,7 +2,7 @@
 
 use super::all_branches::all_branches;
 use super::attempt::Attempt;
-use super::preference::Preference;
+use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
 use crate::math::Frame;
@@ -40,6 +40,7 @@ pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]
 }
 
 /// Of an arm that has as many joints as the pose needs.
+#[inline]
 fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]>) -> Option<Solution> {
     if let Some(start) = start
         && let Some(solution) = attempt.solved_at(Point::from_slice(start))
@@ -47,9 +48,10 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
         return Some(solution);
     }
     let context = attempt.context;
-    let likely = context.robot().likely_branches(pose);
+    let mut likely = ArmConfigurations::none();
+    context.robot().likely_branches(pose, &mut likely);
     let preference = context.preference(start);
-    if let Some(solution) = preferred(attempt, &preference, &likely) {
+    if let Ok(solution) = preferred(attempt, &preference, &mut likely) {
         return Some(solution);
     }
     // Limits cut all branches, the pose is nearly singular, or the tolerances are tighter than rounding allows the closed form.
@@ -57,13 +59,17 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
 }
 
 /// The preferred one of `configurations`, if it reaches the pose as well as a verified branch does.
+#[inline]
 fn preferred(
     attempt: &mut Attempt<'_, '_>,
     preference: &Preference,
-    configurations: &ArmConfigurations,
-) -> Option<Solution> {
-    let solution = attempt.solved_at(preference.choose(configurations.iter())?)?;
-    (solution.error.position.max(solution.error.rotation) <= VERIFIED).then_some(solution)
+    configurations: &mut ArmConfigurations,
+) -> Result<Solution, Miss> {
+    let q = preference.choose(configurations)?;
+    match attempt.error_if_solved(&q) {
+        Some(error) if error.position.max(error.rotation) <= VERIFIED => Ok(attempt.result(Status::Solved, q, error)),
+        _ => Err(Miss::Near),
+    }
 }
 
 /// Of an arm with one joint more: from the start by descent; then the first value of the parameter that has a branch inside the
@@ -83,19 +89,22 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
     if arcs.is_empty() {
         return of_all_branches(attempt, &preference, start);
     }
+    let mut likely = ArmConfigurations::none();
     let half_the_budget = attempt.budget.left() / 2;
     for value in arcs.scattered(SCANNED) {
-        let likely = family.likely_at(value, &limits);
+        family.likely_at(value, &limits, &mut likely);
         if likely.is_empty() {
             continue;
         }
-        if let Some(solution) = preferred(attempt, &preference, &likely) {
-            return Some(solution);
+        match preferred(attempt, &preference, &mut likely) {
+            Ok(solution) => return Some(solution),
+            Err(Miss::Far) => continue,
+            Err(Miss::Near) => {}
         }
         // Beside singular poses, what is near a branch is still to be polished.
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
-        if let Some(q) = preference.choose(branches.iter().map(|(q, _)| q))
+        if let Ok(q) = preference.choose(&mut branches.configurations())
             && let Some(solution) = attempt.solved_at(q)
         {
             return Some(solution);
@@ -108,6 +117,7 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
 }
 
 /// Of an arm whose closed form takes longer than most searches.
+#[cold]
 fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let x0 = attempt.first_start(start);
     let reserve = attempt.budget.left().saturating_sub(TRIAL);
@@ -119,11 +129,12 @@ fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<S
 }
 
 /// What `solve_all` finds, or proves.
+#[cold]
 fn of_all_branches(attempt: &mut Attempt<'_, '_>, preference: &Preference, start: Option<&[f64]>) -> Option<Solution> {
     // Of a redundant arm only whether there are any: a single value of its parameter tells.
     let all = all_branches(attempt, &preference.reference(), 1)?;
-    if let Some(q) = preference.choose(all.solutions.iter().map(|solution| solution.q)) {
-        return attempt.solved_at(q);
+    if let Some(q) = preference.nearest(all.solutions.iter().map(|solution| solution.q)) {
+        return attempt.solved_at(Point::from_slice(q));
     }
     let obstruction = all.obstruction?;
     let x0 = attempt.first_start(start);

@@ -2,11 +2,29 @@
 
 use smallvec::SmallVec;
 
+use crate::closed_form::{ArmConfigurations, MOST_CONFIGURATIONS, MOVED_BY_POLISHING};
+use crate::math::arithmetic::by_instructions;
+use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
 pub(super) const AT_LIMIT: f64 = 1e-9;
+
+/// The period of a joint of which no whole turn leads to the same pose.
+const NO_PERIOD: f64 = 1e300;
+
+/// Configurations whose costs are computed together.
+const LANES: usize = 4;
+
+/// Why none of several configurations is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Miss {
+    /// Polishing may bring one of them to the pose inside the limits.
+    Near,
+    /// All are outside the limits.
+    Far,
+}
 
 /// A reference configuration within limits.
 #[derive(Debug, Clone)]
@@ -24,8 +42,10 @@ struct JointPreference {
     reference: f64,
     /// What its distance from the reference counts.
     weight: f64,
-    /// Infinite if no whole turn leads to the same pose.
+    /// Beyond all limits if no whole turn leads to the same pose.
     period: f64,
+    /// Turns per rad or m; rounded down, so that half a turn stays where it is.
+    turns: f64,
 }
 
 impl Preference {
@@ -43,8 +63,9 @@ impl Preference {
                     (0.5 * (low + high), if range > 0.0 { 1.0 / (range * range) } else { 0.0 })
                 }
             };
-            let period = robot.turn_period(j).unwrap_or(f64::INFINITY);
-            preference.joints.push(JointPreference { lower, upper, reference, weight, period });
+            let period = robot.turn_period(j).unwrap_or(NO_PERIOD);
+            let turns = (1.0 - f64::EPSILON) / period;
+            preference.joints.push(JointPreference { lower, upper, reference, weight, period, turns });
             preference.ranges[0].push(low);
             preference.ranges[1].push(high);
         }
@@ -62,63 +83,204 @@ impl Preference {
         self.joints.iter().map(|joint| joint.reference).collect()
     }
 
-    /// The preferred one of `configurations`, at its whole turns nearest to the reference; None if none is inside the limits.
-    pub fn choose<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> Option<Point> {
-        let mut least = f64::INFINITY;
-        let mut best = None;
-        for q in configurations {
-            if let Some(cost) = self.cost(q)
-                && cost < least
-            {
-                (least, best) = (cost, Some(q));
+    /// The preferred one of `configurations`, which are brought to their whole turns nearest to the reference; or why none is taken.
+    pub fn choose(&self, configurations: &mut ArmConfigurations) -> Result<Point, Miss> {
+        let costs = turn_inside(&self.joints, configurations);
+        let mut best = (f64::INFINITY, 0);
+        for (place, cost) in costs[..configurations.len()].iter().enumerate() {
+            if *cost < best.0 {
+                best = (*cost, place);
             }
         }
-        self.joints.iter().zip(best?).map(|(joint, q)| joint.turned(*q)).collect()
+        if best.0 < f64::INFINITY { Ok(self.inside(configurations, best.1)) } else { Err(self.miss(configurations)) }
     }
 
-    /// Those of `configurations` that are inside the limits, at their whole turns nearest to the reference, preferred ones first.
-    pub fn ordered<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> SmallVec<[Point; 8]> {
-        let inside = configurations.filter_map(|q| self.cost(q).map(|cost| (cost, q)));
-        let mut inside: SmallVec<[(f64, &[f64]); 16]> = inside.collect();
-        inside.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let turned =
-            |q: &[f64]| self.joints.iter().zip(q).map(|(joint, q)| joint.turned(*q)).collect::<Option<Point>>();
-        inside.iter().filter_map(|(_, q)| turned(q)).collect()
+    /// Those of `configurations` that are inside the limits, preferred ones first. All are brought to their whole turns nearest to
+    /// the reference.
+    pub fn ordered(&self, configurations: &mut ArmConfigurations) -> SmallVec<[Point; 8]> {
+        let costs = turn_inside(&self.joints, configurations);
+        let inside = (0..configurations.len()).filter(|place| costs[*place] < f64::INFINITY);
+        let mut inside: SmallVec<[usize; MOST_CONFIGURATIONS]> = inside.collect();
+        inside.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+        inside.iter().map(|place| self.inside(configurations, *place)).collect()
     }
 
-    /// The weighted squared distance from the reference; None outside the limits.
+    /// One of `configurations`, rounding beyond the limits undone.
     #[inline]
-    fn cost(&self, q: &[f64]) -> Option<f64> {
-        let mut sum = 0.0;
-        for (joint, q) in self.joints.iter().zip(q) {
-            let off = joint.turned(*q)? - joint.reference;
-            sum += off * off * joint.weight;
+    fn inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+        let mut q = Point::new();
+        for (joint, values) in self.joints.iter().zip(configurations.columns()) {
+            q.push(joint.inside(values[place]));
         }
-        Some(sum)
+        q
+    }
+
+    /// How near to the limits `configurations` are, none of which is inside them.
+    #[cold]
+    fn miss(&self, configurations: &ArmConfigurations) -> Miss {
+        let is_near = |place: usize| {
+            let mut values = self.joints.iter().zip(configurations.columns());
+            values.all(|(joint, values)| joint.is_near(values[place]))
+        };
+        if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
+    }
+
+    /// The preferred one of `configurations` inside the limits, which are at their whole turns nearest to the reference already.
+    pub fn nearest<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> Option<&'q [f64]> {
+        let cost = |q: &[f64]| self.joints.iter().zip(q).fold(0.0, |sum, (joint, q)| sum + joint.cost(*q));
+        configurations.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+    }
+}
+
+by_instructions! {
+    /// Brings each of `configurations` to its whole turns nearest to the reference; returns their weighted squared distances from
+    /// it, infinite outside the limits.
+    fn turn_inside(joints: &[JointPreference], configurations: &mut ArmConfigurations) -> [f64; MOST_CONFIGURATIONS] {
+        let count = configurations.len();
+        let mut costs = [0.0; MOST_CONFIGURATIONS];
+        for (joint, values) in joints.iter().zip(configurations.columns_mut()) {
+            for first in (0..count).step_by(LANES) {
+                let (mut lanes, mut sums) = ([0.0; LANES], [0.0; LANES]);
+                lanes.copy_from_slice(&values[first..first + LANES]);
+                sums.copy_from_slice(&costs[first..first + LANES]);
+                for w in 0..LANES {
+                    lanes[w] = joint.turned(lanes[w]);
+                    // Added and not chosen: without branches the compiler takes all lanes at once.
+                    let penalty = if joint.is_within(lanes[w], AT_LIMIT) { 0.0 } else { f64::INFINITY };
+                    sums[w] += joint.cost(joint.inside(lanes[w])) + penalty;
+                }
+                values[first..first + LANES].copy_from_slice(&lanes);
+                costs[first..first + LANES].copy_from_slice(&sums);
+            }
+        }
+        costs
     }
 }
 
 impl JointPreference {
-    /// The value `q` at the whole turn nearest to the reference inside the limits; None if there is none.
-    #[inline]
-    fn turned(&self, q: f64) -> Option<f64> {
-        let q =
-            if (self.reference - q).abs() > 0.5 * self.period || self.is_outside(q) { self.nearest_turn(q) } else { q };
-        (!self.is_outside(q)).then(|| q.clamp(self.lower, self.upper))
+    /// The value `q` at the whole turn nearest to the reference inside the limits, where there is one.
+    #[inline(always)]
+    fn turned(&self, q: f64) -> f64 {
+        let fewest = ((self.lower - AT_LIMIT - q) * self.turns).ceil();
+        let most = ((self.upper + AT_LIMIT - q) * self.turns).floor();
+        let nearest = ((self.reference - q) * self.turns).round_ties_even();
+        q + smaller(larger(nearest, fewest), most) * self.period
     }
 
-    #[inline]
-    fn is_outside(&self, q: f64) -> bool {
-        !(self.lower - AT_LIMIT <= q && q <= self.upper + AT_LIMIT)
+    #[inline(always)]
+    fn is_within(&self, q: f64, slack: f64) -> bool {
+        (self.lower - slack <= q) & (q <= self.upper + slack)
     }
 
-    #[cold]
-    fn nearest_turn(&self, q: f64) -> f64 {
-        let Self { lower, upper, reference, period, .. } = *self;
-        if period == f64::INFINITY {
-            return q;
+    /// Whether polishing may move `q` inside the limits, or the value one whole turn before or after it.
+    fn is_near(&self, q: f64) -> bool {
+        [q - self.period, q, q + self.period].iter().any(|q| self.is_within(*q, MOVED_BY_POLISHING))
+    }
+
+    /// The value inside the limits nearest to `q`.
+    #[inline(always)]
+    fn inside(&self, q: f64) -> f64 {
+        smaller(larger(q, self.lower), self.upper)
+    }
+
+    /// What the distance of `q` from the reference counts.
+    #[inline(always)]
+    fn cost(&self, q: f64) -> f64 {
+        let off = q - self.reference;
+        off * off * self.weight
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+    use crate::rng;
+
+    const JOINTS: usize = 6;
+    const LOWER: [f64; JOINTS] = [-2.9, -3.2, -7.0, 0.1, -0.4, f64::NEG_INFINITY];
+    const UPPER: [f64; JOINTS] = [2.9, 0.3, 7.0, 9.0, -0.3, f64::INFINITY];
+
+    fn preference(reference: &[f64; JOINTS]) -> Preference {
+        let joint = |j: usize| {
+            // The fifth slides.
+            let period = if j == 4 { NO_PERIOD } else { TAU };
+            let turns = (1.0 - f64::EPSILON) / period;
+            let (lower, upper) = (LOWER[j], UPPER[j]);
+            JointPreference { lower, upper, reference: reference[j], weight: 1.0 + j as f64, period, turns }
+        };
+        Preference { joints: (0..JOINTS).map(joint).collect(), ranges: Default::default() }
+    }
+
+    /// The nearest of all whole turns inside the limits, and what it costs.
+    fn by_trying(preference: &Preference, q: &[f64]) -> Option<(f64, Point)> {
+        let mut sum = 0.0;
+        let turned = preference.joints.iter().zip(q).enumerate().map(|(j, (joint, q))| {
+            let turns = if j == 4 { 0..=0 } else { -4..=4 };
+            let inside = turns.map(|turn| q + f64::from(turn) * TAU).filter(|q| joint.is_within(*q, 0.0));
+            let nearest = inside.min_by(|a, b| joint.cost(*a).total_cmp(&joint.cost(*b)))?;
+            sum += joint.cost(nearest);
+            Some(nearest)
+        });
+        let turned: Option<Point> = turned.collect();
+        turned.map(|q| (sum, q))
+    }
+
+    fn configurations(rng: &mut rng::LazyRng, count: usize) -> (Vec<[f64; 7]>, ArmConfigurations) {
+        let draw = |rng: &mut rng::LazyRng, j: usize| {
+            if j == 4 { rng.uniform_in(-0.42, -0.28) } else { rng.uniform_in(-PI, PI) }
+        };
+        let sets: Vec<[f64; 7]> = (0..count).map(|_| std::array::from_fn(|j| draw(rng, j))).collect();
+        let all = ArmConfigurations::of_sets(&sets, JOINTS);
+        (sets, all)
+    }
+
+    #[test]
+    fn the_nearest_of_all_whole_turns_is_chosen() {
+        let mut rng = rng::stream(5, 0);
+        let mut chosen = 0;
+        for trial in 0..2000 {
+            let reference = std::array::from_fn(|j| rng.uniform_in(LOWER[j].max(-9.0), UPPER[j].min(9.0)));
+            let preference = preference(&reference);
+            let (sets, mut all) = configurations(&mut rng, 1 + trial % MOST_CONFIGURATIONS);
+            let expected = sets.iter().filter_map(|q| by_trying(&preference, &q[..JOINTS]));
+            let expected = expected.min_by(|(a, _), (b, _)| a.total_cmp(b));
+            let ordered = preference.ordered(&mut all.clone());
+            let inside = sets.iter().filter(|q| by_trying(&preference, &q[..JOINTS]).is_some()).count();
+            assert_eq!(ordered.len(), inside);
+            match (preference.choose(&mut all), expected) {
+                (Ok(q), Some((_, expected))) => {
+                    chosen += 1;
+                    assert!(q.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{q:?} {expected:?}");
+                    assert_eq!(ordered[0], q);
+                }
+                (Err(_), None) => {}
+                (found, expected) => panic!("{found:?} {expected:?}"),
+            }
         }
-        let (fewest, most) = (((lower - AT_LIMIT - q) / period).ceil(), ((upper + AT_LIMIT - q) / period).floor());
-        q + ((reference - q) / period).round().max(fewest).min(most) * period
+        assert!(chosen > 1000, "{chosen}");
+    }
+
+    #[test]
+    fn half_a_turn_from_the_reference_stays_where_it_is() {
+        let preference = preference(&[0.0, 0.0, PI, 0.2, -0.35, 0.0]);
+        let q = [0.0, 0.0, 0.0, 0.2, -0.35, PI, 0.0];
+        let found = preference.choose(&mut ArmConfigurations::of_sets(&[q], JOINTS)).expect("it is inside");
+        assert_eq!(found[..], q[..JOINTS]);
+    }
+
+    #[test]
+    fn a_miss_tells_whether_polishing_may_help() {
+        let preference = preference(&[0.0, 0.0, 0.0, 0.2, -0.35, 0.0]);
+        let miss = |q1: f64, q5: f64| {
+            let q = [q1, 0.0, 0.0, 0.2, q5, 0.0, 0.0];
+            preference.choose(&mut ArmConfigurations::of_sets(&[q], JOINTS)).err()
+        };
+        assert_eq!(miss(2.9 + 0.5 * AT_LIMIT, -0.35), None);
+        assert_eq!(miss(2.91, -0.35), Some(Miss::Near));
+        assert_eq!(miss(2.95, -0.35), Some(Miss::Far));
+        assert_eq!(miss(2.91, -0.2), Some(Miss::Far));
+        assert_eq!(miss(f64::NAN, -0.35), Some(Miss::Far));
     }
 }

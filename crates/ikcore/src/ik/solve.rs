@@ -2,6 +2,7 @@
 
 use super::attempt::Attempt;
 use super::best::best_solution;
+use super::budget::Budget;
 use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
@@ -12,7 +13,7 @@ use super::whole_turns::bring_near;
 use crate::error::Result;
 use crate::rng;
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
@@ -35,26 +36,29 @@ use crate::task::Target;
 /// # Errors
 /// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
+    let stopwatch = Stopwatch::start();
     let context = SolveContext::new(robot, options)?;
     let start = options.start.as_deref();
     let target = context.read(target)?;
     start.map_or(Ok(()), |q| context.check_start(q))?;
     context.require_reference(start)?;
-    Ok(solve_query(&context, &Query { target, start, stream: 0 }, monitor))
+    Ok(solve_query(&context, &Query { target, start, stream: 0, stopwatch }, monitor))
 }
 
 /// Solves a validated query.
 pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor: &mut dyn Monitor) -> Solution {
     let mut problem = context.problem(&query.target);
     let mut rng = rng::stream(context.options().seed, query.stream);
-    let mut attempt = Attempt::new(context, &mut problem, &mut rng, monitor);
-    let solution = match (context.options().prefer, query.start) {
+    let budget = Budget::new(context.options().stop, query.stopwatch);
+    let mut attempt = Attempt { context, problem: &mut problem, rng: &mut rng, monitor, budget };
+    let mut solution = match (context.options().prefer, query.start) {
         (_, start) if let Some(space) = context.space() => clear_solution(&mut attempt, space, start),
         (Prefer::Nearest, Some(start)) => nearest_solution(&mut attempt, start),
         (Prefer::Best, start) => best_solution(&mut attempt, start),
         (_, start) => first_solution(&mut attempt, start),
     };
-    attempt.mark_held_in_region(solution)
+    attempt.mark_held_in_region(&mut solution);
+    solution
 }
 
 /// Returns the first solution found; with goals it is moved along its self-motion.

@@ -263,8 +263,8 @@ fn search(
     let (mut solutions, mut known) = (Solutions::new(robot.dof()), 0);
     let (mut interrupted, mut blocked) = (false, None);
     let last = loop {
-        let found = attempt.solve_from(&x0);
-        let mut solution = attempt.mark_held_in_region(found);
+        let mut solution = attempt.solve_from(&x0);
+        attempt.mark_held_in_region(&mut solution);
         if solution.status != Status::Solved {
             break blocked.or(Some(solution));
         }

@@ -55,7 +55,13 @@ impl Frame {
     /// Rotates a vector from the base into this frame: R'v.
     #[inline(always)]
     pub(crate) fn turn_back(&self, v: &[f64; 3]) -> [f64; 3] {
-        self.axes.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
+        // Written out: a closure over the array would be compiled without the instructions of the caller.
+        let [x, y, z] = &self.axes;
+        [
+            x[0] * v[0] + x[1] * v[1] + x[2] * v[2],
+            y[0] * v[0] + y[1] * v[1] + y[2] * v[2],
+            z[0] * v[0] + z[1] * v[1] + z[2] * v[2],
+        ]
     }
 
     /// Maps a point from this frame into the base: R p + t.

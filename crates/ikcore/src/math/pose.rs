@@ -94,6 +94,14 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
 /// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation
 /// is not orthonormal to 1e-6 or is a reflection. Deviations within 1e-6 are orthonormalised.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
+    check_matrix(what, matrix).map(|()| from_checked(matrix))
+}
+
+/// Checks that a matrix is a pose; `what` names it in errors.
+///
+/// # Errors
+/// As [`from_matrix`].
+pub fn check_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<()> {
     require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
     let last_row = matrix.row(3);
@@ -109,11 +117,19 @@ pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     if rotation.determinant() < 0.0 {
         return Err(not_rigid("its rotation is a reflection (determinant -1)".into()));
     }
+    Ok(())
+}
+
+/// The pose of a matrix that [`check_matrix`] accepts, orthonormalised.
+#[inline]
+pub fn from_checked(matrix: &Matrix4<f64>) -> Pose {
+    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
     let translation = matrix.fixed_view::<3, 1>(0, 3).into_owned();
-    Ok(from_parts(translation.into(), orthonormalized(rotation)))
+    from_parts(translation.into(), orthonormalized(rotation))
 }
 
 /// Applies Gram-Schmidt to a matrix that is a rotation up to rounding; an exact rotation is unchanged.
+#[inline]
 fn orthonormalized(r: Matrix3<f64>) -> Matrix3<f64> {
     let x = r.column(0).normalize();
     let y = r.column(1) - x * x.dot(&r.column(1));

@@ -242,15 +242,17 @@ impl Robot {
 
     /// The same unless forward kinematics says otherwise, at less cost where that is possible; none without a closed form and for
     /// redundant arms.
-    pub(crate) fn likely_branches(&self, pose: &Frame) -> ArmConfigurations {
+    #[inline]
+    pub(crate) fn likely_branches(&self, pose: &Frame, found: &mut ArmConfigurations) {
         match self.closed_form_or_reason() {
-            Ok(form) => form.likely(&self.at_flange(pose)),
-            Err(_) => ArmConfigurations::none(),
+            Ok(form) => form.likely(&self.at_flange(pose), found),
+            Err(_) => *found = ArmConfigurations::none(),
         }
     }
 
     /// All configurations of a redundant arm that bring the tip to `pose`, by one parameter; None without a closed form and for arms
     /// that are not redundant.
+    #[inline]
     pub(crate) fn family(&self, pose: &Frame) -> Option<PoseFamily<'_>> {
         let form = self.closed_form_or_reason().as_ref().ok()?;
         if form.is_redundant() { form.family(&self.at_flange(pose)) } else { None }

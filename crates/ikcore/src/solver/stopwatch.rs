@@ -13,6 +13,11 @@ impl Stopwatch {
         Self(Instant::now())
     }
 
+    /// One that started this much later.
+    pub(crate) fn started_later(self, by: Duration) -> Self {
+        Self(self.0 + by)
+    }
+
     /// Time since the start.
     pub fn elapsed(&self) -> Duration {
         self.0.elapsed()

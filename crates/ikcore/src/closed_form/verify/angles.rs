@@ -2,26 +2,25 @@
 
 use std::f64::consts::PI;
 
-use super::residuals::LANES;
 use crate::closed_form::branches::Candidates;
 use crate::math::arctangent::angle_of;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::real::{One, Real};
 
-/// Joint values of eight candidates from `first` on, angles in (-pi, pi].
+/// Joint values of `W` candidates from `first` on, angles in (-pi, pi].
 #[inline(always)]
-pub fn angles<A: Arithmetic, const N: usize>(
+pub fn angles<A: Arithmetic, const N: usize, const W: usize>(
     slides: &[bool; N],
-    candidates: &Candidates<N>,
+    candidates: &Candidates,
     first: usize,
-) -> [[f64; LANES]; N] {
-    let mut all = [[0.0; LANES]; N];
+) -> [[f64; W]; N] {
+    let mut all = [[0.0; W]; N];
     for k in 0..N {
-        let (cos, sin) = (&candidates.cos[k][first..first + LANES], &candidates.sin[k][first..first + LANES]);
+        let (cos, sin) = (&candidates.cos[k][first..first + W], &candidates.sin[k][first..first + W]);
         if slides[k] {
             all[k].copy_from_slice(sin);
         } else {
-            for w in 0..LANES {
+            for w in 0..W {
                 all[k][w] = angle::<A>(sin[w], cos[w]);
             }
         }

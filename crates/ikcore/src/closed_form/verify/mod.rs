@@ -7,7 +7,7 @@ mod residuals;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{BranchError, Branches, Candidates};
-use crate::closed_form::configurations::Sets;
+use crate::closed_form::configurations::AxisColumns;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use residuals::FixedFrames;
@@ -51,19 +51,19 @@ impl<const N: usize> Verifier<N> {
     }
 
     /// The candidates that bring the tip to `target`, as joint values. Where speed matters, [`verified`] and [`verified_seven`].
-    pub fn verified(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
+    pub fn verified(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         self.branches_by::<Baseline>(target, candidates)
     }
 
     #[inline(always)]
-    fn branches_by<A: Arithmetic>(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
+    fn branches_by<A: Arithmetic>(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         let mut found = Branches::none();
         found.singular = candidates.singular;
         found.evaluations = candidates.count;
         let mut first = 0;
         while first < candidates.count {
             let residuals = residuals::residuals::<A, N>(&self.frames, &self.slides, target, candidates, first);
-            let angles = angles::angles::<A, N>(&self.slides, candidates, first);
+            let angles = angles::angles::<A, N, LANES>(&self.slides, candidates, first);
             for lane in 0..LANES.min(candidates.count - first) {
                 let set = std::array::from_fn(|k| angles[k][lane]);
                 self.accept(target, residuals.worst[lane], set, residuals.error(lane), &mut found);
@@ -75,14 +75,12 @@ impl<const N: usize> Verifier<N> {
 
     /// Writes the joint values of candidates, unverified.
     #[inline(always)]
-    fn write_values<A: Arithmetic>(&self, candidates: &Candidates<N>, sets: &mut Sets) {
+    fn write_values<A: Arithmetic>(&self, candidates: &Candidates, columns: &mut AxisColumns) {
         let mut first = 0;
         while first < candidates.count {
-            let angles = angles::angles::<A, N>(&self.slides, candidates, first);
-            for lane in 0..LANES {
-                (0..N).for_each(|k| sets[first + lane][k] = angles[k][lane]);
-            }
-            first += LANES;
+            let angles = angles::angles::<A, N, 4>(&self.slides, candidates, first);
+            (0..N).for_each(|k| columns[k][first..first + 4].copy_from_slice(&angles[k]));
+            first += 4;
         }
     }
 
@@ -106,28 +104,28 @@ impl<const N: usize> Verifier<N> {
 
 by_instructions! {
     /// Writes the joint values of candidates, unverified.
-    pub fn values_of_six(verifier: &Verifier<6>, candidates: &Candidates<6>, sets: &mut Sets) {
-        verifier.write_values::<A>(candidates, sets);
+    pub fn values_of_six(verifier: &Verifier<6>, candidates: &Candidates, columns: &mut AxisColumns) {
+        verifier.write_values::<A>(candidates, columns);
     }
 }
 
 by_instructions! {
     /// The same for seven joints.
-    pub fn values_of_seven(verifier: &Verifier<7>, candidates: &Candidates<7>, sets: &mut Sets) {
-        verifier.write_values::<A>(candidates, sets);
+    pub fn values_of_seven(verifier: &Verifier<7>, candidates: &Candidates, columns: &mut AxisColumns) {
+        verifier.write_values::<A>(candidates, columns);
     }
 }
 
 by_instructions! {
     /// The candidates that bring the tip to `target`, as joint values.
-    pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates<6>) -> Branches<6> {
+    pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates) -> Branches<6> {
         verifier.branches_by::<A>(target, candidates)
     }
 }
 
 by_instructions! {
     /// The same for seven joints.
-    pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates<7>) -> Branches<7> {
+    pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates) -> Branches<7> {
         verifier.branches_by::<A>(target, candidates)
     }
 }

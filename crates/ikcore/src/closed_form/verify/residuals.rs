@@ -52,7 +52,7 @@ pub fn residuals<A: Arithmetic, const N: usize>(
     frames: &FixedFrames<N>,
     slides: &[bool; N],
     target: &Frame,
-    candidates: &Candidates<N>,
+    candidates: &Candidates,
     first: usize,
 ) -> Residuals {
     let tip = &frames.tip;

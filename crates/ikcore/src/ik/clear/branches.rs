@@ -1,7 +1,7 @@
 //! Clear solutions by the closed form: branches, and samples of the self-motion.
 
 use super::clear_search::{ClearSearch, Exhausted};
-use crate::closed_form::{ArmBranches, PoseFamily};
+use crate::closed_form::{ArmBranches, ArmConfigurations, PoseFamily};
 use crate::ik::first_branch::LEAST_BUDGET;
 use crate::ik::preference::Preference;
 use crate::objective::Point;
@@ -38,7 +38,7 @@ impl ClearSearch<'_, '_, '_> {
     /// Of an arm that is not redundant.
     fn of_branches(&mut self, branches: &ArmBranches, preference: &Preference) -> BranchOutcome {
         self.attempt.budget.evaluations += branches.evaluations;
-        match self.first_clear(preference, branches.iter().map(|(q, _)| q)) {
+        match self.first_clear(preference, &mut branches.configurations()) {
             Some(q) => Some(Ok(q)),
             None if self.has_candidates() && branches.complete && !branches.singular => Some(Err(Exhausted::All)),
             None => self.clear_by_pushing(),
@@ -48,9 +48,11 @@ impl ClearSearch<'_, '_, '_> {
     fn of_family(&mut self, family: &PoseFamily<'_>, preference: &Preference) -> BranchOutcome {
         let [lower, upper] = self.attempt.context.sampling_ranges();
         let limits = family.limits(lower, upper);
+        let mut likely = ArmConfigurations::none();
         let half_the_budget = self.attempt.budget.left() / 2;
         for (k, value) in family.arcs(&limits).scattered(SCANNED).enumerate() {
-            if let Some(q) = self.first_clear(preference, family.likely_at(value, &limits).iter()) {
+            family.likely_at(value, &limits, &mut likely);
+            if let Some(q) = self.first_clear(preference, &mut likely) {
                 return Some(Ok(q));
             }
             let is_hopeless = k >= VALUES_BEFORE_DOUBT && self.is_hopeless();
@@ -74,11 +76,7 @@ impl ClearSearch<'_, '_, '_> {
     }
 
     /// The preferred one of those `configurations` that are inside the limits, solve the target and are clear.
-    fn first_clear<'q>(
-        &mut self,
-        preference: &Preference,
-        configurations: impl Iterator<Item = &'q [f64]>,
-    ) -> Option<Point> {
+    fn first_clear(&mut self, preference: &Preference, configurations: &mut ArmConfigurations) -> Option<Point> {
         preference.ordered(configurations).into_iter().find(|q| {
             self.attempt.budget.evaluations += 1;
             let is_solved = self.attempt.problem.assess(q).score.solved;

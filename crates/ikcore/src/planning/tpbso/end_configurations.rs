@@ -9,7 +9,7 @@ use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, PlanarArm, PlanarTarget};
 use crate::rng;
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 
 /// The configurations of one end.
@@ -134,7 +134,7 @@ fn solutions(
     let mut found: Vec<Vec<f64>> = vec![];
     let mut nearest: Option<Solution> = None;
     for (i, start) in starts.chunks_exact(robot.dof()).enumerate() {
-        let query = Query { target: *target, start: Some(start), stream: i as u64 + 1 };
+        let query = Query { target: *target, start: Some(start), stream: i as u64 + 1, stopwatch: Stopwatch::start() };
         let solution = solve_query(&context, &query, monitor);
         if solution.status == Status::Solved {
             if found.iter().all(|other| distance(other, &solution.q) > DISTINCT) {
