@@ -1,12 +1,16 @@
 """Tracking among obstacles from Python: clearance, messages, moving obstacles, wrong input."""
 
+import json
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import beetle_ik as bik
+from beetle_ik.cli import app
 
 READY = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78])
 ROBOT = bik.Robot.named("panda").with_capsules(radius=0.05)
@@ -51,14 +55,15 @@ def test_without_obstacles_nothing_is_checked_and_nothing_changes() -> None:
 
 
 def test_links_alone_keep_clear_of_each_other() -> None:
-    tracker = bik.Tracker(ROBOT, READY, dt=0.01, self_collision=True)
-    inwards = TIP.copy()
-    inwards[:3, 3] = (0.0, 0.0, 0.45)
-    clear = [tracker.step(inwards).clearance for _ in range(300)]
-    assert min(clear) >= 1e-3
-    free = bik.Tracker(ROBOT, READY, dt=0.01)
-    touching = [bik.obstacles.clearance(ROBOT, free.step(inwards).q) for _ in range(300)]
-    assert min(touching) < 1e-3
+    thick = bik.Robot.named("panda").with_capsules(radius=0.08)
+    start = [0.0, 0.0, 0.0, -1.5, 0.0, 1.6, 0.8]
+    folded = thick.fk([-0.08, -1.56, 2.46, -2.76, 1.1, 1.04, 1.76])
+    least = {}
+    for checked in (None, True):
+        tracker = bik.Tracker(thick, start, dt=0.01, self_collision=checked)
+        least[checked] = min(bik.obstacles.clearance(thick, tracker.step(folded).q) for _ in range(300))
+    assert least[None] < 0.0
+    assert least[True] >= 1e-3
 
 
 def test_obstacles_are_replaced_between_ticks() -> None:
@@ -155,3 +160,19 @@ def test_an_arm_that_nothing_can_clear_says_so(obstacle: bik.obstacles.Obstacle)
     assert step.clearance < 0.0
     assert "nearer than the margin to an obstacle or another link" in step.message
     assert step.inside_limits
+
+
+def test_on_the_command_line(tmp_path: Path) -> None:
+    wall = bik.obstacles.Box((0.3, 0.35, 0.5), (0.6, 0.04, 1.0))
+    bik.Scene([wall]).save(tmp_path / "scene.json")
+    options = ["--curve", "circle", "--diameter", "0.4", "--center", "0.45,0.2,0.5", "--duration", "4", "--dt", "0.02"]
+    scene = ["--scene", str(tmp_path / "scene.json"), "--margin", "0.02", "--link-radius", "0.06"]
+    ended = CliRunner().invoke(app, ["track", "panda", *options, *scene, "--json"])
+    assert ended.exit_code == 1
+    summary = json.loads(ended.stdout)
+    assert summary["clearance"] >= 0.02
+    assert "an obstacle or another link held the arm back" in summary["message"]
+    shown = CliRunner().invoke(app, ["track", "panda", *options, *scene])
+    assert "smallest clearance [m]" in shown.stdout
+    free = CliRunner().invoke(app, ["track", "panda", *options, "--json"])
+    assert json.loads(free.stdout)["clearance"] is None

@@ -159,7 +159,7 @@ fn a_redundant_arm_keeps_its_tip_on_the_path_while_its_elbow_gives_way() {
             worst = worst.max(step.error.position);
             assert_ne!(step.status, Status::InCollision, "tick {tick}");
         }
-        assert!(worst < 2e-4, "{worst}");
+        assert!(worst < 1e-3, "{worst}");
         let moved = START.iter().zip(session.q()).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
         assert!(moved > 0.02, "{moved}");
     }

@@ -24,6 +24,13 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
+/// Writes q + share * (end - q); rounding cannot take it beyond `end`.
+pub fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
+    for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
+        *out = (q + share * (end - q)).clamp(q.min(*end), q.max(*end));
+    }
+}
+
 /// The sum of the squared entries of all columns. Each row has its own sum, so that additions do not wait for one
 /// another.
 #[inline]

@@ -1,10 +1,13 @@
 //! The configurations at which a robot keeps a margin from everything.
 
+use std::sync::Arc;
+
 use super::chord_check::{ChordCheck, TickedMotion};
 use super::contact::{Contact, NearestContact};
 use super::kept_distance::KeptDistance;
 use super::near_rows::NearRows;
 use super::scene::Scene;
+use crate::robot::Robot;
 use crate::shape::{Geometry, Shape};
 
 /// A contact that no motion of the arm alone ends.
@@ -28,9 +31,9 @@ impl<'a> ClearSpace<'a> {
         Self { scene, margin }
     }
 
-    /// The same space with a robot and obstacles of its own.
-    pub fn into_owned(self) -> ClearSpace<'static> {
-        ClearSpace { scene: self.scene.into_owned(), margin: self.margin }
+    /// The same space with obstacles of its own, and `robot`, an equal one.
+    pub(crate) fn with_shared(self, robot: &Arc<Robot>) -> ClearSpace<'static> {
+        ClearSpace { scene: self.scene.with_shared(robot), margin: self.margin }
     }
 
     /// The distance to keep (m).

@@ -1,6 +1,6 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
-use std::borrow::Cow;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -31,11 +31,30 @@ const AT_REST: f64 = 1e-6;
 /// pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
-    robot: Cow<'a, Robot>,
+    robot: SceneRobot<'a>,
     pub(super) bodies: Arc<BodyModel>,
     pub(super) others: Others<'a>,
     /// Of the bodies that no joint moves the nearest to an obstacle, at this distance (m).
     pub(super) fixed: Option<(f64, BodyPair)>,
+}
+
+/// The robot of a scene.
+#[derive(Debug, Clone)]
+enum SceneRobot<'a> {
+    Borrowed(&'a Robot),
+    Shared(Arc<Robot>),
+}
+
+impl Deref for SceneRobot<'_> {
+    type Target = Robot;
+
+    #[inline]
+    fn deref(&self) -> &Robot {
+        match self {
+            Self::Borrowed(robot) => robot,
+            Self::Shared(robot) => robot,
+        }
+    }
 }
 
 impl<'a> Scene<'a> {
@@ -59,7 +78,7 @@ impl<'a> Scene<'a> {
         let bodies = BodyModel::of(robot);
         let allowed = AllowedContacts::new(robot, &bodies.carried, obstacles)?;
         let others = Others::new(obstacles, allowed);
-        let mut scene = Self { robot: Cow::Borrowed(robot), bodies, others, fixed: None };
+        let mut scene = Self { robot: SceneRobot::Borrowed(robot), bodies, others, fixed: None };
         scene.fixed = scene.nearest_fixed();
         Ok(scene)
     }
@@ -97,10 +116,10 @@ impl<'a> Scene<'a> {
         &self.robot
     }
 
-    /// The same scene with a robot and obstacles of its own.
-    pub(super) fn into_owned(self) -> Scene<'static> {
-        let Self { robot, bodies, others, fixed } = self;
-        Scene { robot: Cow::Owned(robot.into_owned()), bodies, others: others.into_owned(), fixed }
+    /// The same scene with obstacles of its own, and `robot`, an equal one.
+    pub(super) fn with_shared(self, robot: &Arc<Robot>) -> Scene<'static> {
+        let Self { bodies, others, fixed, .. } = self;
+        Scene { robot: SceneRobot::Shared(Arc::clone(robot)), bodies, others: others.into_owned(), fixed }
     }
 
     /// The nearest pair at `q` (n,), or the deepest one if pairs overlap; `None` if nothing can touch.

@@ -13,7 +13,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
 use crate::math::box_step::ROWS;
 use crate::math::row_step::{Row, RowSolver, RowStep};
-use crate::math::vector::{dot, norm, squared_size};
+use crate::math::vector::{between, dot, norm, squared_size};
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::obstacle::{ChordCheck, ClearSpace, KeptDistance, NearRow, NearRows};
@@ -28,6 +28,9 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
 const WARNING: f64 = 0.2;
+
+/// Time in which the distance from an obstacle falls to its 2.7th part (s).
+const PACE: f64 = 0.1;
 
 /// Parts of a command that are tried if the whole is not certified.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.125];
@@ -140,6 +143,11 @@ impl ClearMotion {
         &self.obstacles.velocities
     }
 
+    /// Replaces what is around the arm: `space` with the obstacles where they are now.
+    pub fn replace(&mut self, space: ClearSpace<'static>, obstacles: ObstacleMotion) {
+        (self.space, self.obstacles, self.since) = (Arc::new(space), obstacles, 0.0);
+    }
+
     /// Sets how the obstacles move.
     pub fn set_motion(&mut self, obstacles: ObstacleMotion) {
         self.obstacles = obstacles;
@@ -158,10 +166,9 @@ impl ClearMotion {
             self.step_beside_rows(wish, &wanted, q);
         }
         let best = q.clone();
-        let leeway = ROOM;
         let certified = PARTS.into_iter().any(|part| {
-            for (q, (best, brake)) in q.iter_mut().zip(best.iter().zip(&brake)) {
-                *q = brake + part * (best - brake);
+            if part < 1.0 {
+                between(&brake, &best, part, q);
             }
             let motion = StopMotion::new(wish.q, q, limited);
             let kept = KeptDistance {
@@ -170,7 +177,7 @@ impl ClearMotion {
                 since: self.since,
                 dt: wish.dt,
                 at_rest: self.near.rows(),
-                leeway,
+                leeway: ROOM,
             };
             self.space.is_kept_by(&motion, &kept, &mut self.check)
         });
@@ -212,7 +219,7 @@ impl ClearMotion {
         self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
         self.rows.clear();
         for near in self.near.rows() {
-            let kept = self.space.margin() + 2.0 * ROOM + self.ahead(near, 0.0);
+            let kept = self.space.margin() + 2.0 * ROOM + self.approach_of(near, 0.0).iter().sum::<f64>();
             let least = kept - near.distance + dot(&near.gradient[..q.len()], q);
             self.rows.push(Row { gradient: near.gradient, least });
         }
@@ -224,12 +231,12 @@ impl ClearMotion {
         self.goal_is_held
     }
 
-    /// How much farther than the margin a pair should be: an obstacle comes nearer until the arm is at rest, and while it gets out of
-    /// the way.
-    fn ahead(&self, near: &NearRow, stop_time: f64) -> f64 {
-        let Some(velocity) = near.obstacle().and_then(|i| self.obstacles.velocities.get(i)) else { return 0.0 };
+    /// How far an obstacle gets until the arm is at rest in `stop_time` (s), and how much nearer it comes while the arm gets out of
+    /// its way (m).
+    fn approach_of(&self, near: &NearRow, stop_time: f64) -> [f64; 2] {
+        let Some(velocity) = near.obstacle().and_then(|i| self.obstacles.velocities.get(i)) else { return [0.0; 2] };
         let approach = dot(velocity, near.normal.as_slice()).max(0.0);
-        norm(velocity) * (self.since + stop_time) + approach * WARNING
+        [norm(velocity) * (self.since + stop_time), approach * WARNING]
     }
 
     /// Finds the pairs near the place of rest.
@@ -248,9 +255,12 @@ impl ClearMotion {
         }
         let response = Response::new(wish, rest);
         let stop_time = wish.dt * stop.ticks_to_stop();
+        // An arm that cannot change its velocity at once begins to give way before it must.
+        let pace = if wish.limited.is_some() { (wish.dt / PACE).min(1.0) } else { 1.0 };
         for near in self.near.rows() {
-            let kept = self.space.margin() + ROOM + self.ahead(near, stop_time);
-            self.rows.push(response.row(&near.gradient, kept - near.distance));
+            let [until_rest, while_leaving] = self.approach_of(near, stop_time);
+            let missing = self.space.margin() + ROOM + until_rest - near.distance;
+            self.rows.push(response.row(&near.gradient, missing.max(pace * (missing + while_leaving))));
         }
         self.rows.iter().any(|row| dot(&row.gradient, wanted) < row.least)
     }

@@ -14,6 +14,7 @@ use super::track_options::TrackOptions;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::math::vector::between;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
 use crate::problem::Problem;
@@ -29,7 +30,7 @@ const BISECTIONS: usize = 10;
 /// A tracker in progress.
 #[derive(Debug)]
 pub struct Session {
-    robot: Robot,
+    robot: Arc<Robot>,
     limits: Limits,
     limit_at: LimitAt,
     rule: TickRule,
@@ -80,13 +81,14 @@ impl Session {
             require_room_to_stop(&limits)?;
         }
         robot.check("start", start)?;
-        let robot = options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone());
+        let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
         require_inside(&robot, &limits, &criterion, "start", start)?;
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
         let surroundings = options.surroundings.clone();
-        let clear = clear_motion(&surroundings, &robot, &limits)?;
+        let clear = clear_space(&surroundings, &robot)?.map(|space| ClearMotion::new(space, &limits).map(Box::new));
+        let clear = clear.transpose()?;
         Ok(Self {
             clear,
             surroundings,
@@ -385,13 +387,18 @@ impl Session {
     pub fn set_obstacles(&mut self, obstacles: Option<Vec<Shape>>, velocities: Vec<[f64; 3]>) -> Result<()> {
         let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, Vec::len))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
-        self.clear = match clear_motion(&surroundings, &self.robot, &self.limits)? {
-            Some(mut clear) => {
+        // A margin given before is kept for obstacles that may come later.
+        let is_asked = surroundings.obstacles.is_some() || surroundings.self_collision == Some(true);
+        let space = if is_asked { clear_space(&surroundings, &self.robot)? } else { None };
+        match (space, &mut self.clear) {
+            (Some(space), Some(clear)) => clear.replace(space, motion),
+            (Some(space), none) => {
+                let mut clear = Box::new(ClearMotion::new(space, &self.limits)?);
                 clear.set_motion(motion);
-                Some(clear)
+                *none = Some(clear);
             }
-            None => None,
-        };
+            (None, clear) => *clear = None,
+        }
         self.surroundings = surroundings;
         Ok(())
     }
@@ -488,17 +495,9 @@ impl Session {
     }
 }
 
-/// What keeps the arm clear, if that is asked for.
-fn clear_motion(surroundings: &Surroundings, robot: &Robot, limits: &Limits) -> Result<Option<Box<ClearMotion>>> {
-    let space = surroundings.clear_space(robot)?;
-    space.map(|space| ClearMotion::new(space.into_owned(), limits).map(Box::new)).transpose()
-}
-
-/// Writes q + share * (end - q); rounding cannot take it beyond `end`.
-fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
-    for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
-        *out = (q + share * (end - q)).clamp(q.min(*end), q.max(*end));
-    }
+/// The space to stay in, if anything is to be kept clear of.
+fn clear_space(surroundings: &Surroundings, robot: &Arc<Robot>) -> Result<Option<ClearSpace<'static>>> {
+    Ok(surroundings.clear_space(robot)?.map(|space| space.with_shared(robot)))
 }
 
 /// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
