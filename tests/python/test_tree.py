@@ -98,3 +98,25 @@ def test_wrong_names_and_values_are_told(call: Callable[[], object], kind: type[
     with pytest.raises(kind) as told:
         call()
     assert str(told.value) == message
+
+
+@pytest.mark.parametrize(("follower", "master"), [("j2", "k2"), ("k2", "j2")])
+def test_a_mimic_joint_follows_across_branches(follower: str, master: str) -> None:
+    """The chain ends in c; e is on another branch of b. The joint that is mimicked is the one in q."""
+
+    def joint(name: str, parent: str, child: str) -> str:
+        mimic = f'<mimic joint="{master}" multiplier="0.5"/>' if name == follower else ""
+        return (
+            f'<joint name="{name}" type="revolute"> <parent link="{parent}"/> <child link="{child}"/>'
+            f' <axis xyz="0 1 0"/> <limit lower="-2" upper="2" velocity="1" effort="1"/> {mimic}</joint>'
+        )
+
+    links = "".join(f'<link name="{name}"/>' for name in "abce")
+    joints = joint("j1", "a", "b") + joint("j2", "b", "c") + joint("k2", "b", "e")
+    robot = bik.Robot.from_urdf(f'<robot name="branched">{links}{joints}</robot>', tip="c")
+    assert robot.joint_names == ["j1", master]
+    for link, name in (("c", "j2"), ("e", "k2")):
+        angle = 0.3 + 0.8 * (0.5 if name == follower else 1.0)
+        np.testing.assert_allclose(
+            robot.fk([0.3, 0.8], link=link)[0, :3], [np.cos(angle), 0.0, np.sin(angle)], atol=1e-12
+        )

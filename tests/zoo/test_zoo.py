@@ -3,6 +3,7 @@
 import re
 import sys
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -74,10 +75,26 @@ FITTED = [
 ]  # fmt: skip
 
 
+def with_bodies(name: str, collision: Literal["fit", "hulls"]) -> bik.Robot:
+    (entry,) = (entry for entry in table() if Path(entry.urdf).stem == name)
+    return bik.Robot.from_urdf(entry.path, tip=entry.tip, collision=collision, package_dirs=ROBOTS.parent)
+
+
 @pytest.mark.parametrize("name", FITTED)
 def test_bodies_are_fitted_to_meshes(name: str) -> None:
-    (entry,) = (entry for entry in table() if Path(entry.urdf).stem == name)
-    robot = bik.Robot.from_urdf(entry.path, tip=entry.tip, collision="fit", package_dirs=ROBOTS.parent)
+    robot = with_bodies(name, "fit")
     assert robot.capsules
     assert not any("a mesh" in shape for shape in robot.unread_collision_shapes)
     assert all(largest < 0.3 for *_, largest in robot.mesh_fits)
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_hulls_hold_their_meshes(name: str) -> None:
+    robot = with_bodies(name, "hulls")
+    assert not any("a mesh" in shape for shape in robot.unread_collision_shapes)
+    rng, q = np.random.default_rng(3), robot.random_configurations(1, seed=3)[0]
+    places = dict(zip(robot.all_link_names, robot.all_link_poses(q), strict=True))
+    for link, mesh in robot.collision_meshes():
+        corners = mesh.vertices[rng.integers(len(mesh.vertices), size=5)]
+        for corner in corners @ places[link][:3, :3].T + places[link][:3, 3]:
+            assert bik.obstacles.clearance(robot, q, [bik.obstacles.Sphere(corner, 1e-6)]) <= 0.0
