@@ -35,6 +35,16 @@ impl<'a> ClearSpace<'a> {
         self.scene.is_clear(q, self.margin)
     }
 
+    /// Whether everything keeps the margin and `more` >= 0 (m) at `q` (n,).
+    pub(crate) fn keeps(&self, q: &[f64], more: f64) -> bool {
+        self.scene.is_clear(q, self.margin + more)
+    }
+
+    /// The robot and what is around it.
+    pub(crate) fn scene(&self) -> &Scene<'a> {
+        &self.scene
+    }
+
     /// The first obstacle that is a mesh which is not closed.
     pub fn first_open_mesh(&self) -> Option<usize> {
         let is_open = |shape: &Shape| matches!(shape.geometry(), Geometry::Mesh(mesh) if !mesh.is_closed());

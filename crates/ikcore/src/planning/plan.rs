@@ -28,6 +28,8 @@ pub struct Plan {
     pub history: Vec<Improvement>,
     /// Smallest distance (m) between robot and obstacles on the trajectory; `None` without obstacles.
     pub clearance: Option<f64>,
+    /// Why no clear motion was found, if that is so.
+    pub obstruction: Option<String>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
     /// Positions of the path (m), joined by straight lines; `None` for point-to-point plans.
@@ -101,6 +103,9 @@ impl Plan {
 
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
+        if let Some(obstruction) = &self.obstruction {
+            return format!("no clear plan: {obstruction}; {}", self.status.advice());
+        }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
             Status::Solved => format!("planned with {cost}{}", self.peak_in_words()),

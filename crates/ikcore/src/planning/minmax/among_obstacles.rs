@@ -33,8 +33,8 @@ const NARROWINGS: usize = 12;
 /// Plans for checked ends and options.
 pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
     let margin = kept_margin(options.margin)?;
-    let lines = as_lines(search.robot)?;
-    let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
+    let lines = as_lines(search.robot, options)?;
+    let scene = scene(search.robot, lines.as_ref(), options)?;
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
@@ -251,6 +251,7 @@ fn finish(
         cost,
         history,
         clearance,
+        obstruction: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

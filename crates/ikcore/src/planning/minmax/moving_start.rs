@@ -40,9 +40,9 @@ pub(super) fn begin(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let margin = kept_margin(options.margin)?;
-    let collides = can_collide(search.robot, &options.obstacles);
-    let lines = if collides { as_lines(search.robot)? } else { None };
-    let scene = collides.then(|| scene(search.robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let collides = can_collide(search.robot, options);
+    let lines = if collides { as_lines(search.robot, options)? } else { None };
+    let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
     let mut sweep = scene.as_ref().map(Sweep::new);
     let mut is_free = |motion: &Trajectory| {
         let check = |sweep: &mut Sweep| sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
@@ -63,6 +63,7 @@ pub(super) fn begin(
             cost,
             history: vec![Improvement { evaluations, cost }],
             clearance: nearest.map(|near| near.contact.distance.max(margin)),
+            obstruction: None,
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -121,9 +122,9 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 
 /// A plan from rest, preceded by the stop that leads to it.
 pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
-    let collides = can_collide(robot, &options.obstacles);
-    let lines = if collides { as_lines(robot)? } else { None };
-    let scene = collides.then(|| scene(robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let collides = can_collide(robot, options);
+    let lines = if collides { as_lines(robot, options)? } else { None };
+    let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
     let nearest = scene.and_then(|scene| Sweep::new(&scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
     let clearance = match (rest.clearance, nearest) {
         (Some(clearance), Some(near)) => Some(clearance.min(near.contact.distance)),

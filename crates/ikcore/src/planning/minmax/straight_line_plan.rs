@@ -34,6 +34,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
         cost,
         history,
         clearance: None,
+        obstruction: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -40,7 +40,7 @@ impl<'a> CollisionTest<'a> {
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
     pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
         let margin = kept_margin(options.margin)?;
-        let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
+        let scene = collision_checks::scene(robot, lines, options)?;
         let flat = lines.and_then(|lines| {
             let arm = PlanarArm::of(lines)?;
             let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();

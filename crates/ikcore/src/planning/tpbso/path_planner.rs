@@ -43,6 +43,7 @@ pub(crate) fn along_path(
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
+        obstruction: None,
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),

@@ -25,8 +25,8 @@ pub(crate) fn point_to_point(
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
-    let can_collide = can_collide(robot, &options.obstacles);
-    let lines = if can_collide { as_lines(robot)? } else { None };
+    let can_collide = can_collide(robot, options);
+    let lines = if can_collide { as_lines(robot, options)? } else { None };
     let collisions = can_collide.then(|| CollisionTest::new(robot, lines.as_ref(), options)).transpose()?;
     let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {
         if let (Endpoint::Configuration(q), Some(collisions)) = (end, &collisions) {
@@ -51,6 +51,7 @@ pub(crate) fn point_to_point(
     Ok(Plan {
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
+        obstruction: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -1,0 +1,240 @@
+//! The planner: layers of postures, the cheapest clear sequence, its timing, and the certificate.
+
+use super::dead_end::Layers;
+use super::passage::Passage;
+use super::postures::{Sampling, postures};
+use super::price::Price;
+use super::sequence::{Candidate, DeadEnd, cheapest};
+use super::smoothing::Smoothing;
+use crate::error::{Error, Result};
+use crate::math::vector::squared_distance;
+use crate::objective::Point;
+use crate::obstacle::{ClearSpace, Sweep, TooNear};
+use crate::planning::collision_checks::{TimedMotion, refuse_collision, too_near};
+use crate::planning::search::SearchResult;
+use crate::planning::timed::{
+    JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search, unreachable_points,
+};
+use crate::planning::tip_path::TipPath;
+use crate::planning::{AlongPathOptions, Plan};
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status, Stopwatch};
+
+/// Intervals between the layers, apart from corners.
+const INTERVALS: usize = 50;
+
+/// Postures of a layer, as in [`Sampling::density`]: more where fewer do not suffice.
+const DENSITIES: [usize; 2] = [32, 128];
+
+/// Motions that are certified at the most, each with more clearance where the one before came too near.
+const ROUNDS: usize = 10;
+
+/// Evaluations of the search for a better motion around a clear one.
+const EVALUATIONS: usize = 600;
+
+/// The first extra clearance (m) where a motion came too near.
+const FIRST_EXTRA: f64 = 2.5e-4;
+
+/// How far around such a place it is kept, in intervals between layers.
+const AROUND: f64 = 1.5;
+
+/// The penalty of a posture in collision, for each metre that is missing of the margin.
+const DEEP: f64 = 1e6;
+
+/// Plans along a path in `space`.
+///
+/// # Errors
+/// As [`plan_along_path`](crate::planning::plan_along_path).
+pub(in crate::planning) fn along_path(
+    robot: &Robot,
+    tip_path: &TipPath,
+    space: &ClearSpace<'_>,
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    let problem = PathProblem::new(robot, tip_path, options)?;
+    if let Some(q) = &options.start {
+        refuse_collision("start", space.scene(), q, space.margin())?;
+    }
+    let mut planner = ClearPlanner {
+        problem: &problem,
+        space,
+        price: Price::new(&problem),
+        passage: Passage::new(&problem, Some(space)),
+        shares: tip_path.knots(INTERVALS),
+        postures: vec![],
+        accuracy: problem.accuracy,
+        stopwatch,
+    };
+    match planner.first_sequence()? {
+        Ok(sequence) => planner.certified(sequence, monitor),
+        Err(dead_end) => planner.least_deep(dead_end),
+    }
+}
+
+struct ClearPlanner<'p> {
+    problem: &'p PathProblem<'p>,
+    space: &'p ClearSpace<'p>,
+    price: Price,
+    passage: Passage<'p>,
+    /// Path parameters of the layers, and the postures there, clear or not.
+    shares: Vec<f64>,
+    postures: Vec<Vec<Point>>,
+    /// Allowed deviation of the tip from the path (m, rad); smaller where that keeps it clear.
+    accuracy: f64,
+    stopwatch: Stopwatch,
+}
+
+/// A motion, and the search that found it.
+type Improved = (PathMotion, Option<SearchResult>);
+
+impl ClearPlanner<'_> {
+    /// The cheapest clear sequence of as few postures as suffice.
+    fn first_sequence(&mut self) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
+        let mut dead_end = DeadEnd(0);
+        for density in DENSITIES {
+            let sampling = Sampling { shares: &self.shares, density };
+            self.postures = postures(&mut self.passage, &self.price, &sampling)?;
+            match self.clear_sequence()? {
+                Ok(sequence) => return Ok(Ok(sequence)),
+                Err(end) => dead_end = end,
+            }
+        }
+        Ok(Err(dead_end))
+    }
+
+    fn clear_sequence(&mut self) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
+        let clear = |(share, postures): (&f64, &Vec<Point>)| -> Vec<Candidate> {
+            let clear = postures.iter().filter(|q| self.passage.is_clear(*share, q));
+            clear.map(|q| Candidate { q: q.clone(), penalty: 0.0 }).collect()
+        };
+        let layers: Vec<Vec<Candidate>> = self.shares.iter().zip(&self.postures).map(clear).collect();
+        cheapest(&layers, &self.shares, &self.price, &mut self.passage)
+    }
+
+    /// The plan of the first motion that is certified; the last one that is not, where none is.
+    fn certified(mut self, mut sequence: Vec<Point>, monitor: &mut dyn Monitor) -> Result<Plan> {
+        let starts_as_given = self.problem.options.start.is_some();
+        let mut last = None;
+        for round in 0..ROUNDS {
+            let Self { shares, price, passage, .. } = &mut self;
+            Smoothing { shares, price, passage, starts_as_given }.smooth(&mut sequence)?;
+            let nominal = JointWaypoints { knots: self.shares.clone(), rows: sequence.concat() };
+            if round == 0 {
+                let (motion, found) = self.improved(&nominal, monitor)?;
+                if self.check(&motion).is_ok() {
+                    return Ok(self.finished(motion, found, None));
+                }
+            }
+            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
+            let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
+            let Err(near) = self.check(&motion) else { return Ok(self.finished(motion, None, None)) };
+            self.keep_away(&motion, &near)?;
+            last = Some(motion);
+            match self.clear_sequence()? {
+                Ok(next) => sequence = next,
+                Err(_) => break,
+            }
+        }
+        match last {
+            Some(motion) => Ok(self.finished(motion, None, Some(Status::Stalled))),
+            None => Err(Error::InvalidPath { problem: "it has no points".into() }),
+        }
+    }
+
+    /// The best motion found around `nominal`.
+    fn improved(&self, nominal: &JointWaypoints, monitor: &mut dyn Monitor) -> Result<Improved> {
+        let Self { problem, space, accuracy, .. } = self;
+        let (interpolation, waypoints) = problem.corners_of(nominal, *accuracy)?;
+        let starts_as_given = problem.options.start.is_some();
+        let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
+        let mut cost = TimedCost::new(problem, motion, interpolation);
+        cost.space = Some(space);
+        let found = search(&mut cost, problem.options, EVALUATIONS, monitor)?;
+        let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
+        let (waypoints, _) = cost.waypoints(z);
+        Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
+    }
+
+    fn check(&self, motion: &PathMotion) -> std::result::Result<(), Box<TooNear>> {
+        let trajectory = &motion.trajectory;
+        let mut sweep = Sweep::new(self.space.scene());
+        sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], self.space.margin())
+    }
+
+    /// Keeps more clearance, and the path more closely, where a motion comes too near.
+    fn keep_away(&mut self, motion: &PathMotion, near: &TooNear) -> Result<()> {
+        let n = self.problem.robot.dof();
+        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
+        motion.trajectory.at(near.at, &mut q, &mut qd, &mut qdd)?;
+        let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(n).collect();
+        let nearest = (0..rows.len())
+            .min_by(|i, k| squared_distance(rows[*i], &q).total_cmp(&squared_distance(rows[*k], &q)))
+            .unwrap_or(0);
+        let share = motion.waypoints.knots[nearest];
+        let kept = self.passage.kept_beyond_margin(share);
+        let missing = (self.space.margin() - near.contact.distance).max(0.0);
+        let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
+        let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| self.space.keeps(q, extra));
+        let reach = AROUND / INTERVALS as f64;
+        let around: Vec<usize> = (0..self.shares.len()).filter(|i| (self.shares[*i] - share).abs() <= reach).collect();
+        if around.iter().all(leaves_some) {
+            self.passage.keep_more(share, reach, extra);
+        }
+        self.accuracy *= 0.5;
+        Ok(())
+    }
+
+    /// The plan that comes least deep into collision, where there is no clear one.
+    fn least_deep(mut self, dead_end: DeadEnd) -> Result<Plan> {
+        let layers = Layers { shares: &self.shares, postures: &self.postures };
+        let obstruction = layers.obstruction(&self.passage, self.space, dead_end);
+        let missing = |q: &Point| {
+            let distance = self.space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+            (self.space.margin() - distance).max(0.0)
+        };
+        let candidate = |q: &Point| Candidate { q: q.clone(), penalty: DEEP * missing(q) };
+        let layers: Vec<Vec<Candidate>> =
+            self.postures.iter().map(|postures| postures.iter().map(candidate).collect()).collect();
+        let mut anywhere = Passage::new(self.problem, None);
+        let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
+            Ok(sequence) => sequence,
+            Err(DeadEnd(layer)) => return Err(self.out_of_reach(layer)?),
+        };
+        let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
+        let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
+        let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
+        let plan = self.finished(motion, None, Some(Status::InCollision));
+        Ok(Plan { obstruction: Some(obstruction), ..plan })
+    }
+
+    /// Why no motion follows the path, clear or not.
+    fn out_of_reach(&self, layer: usize) -> Result<Error> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        Ok(unreachable_points(robot, tip_path, options.seed)?.unwrap_or_else(|| Error::Unreachable {
+            what: tip_path.place(self.shares[layer]),
+            problem: "only another branch of configurations does, and the arm cannot jump to it".into(),
+        }))
+    }
+
+    /// The plan of a motion; `blocked` is the status of one that is not certified.
+    fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Plan {
+        let margin = self.space.margin();
+        let mut plan = self.problem.plan(motion, found, self.stopwatch);
+        let trajectory = &plan.trajectory;
+        let smallest = Sweep::new(self.space.scene()).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()]);
+        plan.clearance = smallest.as_ref().map(|near| match blocked {
+            // Certified; the search for the smallest may stop just short of it.
+            None => near.contact.distance.max(margin),
+            Some(_) => near.contact.distance,
+        });
+        if let (Some(status), Some(near)) = (blocked, smallest)
+            && near.contact.distance < margin
+        {
+            plan.violations.push(too_near(&near.contact, margin));
+            plan.status = status;
+        }
+        plan
+    }
+}

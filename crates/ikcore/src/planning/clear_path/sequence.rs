@@ -1,0 +1,103 @@
+//! The cheapest sequence of postures, one in each layer.
+
+use super::passage::Passage;
+use super::price::Price;
+use crate::error::Result;
+use crate::interrupt::checkpoint;
+use crate::objective::Point;
+
+/// Steps to a posture that are checked, the cheapest first, before it counts as out of reach.
+const CHECKED: usize = 12;
+
+/// A candidate posture.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub q: Point,
+    /// What it costs beside the steps.
+    pub penalty: f64,
+}
+
+/// A posture that a sequence has reached.
+struct Reached {
+    q: Point,
+    cost: f64,
+    /// Its number in the layer before.
+    before: usize,
+}
+
+/// The layer that no sequence reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct DeadEnd(pub usize);
+
+/// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted).
+pub(super) fn cheapest(
+    layers: &[Vec<Candidate>],
+    shares: &[f64],
+    price: &Price,
+    passage: &mut Passage<'_>,
+) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
+    let first = |candidate: &Candidate| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
+    let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(first).collect()];
+    for i in 1..layers.len() {
+        checkpoint()?;
+        let before = &reached[i - 1];
+        let mut step = Step { shares: [shares[i - 1], shares[i]], price, passage: &mut *passage, costs: vec![] };
+        let next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
+        if next.is_empty() {
+            return Ok(Err(DeadEnd(if before.is_empty() { i - 1 } else { i })));
+        }
+        reached.push(next);
+    }
+    Ok(Ok(traced(&reached)))
+}
+
+/// Steps from one layer to the next.
+struct Step<'s, 'a> {
+    shares: [f64; 2],
+    price: &'s Price,
+    passage: &'s mut Passage<'a>,
+    costs: Vec<f64>,
+}
+
+impl Step<'_, '_> {
+    /// The cheapest way to a candidate.
+    fn to(&mut self, candidate: &Candidate, before: &[Reached]) -> Option<Reached> {
+        let [from, to] = self.shares;
+        let cost = |reached: &Reached| reached.cost + self.price.of_turned_step(&reached.q, &candidate.q, to - from);
+        self.costs.clear();
+        self.costs.extend(before.iter().map(cost));
+        for _ in 0..CHECKED {
+            let nearest = (0..before.len()).min_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]))?;
+            if self.costs[nearest].is_infinite() {
+                return None;
+            }
+            let begin = &before[nearest].q;
+            let end = self.price.turned_near(begin, &candidate.q);
+            if self.passage.is_within_limits(&end) && self.passage.leads((from, begin), (to, &end)) {
+                return Some(Reached { q: end, cost: self.costs[nearest] + candidate.penalty, before: nearest });
+            }
+            self.costs[nearest] = f64::INFINITY;
+        }
+        None
+    }
+}
+
+/// The sequence that ends at the cheapest posture of the last layer.
+fn traced(reached: &[Vec<Reached>]) -> Vec<Point> {
+    let Some(last) = reached.last() else { return vec![] };
+    let mut at = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost)).unwrap_or(0);
+    let mut postures: Vec<Point> = reached
+        .iter()
+        .rev()
+        .map(|layer| {
+            let Reached { q, before, .. } = &layer[at];
+            at = *before;
+            q.clone()
+        })
+        .collect();
+    postures.reverse();
+    postures
+}
