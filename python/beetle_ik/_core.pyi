@@ -2631,6 +2631,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
+    self_collision: bool | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
@@ -2748,9 +2749,13 @@ def plan_along_path(
     path: Path | _Pose,
     *,
     start_q: ArrayLike | None = None,
+    task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] | TPBSO = "timed",
     objective: Literal["time", "joint_travel"] = "time",
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     accuracy: float | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
@@ -2847,6 +2852,9 @@ class Plan:
     @property
     def clearance(self) -> float:
         """Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles."""
+    @property
+    def nearest(self) -> Nearest | None:
+        """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
     @property
     def violations(self) -> list[Violation]:
         """The bounds that the trajectory exceeds, a list of `Violation`; empty on success."""

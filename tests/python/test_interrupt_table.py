@@ -269,3 +269,9 @@ def test_a_long_call_looks_for_signals(name: str, tmp_path: Path, monkeypatch: p
     call = LONG[name]()
     with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
         call()
+
+
+@pytest.mark.parametrize("task", [None, bik.tasks.Pointing()], ids=["pose", "pointing"])
+def test_a_plan_without_a_clear_posture_looks_for_signals(task: bik.tasks.Task | None) -> None:
+    with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
+        bik.plan_along_path(CAPSULES, ORIENTED, task=task, limits=FAST, obstacles=[], margin=1.0)

@@ -2,7 +2,7 @@
 
 use super::contact::{Contact, NearestContact};
 use super::scene::Scene;
-use crate::shape::{Geometry, Shape};
+use crate::shape::Shape;
 
 /// A contact that no motion of the arm alone ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,8 +47,7 @@ impl<'a> ClearSpace<'a> {
 
     /// The first obstacle that is a mesh which is not closed.
     pub fn first_open_mesh(&self) -> Option<usize> {
-        let is_open = |shape: &Shape| matches!(shape.geometry(), Geometry::Mesh(mesh) if !mesh.is_closed());
-        self.scene.others.obstacles.iter().position(is_open)
+        self.scene.others.obstacles.iter().position(Shape::is_open_mesh)
     }
 
     /// The nearest two bodies at `q` (n,); `None` if nothing can touch.

@@ -5,7 +5,7 @@ use super::planner_options::PointToPointOptions;
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::obstacle::{Contact, JointMotion, Scene};
+use crate::obstacle::{Contact, JointMotion, NearestContact, Scene};
 use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
@@ -60,6 +60,24 @@ pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64
         }
         _ => Ok(()),
     }
+}
+
+/// The nearest two bodies on a motion at the time `at` (s).
+///
+/// # Errors
+/// None in practice: the joints are those of the robot.
+pub(super) fn nearest_at(scene: &Scene, motion: &Trajectory, at: f64) -> Result<Option<NearestContact>> {
+    scene.nearest_contact(&configuration_at(motion, at)?)
+}
+
+/// The configuration of a motion at the time `t` (s).
+///
+/// # Errors
+/// [`Error::NotFinite`] for a time that is not finite.
+pub(super) fn configuration_at(motion: &Trajectory, t: f64) -> Result<Vec<f64>> {
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; motion.joints().len()]);
+    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    Ok(q)
 }
 
 /// Returns the violation for a distance below the margin.

@@ -2,18 +2,19 @@
 
 use super::dead_end::Layers;
 use super::passage::Passage;
-use super::postures::{Sampling, postures};
+use super::postures::{LayerSampling, postures};
 use super::price::Price;
-use super::sequence::{Candidate, DeadEnd, cheapest};
+use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
 use super::smoothing::Smoothing;
 use crate::error::{Error, Result};
+use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Sweep, TooNear};
-use crate::planning::collision_checks::{TimedMotion, refuse_collision, too_near};
+use crate::planning::collision_checks::{TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
 use crate::planning::search::SearchResult;
 use crate::planning::timed::{
-    JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search, unreachable_points,
+    Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search, unreachable_points,
 };
 use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, Plan};
@@ -23,7 +24,7 @@ use crate::solver::{Monitor, Status, Stopwatch};
 /// Intervals between the layers, apart from corners.
 const INTERVALS: usize = 50;
 
-/// Postures of a layer, as in [`Sampling::density`]: more where fewer do not suffice.
+/// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
 const DENSITIES: [usize; 2] = [32, 128];
 
 /// Motions that are certified at the most, each with more clearance where the one before came too near.
@@ -37,6 +38,9 @@ const FIRST_EXTRA: f64 = 2.5e-4;
 
 /// How far around such a place it is kept, in intervals between layers.
 const AROUND: f64 = 1.5;
+
+/// A motion is certified to keep this much more than the margin (m), so that the margin remains where it is timed anew.
+const SPARE: f64 = 2e-5;
 
 /// The penalty of a posture in collision, for each metre that is missing of the margin.
 const DEEP: f64 = 1e6;
@@ -86,15 +90,12 @@ struct ClearPlanner<'p> {
     stopwatch: Stopwatch,
 }
 
-/// A motion, and the search that found it.
-type Improved = (PathMotion, Option<SearchResult>);
-
 impl ClearPlanner<'_> {
     /// The cheapest clear sequence of as few postures as suffice.
-    fn first_sequence(&mut self) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
-        let mut dead_end = DeadEnd(0);
+    fn first_sequence(&mut self) -> Result<FoundSequence> {
+        let mut dead_end = Unreached(0);
         for density in DENSITIES {
-            let sampling = Sampling { shares: &self.shares, density };
+            let sampling = LayerSampling { shares: &self.shares, density };
             self.postures = postures(&mut self.passage, &self.price, &sampling)?;
             match self.clear_sequence()? {
                 Ok(sequence) => return Ok(Ok(sequence)),
@@ -104,49 +105,55 @@ impl ClearPlanner<'_> {
         Ok(Err(dead_end))
     }
 
-    fn clear_sequence(&mut self) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
-        let clear = |(share, postures): (&f64, &Vec<Point>)| -> Vec<Candidate> {
+    fn clear_sequence(&mut self) -> Result<FoundSequence> {
+        let clear = |(share, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
+            checkpoint()?;
             let clear = postures.iter().filter(|q| self.passage.is_clear(*share, q));
-            clear.map(|q| Candidate { q: q.clone(), penalty: 0.0 }).collect()
+            Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
         };
-        let layers: Vec<Vec<Candidate>> = self.shares.iter().zip(&self.postures).map(clear).collect();
+        let layers = self.shares.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
         cheapest(&layers, &self.shares, &self.price, &mut self.passage)
     }
 
-    /// The plan of the first motion that is certified; the last one that is not, where none is.
+    /// The plan of the first motion that is certified; of the last one tried, where none is.
     fn certified(mut self, mut sequence: Vec<Point>, monitor: &mut dyn Monitor) -> Result<Plan> {
         let starts_as_given = self.problem.options.start.is_some();
-        let mut last = None;
-        for round in 0..ROUNDS {
+        let mut found = None;
+        let mut rounds = 0..ROUNDS;
+        loop {
+            let round = rounds.next();
             let Self { shares, price, passage, .. } = &mut self;
             Smoothing { shares, price, passage, starts_as_given }.smooth(&mut sequence)?;
             let nominal = JointWaypoints { knots: self.shares.clone(), rows: sequence.concat() };
-            if round == 0 {
-                let (motion, found) = self.improved(&nominal, monitor)?;
-                if self.check(&motion).is_ok() {
-                    return Ok(self.finished(motion, found, None));
+            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
+            let smooth = self.problem.motion(&interpolation, waypoints.clone(), self.accuracy)?;
+            if round == Some(0) {
+                let improved;
+                (improved, found) = self.improved(interpolation, waypoints, monitor)?;
+                if self.cost(&improved) < self.cost(&smooth) && self.check(&improved).is_ok() {
+                    return self.finished(improved, found, None);
                 }
             }
-            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
-            let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
-            let Err(near) = self.check(&motion) else { return Ok(self.finished(motion, None, None)) };
-            self.keep_away(&motion, &near)?;
-            last = Some(motion);
-            match self.clear_sequence()? {
-                Ok(next) => sequence = next,
-                Err(_) => break,
-            }
-        }
-        match last {
-            Some(motion) => Ok(self.finished(motion, None, Some(Status::Stalled))),
-            None => Err(Error::InvalidPath { problem: "it has no points".into() }),
+            let Err(near) = self.check(&smooth) else { return self.finished(smooth, found, None) };
+            self.keep_away(&smooth, &near)?;
+            let next = if round.is_some() { self.clear_sequence()?.ok() } else { None };
+            let Some(next) = next else { return self.finished(smooth, found, Some(Status::Stalled)) };
+            sequence = next;
         }
     }
 
-    /// The best motion found around `nominal`.
-    fn improved(&self, nominal: &JointWaypoints, monitor: &mut dyn Monitor) -> Result<Improved> {
+    fn cost(&self, motion: &PathMotion) -> f64 {
+        self.problem.options.objective.of(&self.problem.robot, &motion.trajectory)
+    }
+
+    /// The best motion that a search finds around `waypoints`.
+    fn improved(
+        &self,
+        interpolation: Interpolation<'_>,
+        waypoints: JointWaypoints,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(PathMotion, Option<SearchResult>)> {
         let Self { problem, space, accuracy, .. } = self;
-        let (interpolation, waypoints) = problem.corners_of(nominal, *accuracy)?;
         let starts_as_given = problem.options.start.is_some();
         let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
@@ -160,15 +167,13 @@ impl ClearPlanner<'_> {
     fn check(&self, motion: &PathMotion) -> std::result::Result<(), Box<TooNear>> {
         let trajectory = &motion.trajectory;
         let mut sweep = Sweep::new(self.space.scene());
-        sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], self.space.margin())
+        sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], self.space.margin() + SPARE)
     }
 
     /// Keeps more clearance, and the path more closely, where a motion comes too near.
     fn keep_away(&mut self, motion: &PathMotion, near: &TooNear) -> Result<()> {
-        let n = self.problem.robot.dof();
-        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
-        motion.trajectory.at(near.at, &mut q, &mut qd, &mut qdd)?;
-        let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(n).collect();
+        let q = configuration_at(&motion.trajectory, near.at)?;
+        let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(q.len()).collect();
         let nearest = (0..rows.len())
             .min_by(|i, k| squared_distance(rows[*i], &q).total_cmp(&squared_distance(rows[*k], &q)))
             .unwrap_or(0);
@@ -187,25 +192,27 @@ impl ClearPlanner<'_> {
     }
 
     /// The plan that comes least deep into collision, where there is no clear one.
-    fn least_deep(mut self, dead_end: DeadEnd) -> Result<Plan> {
+    fn least_deep(mut self, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { shares: &self.shares, postures: &self.postures };
         let obstruction = layers.obstruction(&self.passage, self.space, dead_end);
         let missing = |q: &Point| {
             let distance = self.space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
             (self.space.margin() - distance).max(0.0)
         };
-        let candidate = |q: &Point| Candidate { q: q.clone(), penalty: DEEP * missing(q) };
-        let layers: Vec<Vec<Candidate>> =
-            self.postures.iter().map(|postures| postures.iter().map(candidate).collect()).collect();
+        let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
+            checkpoint()?;
+            Ok(postures.iter().map(|q| LayerPosture { q: q.clone(), penalty: DEEP * missing(q) }).collect())
+        };
+        let layers = self.postures.iter().map(candidates).collect::<Result<Vec<_>>>()?;
         let mut anywhere = Passage::new(self.problem, None);
         let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
             Ok(sequence) => sequence,
-            Err(DeadEnd(layer)) => return Err(self.out_of_reach(layer)?),
+            Err(Unreached(layer)) => return Err(self.out_of_reach(layer)?),
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
         let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
         let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
-        let plan = self.finished(motion, None, Some(Status::InCollision));
+        let plan = self.finished(motion, None, Some(Status::InCollision))?;
         Ok(Plan { obstruction: Some(obstruction), ..plan })
     }
 
@@ -219,22 +226,24 @@ impl ClearPlanner<'_> {
     }
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.
-    fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Plan {
-        let margin = self.space.margin();
+    fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
+        let (scene, margin) = (self.space.scene(), self.space.margin());
         let mut plan = self.problem.plan(motion, found, self.stopwatch);
+        plan.surroundings = Some(self.problem.options.surroundings.clone());
         let trajectory = &plan.trajectory;
-        let smallest = Sweep::new(self.space.scene()).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()]);
-        plan.clearance = smallest.as_ref().map(|near| match blocked {
-            // Certified; the search for the smallest may stop just short of it.
-            None => near.contact.distance.max(margin),
-            Some(_) => near.contact.distance,
-        });
-        if let (Some(status), Some(near)) = (blocked, smallest)
-            && near.contact.distance < margin
+        let Some(near) = Sweep::new(scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()]) else {
+            return Ok(plan);
+        };
+        let distance = near.contact.distance;
+        // What is certified may be more than the search for the smallest distance proves.
+        plan.clearance = Some(if blocked.is_none() { distance.max(margin) } else { distance });
+        plan.nearest = nearest_at(scene, trajectory, near.at)?;
+        if let Some(status) = blocked
+            && distance < margin
         {
             plan.violations.push(too_near(&near.contact, margin));
             plan.status = status;
         }
-        plan
+        Ok(plan)
     }
 }

@@ -1,7 +1,8 @@
 //! Why there is no clear motion along a path.
 
 use super::passage::Passage;
-use super::sequence::DeadEnd;
+use super::postures::are_all;
+use super::sequence::Unreached;
 use crate::objective::Point;
 use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact};
 use crate::task::Target;
@@ -14,7 +15,7 @@ pub(super) struct Layers<'a> {
 
 impl Layers<'_> {
     /// Says why no clear motion was found: the first point without a clear posture, or else the one that none leads to.
-    pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: DeadEnd) -> String {
+    pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: Unreached) -> String {
         let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.shares[*i], q));
         match (0..self.shares.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
@@ -22,7 +23,7 @@ impl Layers<'_> {
                 let place = passage.problem.tip_path.place(self.shares[dead_end.0]);
                 let count = self.clear(passage, dead_end.0);
                 format!(
-                    "{count} of {} postures tried at {place} are clear, but no clear motion that was found leads to them",
+                    "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
                     self.postures[dead_end.0].len()
                 )
             }
@@ -50,13 +51,17 @@ impl Layers<'_> {
             Some(Blocked::Base(contact)) => format!("{}, and no joint moves it", said(&contact)),
             None => match least_deep(space, postures) {
                 Some(nearest) => {
-                    let count = postures.len();
-                    format!("{} at the best of {count} postures tried, and others may exist", said(&nearest.contact))
+                    let (said, count) = (said(&nearest.contact), postures.len());
+                    match (are_all(passage, share), count) {
+                        (true, 1) => format!("{said} in the only posture inside the limits"),
+                        (true, _) => format!("{said} in the best of {count} postures, and there are no others"),
+                        _ => format!("{said} in the best of {count} postures tried, and others may exist"),
+                    }
                 }
                 None => "no posture was found".into(),
             },
         };
-        format!("at {} {what}", tip_path.place(share))
+        format!("{}: {what}", tip_path.place(share))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Candidate postures at the points of a path.
+//! LayerPosture postures at the points of a path.
 
 use super::passage::Passage;
 use super::price::Price;
@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, solve_all};
 use crate::interrupt::checkpoint;
 use crate::objective::Point;
+use crate::planning::timed::PathProblem;
 use crate::rng;
 use crate::solver::Unattended;
 use crate::task::Target;
@@ -15,7 +16,7 @@ const TRIES: usize = 4;
 
 /// Where the layers are, and how many postures they have.
 #[derive(Debug)]
-pub(super) struct Sampling<'a> {
+pub(super) struct LayerSampling<'a> {
     /// Path parameters of the layers.
     pub shares: &'a [f64],
     /// Values of the parameter of a redundant arm with a closed form, or a quarter of the motions from random starts.
@@ -26,19 +27,36 @@ pub(super) struct Sampling<'a> {
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
-pub(super) fn postures(passage: &mut Passage<'_>, price: &Price, sampling: &Sampling<'_>) -> Result<Vec<Vec<Point>>> {
-    let (robot, tip_path) = (&passage.problem.robot, passage.problem.tip_path);
-    let by_closed_form = matches!(tip_path.target(0.0), Target::Pose(_)) && robot.solves_at_once() == Some(true);
-    let mut layers =
-        if by_closed_form { by_branches(passage, sampling)? } else { by_following(passage, price, sampling)? };
+pub(super) fn postures(
+    passage: &mut Passage<'_>,
+    price: &Price,
+    sampling: &LayerSampling<'_>,
+) -> Result<Vec<Vec<Point>>> {
+    let mut layers = if has_closed_form(passage) {
+        by_branches(passage, sampling)?
+    } else {
+        by_following(passage, price, sampling)?
+    };
     if let Some(start) = &passage.problem.options.start {
         layers[0] = vec![Point::from_slice(start)];
     }
     Ok(layers)
 }
 
+/// Whether the postures at this place are all that exist, whole turns aside.
+pub(super) fn are_all(passage: &Passage<'_>, share: f64) -> bool {
+    let PathProblem { robot, tip_path, .. } = passage.problem;
+    let found = || solve_all(robot, &tip_path.target(share), &AllOptions::default(), &mut Unattended);
+    has_closed_form(passage) && found().is_ok_and(|found| found.complete)
+}
+
+fn has_closed_form(passage: &Passage<'_>) -> bool {
+    let PathProblem { robot, tip_path, .. } = passage.problem;
+    matches!(tip_path.target(0.0), Target::Pose(_)) && robot.solves_at_once() == Some(true)
+}
+
 /// All branches; of a redundant arm those at many values of its parameter.
-fn by_branches(passage: &Passage<'_>, sampling: &Sampling<'_>) -> Result<Vec<Vec<Point>>> {
+fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Vec<Vec<Point>>> {
     let (robot, tip_path) = (&passage.problem.robot, passage.problem.tip_path);
     let each = SolveOptions { seed: passage.problem.options.seed, ..SolveOptions::default() };
     let options = AllOptions { each, redundancy: sampling.density, ..AllOptions::default() };
@@ -51,7 +69,7 @@ fn by_branches(passage: &Passage<'_>, sampling: &Sampling<'_>) -> Result<Vec<Vec
 }
 
 /// Motions along the path from random starts, to both sides of random places, as far as they lead.
-fn by_following(passage: &mut Passage<'_>, price: &Price, sampling: &Sampling<'_>) -> Result<Vec<Vec<Point>>> {
+fn by_following(passage: &mut Passage<'_>, price: &Price, sampling: &LayerSampling<'_>) -> Result<Vec<Vec<Point>>> {
     let shares = sampling.shares;
     let mut layers = vec![vec![]; shares.len()];
     let motions = 4 * sampling.density;

@@ -11,7 +11,7 @@ const CHECKED: usize = 12;
 
 /// A candidate posture.
 #[derive(Debug, Clone)]
-pub(super) struct Candidate {
+pub(super) struct LayerPosture {
     pub q: Point,
     /// What it costs beside the steps.
     pub penalty: f64,
@@ -27,19 +27,22 @@ struct Reached {
 
 /// The layer that no sequence reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct DeadEnd(pub usize);
+pub(super) struct Unreached(pub usize);
+
+/// A sequence, or where it would break off.
+pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
 
 /// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
 pub(super) fn cheapest(
-    layers: &[Vec<Candidate>],
+    layers: &[Vec<LayerPosture>],
     shares: &[f64],
     price: &Price,
     passage: &mut Passage<'_>,
-) -> Result<std::result::Result<Vec<Point>, DeadEnd>> {
-    let first = |candidate: &Candidate| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
+) -> Result<FoundSequence> {
+    let first = |candidate: &LayerPosture| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
     let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(first).collect()];
     for i in 1..layers.len() {
         checkpoint()?;
@@ -47,7 +50,7 @@ pub(super) fn cheapest(
         let mut step = Step { shares: [shares[i - 1], shares[i]], price, passage: &mut *passage, costs: vec![] };
         let next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
         if next.is_empty() {
-            return Ok(Err(DeadEnd(if before.is_empty() { i - 1 } else { i })));
+            return Ok(Err(Unreached(if before.is_empty() { i - 1 } else { i })));
         }
         reached.push(next);
     }
@@ -64,7 +67,7 @@ struct Step<'s, 'a> {
 
 impl Step<'_, '_> {
     /// The cheapest way to a candidate.
-    fn to(&mut self, candidate: &Candidate, before: &[Reached]) -> Option<Reached> {
+    fn to(&mut self, candidate: &LayerPosture, before: &[Reached]) -> Option<Reached> {
         let [from, to] = self.shares;
         let cost = |reached: &Reached| reached.cost + self.price.of_turned_step(&reached.q, &candidate.q, to - from);
         self.costs.clear();

@@ -24,7 +24,7 @@ mod timed_cost;
 mod timed_planner;
 mod unreachable;
 
-pub(super) use interpolation::JointWaypoints;
+pub(super) use interpolation::{Interpolation, JointWaypoints};
 pub(super) use path_problem::{PathMotion, PathProblem};
 pub(super) use projection::project;
 pub(super) use redundant_motion::RedundantMotion;
