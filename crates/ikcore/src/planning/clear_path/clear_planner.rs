@@ -27,7 +27,7 @@ const INTERVALS: usize = 50;
 /// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
 const DENSITIES: [usize; 2] = [32, 128];
 
-/// Motions that are certified at the most, each with more clearance where the one before came too near.
+/// Motions that are tried at the most, each with more clearance where the one before came too near.
 const ROUNDS: usize = 10;
 
 /// Evaluations of the search for a better motion around a clear one.
@@ -90,6 +90,12 @@ struct ClearPlanner<'p> {
     stopwatch: Stopwatch,
 }
 
+/// Why a motion is not taken.
+enum Fault {
+    TooNear(Box<TooNear>),
+    OutsideLimits,
+}
+
 impl ClearPlanner<'_> {
     /// The cheapest clear sequence of as few postures as suffice.
     fn first_sequence(&mut self) -> Result<FoundSequence> {
@@ -115,29 +121,40 @@ impl ClearPlanner<'_> {
         cheapest(&layers, &self.shares, &self.price, &mut self.passage)
     }
 
-    /// The plan of the first motion that is certified; of the last one tried, where none is.
+    /// The plan of the first motion without a fault; of the last one tried, where none is.
     fn certified(mut self, mut sequence: Vec<Point>, monitor: &mut dyn Monitor) -> Result<Plan> {
         let starts_as_given = self.problem.options.start.is_some();
         let mut found = None;
-        let mut rounds = 0..ROUNDS;
+        let mut round = 0;
         loop {
-            let round = rounds.next();
             let Self { shares, price, passage, .. } = &mut self;
             Smoothing { shares, price, passage, starts_as_given }.smooth(&mut sequence)?;
             let nominal = JointWaypoints { knots: self.shares.clone(), rows: sequence.concat() };
             let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
             let smooth = self.problem.motion(&interpolation, waypoints.clone(), self.accuracy)?;
-            if round == Some(0) {
+            let fault = self.fault(&smooth);
+            if round == 0 {
                 let improved;
                 (improved, found) = self.improved(interpolation, waypoints, monitor)?;
-                if self.cost(&improved) < self.cost(&smooth) && self.check(&improved).is_ok() {
+                let is_better = fault.is_some() || self.cost(&improved) < self.cost(&smooth);
+                if is_better && self.fault(&improved).is_none() {
                     return self.finished(improved, found, None);
                 }
             }
-            let Err(near) = self.check(&smooth) else { return self.finished(smooth, found, None) };
-            self.keep_away(&smooth, &near)?;
-            let next = if round.is_some() { self.clear_sequence()?.ok() } else { None };
-            let Some(next) = next else { return self.finished(smooth, found, Some(Status::Stalled)) };
+            let blocked = match fault {
+                None => return self.finished(smooth, found, None),
+                Some(Fault::TooNear(near)) => {
+                    self.keep_away(&smooth, &near)?;
+                    Some(Status::Stalled)
+                }
+                Some(Fault::OutsideLimits) => {
+                    self.passage.stay_inside();
+                    None
+                }
+            };
+            round += 1;
+            let next = if round < ROUNDS { self.clear_sequence()?.ok() } else { None };
+            let Some(next) = next else { return self.finished(smooth, found, blocked) };
             sequence = next;
         }
     }
@@ -164,10 +181,12 @@ impl ClearPlanner<'_> {
         Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
     }
 
-    fn check(&self, motion: &PathMotion) -> std::result::Result<(), Box<TooNear>> {
+    fn fault(&self, motion: &PathMotion) -> Option<Fault> {
         let trajectory = &motion.trajectory;
-        let mut sweep = Sweep::new(self.space.scene());
-        sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], self.space.margin() + SPARE)
+        let (whole, kept) = ([0.0, trajectory.duration()], self.space.margin() + SPARE);
+        let checked = Sweep::new(self.space.scene()).check(&TimedMotion(trajectory), whole, kept);
+        let leaves_limits = || !self.problem.limits.violations(trajectory).is_empty();
+        checked.err().map(Fault::TooNear).or_else(|| leaves_limits().then_some(Fault::OutsideLimits))
     }
 
     /// Keeps more clearance, and the path more closely, where a motion comes too near.

@@ -16,6 +16,9 @@ const HALVINGS: usize = 3;
 const STRAY: f64 = 0.3;
 const NEAR: f64 = 0.02;
 
+/// Postures stay this far from their limits where a motion has left them, relative to the range.
+const INSET: f64 = 1e-3;
+
 /// A place on the path, and the posture there.
 pub(super) type Place<'q> = (f64, &'q [f64]);
 
@@ -46,6 +49,16 @@ impl<'a> Passage<'a> {
     /// Keeps this much more than the margin (m) around a place.
     pub fn keep_more(&mut self, share: f64, reach: f64, distance: f64) {
         self.extras.push(Extra { share, reach, distance });
+    }
+
+    /// Keeps away from the limits a little: splines swing out between the postures.
+    pub fn stay_inside(&mut self) {
+        let ranges = self.problem.robot.joints().iter().enumerate().map(|(j, joint)| {
+            let (lower, upper) = self.problem.limits.finite_range(j);
+            let inset = INSET * (upper - lower);
+            (joint.lower + inset, joint.upper - inset)
+        });
+        self.bounds = Bounds::from_ranges(ranges);
     }
 
     /// What is kept beyond the margin at a place (m).
