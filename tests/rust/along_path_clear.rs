@@ -1,5 +1,7 @@
 //! Paths among obstacles: certified motions, what is said where there is none, and tasks that leave a part of the poses free.
 
+use std::f64::consts::PI;
+
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::norm;
 use ikcore::obstacle::{Scene, Surroundings};
@@ -10,6 +12,7 @@ use ikcore::robot::Robot;
 use ikcore::shape::Shape;
 use ikcore::solver::{Monitor, Status, Stop, Unattended};
 use ikcore::task::{Task, TaskKind};
+use nalgebra::{Rotation3, Vector3};
 
 const MARGIN: f64 = 2e-3;
 const Q: [f64; 7] = [0.1, 0.2, 0.1, -2.2, 0.1, 2.4, 0.8];
@@ -193,6 +196,26 @@ fn a_free_rotation_avoids_what_a_pose_cannot() {
     });
     // Freedom costs nothing beyond the accuracy of the search.
     assert!(durations[1] <= 1.02 * durations[0] && durations[2] <= 1.02 * durations[1], "{durations:?}");
+}
+
+#[test]
+fn a_joint_that_winds_begins_where_its_limits_let_it_end() {
+    let robot = arm("ur5e");
+    let q = [2.5, -1.6, 1.8, -1.7, -1.5, 0.2];
+    let begin = robot.fk(&q).unwrap();
+    // Once and a quarter round the base.
+    let turned = (0..=100).map(|i| Rotation3::from_axis_angle(&Vector3::z_axis(), 2.5 * PI * f64::from(i) / 100.0));
+    let (positions, rotations) = turned
+        .map(|turn| {
+            let position: [f64; 3] = (turn * begin.translation.vector).into();
+            (position, *(turn * begin.rotation).matrix())
+        })
+        .unzip();
+    let tip_path = TipPath::through(&Waypoints::new(positions, Some(rotations)).unwrap()).unwrap();
+    let plan = planned(&robot, &tip_path, &options(&robot, vec![]));
+    assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+    let [low, high] = [0, 2000].map(|i| instants(&plan).nth(i).unwrap()[0]);
+    assert!((high - low - 2.5 * PI).abs() < 1e-2 && low < -PI, "{low} to {high}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::dead_end::Layers;
 use super::passage::Passage;
 use super::postures::{LayerSampling, postures};
 use super::price::Price;
-use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
+use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest_turned};
 use super::smoothing::Smoothing;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
@@ -21,8 +21,9 @@ use crate::planning::{AlongPathOptions, Plan};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 
-/// Intervals between the layers, apart from corners.
-const INTERVALS: usize = 50;
+/// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
+const SPACING: f64 = 0.03;
+const INTERVALS: [f64; 2] = [50.0, 400.0];
 
 /// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
 const DENSITIES: [usize; 2] = [32, 128];
@@ -66,7 +67,7 @@ pub(in crate::planning) fn along_path(
         space,
         price: Price::new(&problem),
         passage: Passage::new(&problem, Some(space)),
-        shares: tip_path.knots(INTERVALS),
+        shares: tip_path.knots((tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize),
         postures: vec![],
         accuracy: problem.accuracy,
         stopwatch,
@@ -118,7 +119,7 @@ impl ClearPlanner<'_> {
             Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
         };
         let layers = self.shares.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
-        cheapest(&layers, &self.shares, &self.price, &mut self.passage)
+        cheapest_turned(&layers, &self.shares, &self.price, &mut self.passage)
     }
 
     /// The plan of the first motion without a fault; of the last one tried, where none is.
@@ -201,7 +202,7 @@ impl ClearPlanner<'_> {
         let missing = (self.space.margin() - near.contact.distance).max(0.0);
         let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
         let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| self.space.keeps(q, extra));
-        let reach = AROUND / INTERVALS as f64;
+        let reach = AROUND / self.shares.len() as f64;
         let around: Vec<usize> = (0..self.shares.len()).filter(|i| (self.shares[*i] - share).abs() <= reach).collect();
         if around.iter().all(leaves_some) {
             self.passage.keep_more(share, reach, extra);
@@ -224,7 +225,7 @@ impl ClearPlanner<'_> {
         };
         let layers = self.postures.iter().map(candidates).collect::<Result<Vec<_>>>()?;
         let mut anywhere = Passage::new(self.problem, None);
-        let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
+        let sequence = match cheapest_turned(&layers, &self.shares, &self.price, &mut anywhere)? {
             Ok(sequence) => sequence,
             Err(Unreached(layer)) => return Err(self.out_of_reach(layer)?),
         };

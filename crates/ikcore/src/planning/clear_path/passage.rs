@@ -35,6 +35,8 @@ pub(super) struct Passage<'a> {
     pub problem: &'a PathProblem<'a>,
     /// `None`: nothing is checked.
     space: Option<&'a ClearSpace<'a>>,
+    limits: Bounds,
+    /// The limits, or wider ones while whole turns are left open.
     bounds: Bounds,
     extras: Vec<Extra>,
     scratch: Linearization,
@@ -42,8 +44,8 @@ pub(super) struct Passage<'a> {
 
 impl<'a> Passage<'a> {
     pub fn new(problem: &'a PathProblem<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
-        let bounds = Bounds::from_ranges(problem.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
-        Self { problem, space, bounds, extras: vec![], scratch: Linearization::default() }
+        let limits = Bounds::from_ranges(problem.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
+        Self { problem, space, bounds: limits.clone(), limits, extras: vec![], scratch: Linearization::default() }
     }
 
     /// Keeps this much more than the margin (m) around a place.
@@ -58,7 +60,40 @@ impl<'a> Passage<'a> {
             let inset = INSET * (upper - lower);
             (joint.lower + inset, joint.upper - inset)
         });
-        self.bounds = Bounds::from_ranges(ranges);
+        self.limits = Bounds::from_ranges(ranges);
+        self.bounds = self.limits.clone();
+    }
+
+    /// Lets joints that turn round once or more within their limits turn on and on.
+    pub fn open_turns(&mut self) {
+        let range = |j: usize| {
+            let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
+            let turns = self.problem.robot.turn_period(j).is_some_and(|period| upper - lower >= period);
+            if turns { (f64::NEG_INFINITY, f64::INFINITY) } else { (lower, upper) }
+        };
+        self.bounds = Bounds::from_ranges((0..self.problem.robot.dof()).map(range));
+    }
+
+    /// Holds all joints inside their limits again.
+    pub fn close_turns(&mut self) {
+        self.bounds = self.limits.clone();
+    }
+
+    /// Shifts each joint of a sequence by whole turns into its limits; false if one winds too far.
+    pub fn shift_inside(&self, sequence: &mut [Point]) -> bool {
+        (0..self.problem.robot.dof()).all(|j| {
+            let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
+            let values = || sequence.iter().map(|q| q[j]);
+            let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            let fits = |shift: f64| lower <= low + shift && high + shift <= upper;
+            if fits(0.0) {
+                return true;
+            }
+            let Some(period) = self.problem.robot.turn_period(j) else { return false };
+            let shift = ((0.5 * (lower + upper - low - high)) / period).round() * period;
+            sequence.iter_mut().for_each(|q| q[j] += shift);
+            fits(shift)
+        })
     }
 
     /// What is kept beyond the margin at a place (m).

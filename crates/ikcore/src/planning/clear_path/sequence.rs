@@ -32,11 +32,33 @@ pub(super) struct Unreached(pub usize);
 /// A sequence, or where it would break off.
 pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
 
+/// [`cheapest`], by whatever whole turns the joints have where the start is free.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted).
+pub(super) fn cheapest_turned(
+    layers: &[Vec<LayerPosture>],
+    shares: &[f64],
+    price: &Price,
+    passage: &mut Passage<'_>,
+) -> Result<FoundSequence> {
+    if passage.problem.options.start.is_none() {
+        passage.open_turns();
+        let found = cheapest(layers, shares, price, passage)?;
+        passage.close_turns();
+        let Ok(mut sequence) = found else { return Ok(found) };
+        if passage.shift_inside(&mut sequence) {
+            return Ok(Ok(sequence));
+        }
+    }
+    cheapest(layers, shares, price, passage)
+}
+
 /// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
-pub(super) fn cheapest(
+fn cheapest(
     layers: &[Vec<LayerPosture>],
     shares: &[f64],
     price: &Price,

@@ -23,6 +23,8 @@ pub struct TipPath {
     rotations: Option<Vec<UnitQuaternion<f64>>>,
     /// The axis of the tip whose direction matters, of unit length; `None` if the whole orientation does.
     pointing: Option<[f64; 3]>,
+    /// Length of the curve (m); a radian of rotation counts as a metre.
+    length: f64,
     /// Rows at which the direction jumps.
     corners: Vec<usize>,
     /// Time of each row of a timed path (s); `None` for given points, which messages number instead.
@@ -76,6 +78,7 @@ impl TipPath {
         let turned = points.iter().map(|i| waypoints.rotation(*i)).collect();
         let tip_path = Self {
             shares: kept.iter().map(|i| share(*i)).collect(),
+            length: way,
             corners: vec![],
             pointing: None,
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
@@ -133,6 +136,11 @@ impl TipPath {
     /// End points of the straight segments (m).
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
+    }
+
+    /// Length of the curve (m); a radian of rotation counts as a metre.
+    pub fn length(&self) -> f64 {
+        self.length
     }
 
     /// Longest edge of the bounding box (m); for a rotation in place, its angle (rad).
