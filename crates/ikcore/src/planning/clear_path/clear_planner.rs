@@ -4,7 +4,7 @@ use super::dead_end::Layers;
 use super::passage::Passage;
 use super::postures::{LayerSampling, postures};
 use super::price::Price;
-use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest_turned};
+use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
 use super::smoothing::Smoothing;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
@@ -24,6 +24,10 @@ use crate::solver::{Monitor, Status, Stopwatch};
 /// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
 const SPACING: f64 = 0.03;
 const INTERVALS: [f64; 2] = [50.0, 400.0];
+
+/// A path with at least this many segments gets layers at its points alone: between them it is straight, and the curve that
+/// the points sample is not.
+const SEGMENTS: usize = 25;
 
 /// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
 const DENSITIES: [usize; 2] = [32, 128];
@@ -67,7 +71,7 @@ pub(in crate::planning) fn along_path(
         space,
         price: Price::new(&problem),
         passage: Passage::new(&problem, Some(space)),
-        shares: tip_path.knots((tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize),
+        shares: tip_path.knots(intervals(tip_path)),
         postures: vec![],
         accuracy: problem.accuracy,
         stopwatch,
@@ -76,6 +80,13 @@ pub(in crate::planning) fn along_path(
         Ok(sequence) => planner.certified(sequence, monitor),
         Err(dead_end) => planner.least_deep(dead_end),
     }
+}
+
+/// The number of intervals between layers.
+fn intervals(tip_path: &TipPath) -> usize {
+    let wanted = (tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize;
+    let segments = tip_path.positions().len() - 1;
+    if segments < SEGMENTS { wanted } else { wanted.min(segments) }
 }
 
 struct ClearPlanner<'p> {
@@ -119,7 +130,7 @@ impl ClearPlanner<'_> {
             Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
         };
         let layers = self.shares.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
-        cheapest_turned(&layers, &self.shares, &self.price, &mut self.passage)
+        cheapest(&layers, &self.shares, &self.price, &mut self.passage)
     }
 
     /// The plan of the first motion without a fault; of the last one tried, where none is.
@@ -225,7 +236,7 @@ impl ClearPlanner<'_> {
         };
         let layers = self.postures.iter().map(candidates).collect::<Result<Vec<_>>>()?;
         let mut anywhere = Passage::new(self.problem, None);
-        let sequence = match cheapest_turned(&layers, &self.shares, &self.price, &mut anywhere)? {
+        let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
             Ok(sequence) => sequence,
             Err(Unreached(layer)) => return Err(self.out_of_reach(layer)?),
         };

@@ -32,11 +32,12 @@ pub(super) struct Unreached(pub usize);
 /// A sequence, or where it would break off.
 pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
 
-/// [`cheapest`], by whatever whole turns the joints have where the start is free.
+/// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path. Where the start is
+/// free, the joints begin at whatever whole turns keep them inside their limits.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
-pub(super) fn cheapest_turned(
+pub(super) fn cheapest(
     layers: &[Vec<LayerPosture>],
     shares: &[f64],
     price: &Price,
@@ -44,26 +45,28 @@ pub(super) fn cheapest_turned(
 ) -> Result<FoundSequence> {
     if passage.problem.options.start.is_none() {
         passage.open_turns();
-        let found = cheapest(layers, shares, price, passage)?;
+        let reached = reached(layers, shares, price, passage);
         passage.close_turns();
-        let Ok(mut sequence) = found else { return Ok(found) };
-        if passage.shift_inside(&mut sequence) {
+        let reached = match reached? {
+            Ok(reached) => reached,
+            Err(unreached) => return Ok(Err(unreached)),
+        };
+        let mut ends = ends_by_cost(&reached).map(|end| traced(&reached, end));
+        if let Some(sequence) = ends.find_map(|mut sequence| passage.shift_inside(&mut sequence).then_some(sequence)) {
             return Ok(Ok(sequence));
         }
     }
-    cheapest(layers, shares, price, passage)
+    let reached = reached(layers, shares, price, passage)?;
+    Ok(reached.map(|reached| ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
 }
 
-/// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path.
-///
-/// # Errors
-/// [`Error::Interrupted`](crate::Error::Interrupted).
-fn cheapest(
+/// The postures that sequences reach, layer by layer.
+fn reached(
     layers: &[Vec<LayerPosture>],
     shares: &[f64],
     price: &Price,
     passage: &mut Passage<'_>,
-) -> Result<FoundSequence> {
+) -> Result<std::result::Result<Vec<Vec<Reached>>, Unreached>> {
     let first = |candidate: &LayerPosture| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
     let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(first).collect()];
     for i in 1..layers.len() {
@@ -76,7 +79,7 @@ fn cheapest(
         }
         reached.push(next);
     }
-    Ok(Ok(traced(&reached)))
+    Ok(Ok(reached))
 }
 
 /// Steps from one layer to the next.
@@ -110,10 +113,16 @@ impl Step<'_, '_> {
     }
 }
 
-/// The sequence that ends at the cheapest posture of the last layer.
-fn traced(reached: &[Vec<Reached>]) -> Vec<Point> {
-    let Some(last) = reached.last() else { return vec![] };
-    let mut at = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost)).unwrap_or(0);
+/// The postures of the last layer, the cheapest first.
+fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
+    let last = reached.last().map_or(&[][..], |last| last);
+    let mut ends: Vec<usize> = (0..last.len()).collect();
+    ends.sort_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost));
+    ends.into_iter()
+}
+
+/// The sequence that leads to a posture of the last layer.
+fn traced(reached: &[Vec<Reached>], mut at: usize) -> Vec<Point> {
     let mut postures: Vec<Point> = reached
         .iter()
         .rev()

@@ -7,10 +7,10 @@ use crate::interrupt::checkpoint;
 use crate::objective::Point;
 
 /// Passes over the sequence, from long stretches to short ones.
-const PASSES: usize = 4;
+const PASSES: usize = 8;
 
 /// A stretch is replaced if that lowers its cost by more than this fraction.
-const GAIN: f64 = 1e-4;
+const GAIN: f64 = 1e-5;
 
 /// A sequence of postures at these shares of the path.
 pub(super) struct Smoothing<'s, 'a> {
