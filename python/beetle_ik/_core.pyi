@@ -2680,6 +2680,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
+    self_collision: bool | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
@@ -2696,9 +2697,9 @@ def plan_point_to_point(
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
-        obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
-            either.
+        obstacles: a `Scene` or a list of obstacles that the robot must not touch.
         margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where the robot has bodies.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2797,9 +2798,13 @@ def plan_along_path(
     path: Path | _Pose,
     *,
     start_q: ArrayLike | None = None,
+    task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] | TPBSO = "timed",
     objective: Literal["time", "joint_travel"] = "time",
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
     accuracy: float | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
@@ -2812,10 +2817,15 @@ def plan_along_path(
         robot: the arm.
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
+        task: which part of the poses matters: `tasks.Pose`, `Position` or `Pointing`, each with a tool if need be. The planner
+            uses what is free. None: all of it.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
+        obstacles: a `Scene` or a list of obstacles to keep clear of, with "timed".
+        margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
             decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
             the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
@@ -2826,10 +2836,13 @@ def plan_along_path(
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
-        A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
+        A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With obstacles
+        a plan with success is certified to keep the margin at every instant; if none is found, the status is IN_COLLISION, and
+        the message names the place on the path, the two bodies and the depth.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
+        InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
+            a robot without bodies.
         LimitError: limits that contradict each other.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
@@ -2897,6 +2910,9 @@ class Plan:
     def clearance(self) -> float:
         """Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles."""
     @property
+    def nearest(self) -> Nearest | None:
+        """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
+    @property
     def violations(self) -> list[Violation]:
         """The bounds that the trajectory exceeds, a list of `Violation`; empty on success."""
     @property
@@ -2927,8 +2943,8 @@ class Plan:
 
         Raises:
             TypeError: limits that are no `Limits`.
-            InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
-                acceleration jumps.
+            InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
+                acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
 

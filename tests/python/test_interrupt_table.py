@@ -269,3 +269,17 @@ def test_a_long_call_looks_for_signals(name: str, tmp_path: Path, monkeypatch: p
     call = LONG[name]()
     with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
         call()
+
+
+@pytest.mark.parametrize("task", [None, bik.tasks.Pointing()], ids=["pose", "pointing"])
+def test_a_plan_without_a_clear_posture_looks_for_signals(task: bik.tasks.Task | None) -> None:
+    with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
+        bik.plan_along_path(CAPSULES, ORIENTED, task=task, limits=FAST, obstacles=[], margin=1.0)
+
+
+def test_a_search_for_a_clear_solution_looks_for_signals() -> None:
+    rng = np.random.default_rng(0)
+    boxes = [bik.obstacles.Box(rng.uniform(-0.8, 0.8, 3), rng.uniform(0.05, 0.2, 3)) for _ in range(1000)]
+    target = CAPSULES.fk([0.1, 0.5, 0.1, -1.4, 0.1, 1.0, 0.3])
+    with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
+        bik.solve(CAPSULES, target, task=bik.tasks.Pointing(), obstacles=boxes, margin=0.3, stop=ENDLESS)

@@ -4,6 +4,7 @@
 
 mod common;
 
+mod along_path_clear;
 mod along_path_timed;
 mod apps_paper;
 mod batch;

@@ -8,7 +8,7 @@ use super::kept_distance::KeptDistance;
 use super::near_rows::NearRows;
 use super::scene::Scene;
 use crate::robot::Robot;
-use crate::shape::{Geometry, Shape};
+use crate::shape::Shape;
 
 /// A contact that no motion of the arm alone ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,10 +46,19 @@ impl<'a> ClearSpace<'a> {
         self.scene.is_clear(q, self.margin)
     }
 
+    /// Whether everything keeps the margin and `more` >= 0 (m) at `q` (n,).
+    pub(crate) fn keeps(&self, q: &[f64], more: f64) -> bool {
+        self.scene.is_clear(q, self.margin + more)
+    }
+
+    /// The robot and what is around it.
+    pub(crate) fn scene(&self) -> &Scene<'a> {
+        &self.scene
+    }
+
     /// The first obstacle that is a mesh which is not closed.
     pub fn first_open_mesh(&self) -> Option<usize> {
-        let is_open = |shape: &Shape| matches!(shape.geometry(), Geometry::Mesh(mesh) if !mesh.is_closed());
-        self.scene.others.obstacles.iter().position(is_open)
+        self.scene.others.obstacles.iter().position(Shape::is_open_mesh)
     }
 
     /// The nearest two bodies at `q` (n,); `None` if nothing can touch.

@@ -1,5 +1,7 @@
 //! What a caller wants configurations to keep clear of.
 
+use serde::{Deserialize, Serialize};
+
 use super::clear_space::ClearSpace;
 use super::scene::Scene;
 use crate::error::{Error, Result};
@@ -10,7 +12,7 @@ use crate::shape::Shape;
 const DEFAULT_MARGIN: f64 = 1e-3;
 
 /// Obstacles, and the distance to keep. By default nothing is checked.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Surroundings {
     /// The obstacles; an empty list checks the links against each other alone. `None`: no obstacles.
     pub obstacles: Option<Vec<Shape>>,
@@ -21,6 +23,11 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
+    /// The first obstacle that is a mesh which is not closed.
+    pub(crate) fn first_open_mesh(&self) -> Option<usize> {
+        self.obstacles.as_ref()?.iter().position(Shape::is_open_mesh)
+    }
+
     /// The space that they leave to `robot`; `None` if nothing is to be checked.
     ///
     /// # Errors

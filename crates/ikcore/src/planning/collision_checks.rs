@@ -1,45 +1,50 @@
 //! Shared by planners with obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
 use super::planar_arm::PlanarArm;
+use super::planner_options::PointToPointOptions;
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::obstacle::{Contact, JointMotion, Scene};
+use crate::obstacle::{Contact, JointMotion, NearestContact, Scene};
 use crate::robot::Robot;
-use crate::shape::Shape;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
 /// Distance added to the margin at end configurations and on straight lines (m), so that their timed motion can be
 /// certified too.
 pub(super) const RESERVE: f64 = 5e-5;
 
-/// Whether `robot` can collide: with an obstacle, or with itself if its shape is known.
-pub(super) fn can_collide(robot: &Robot, obstacles: &[Shape]) -> bool {
+/// Whether `robot` can collide: with an obstacle, or with itself where that is asked for, or by default if its shape is
+/// known.
+pub(super) fn can_collide(robot: &Robot, options: &PointToPointOptions) -> bool {
     let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
-    !obstacles.is_empty() || shape_known
+    !options.obstacles.is_empty() || options.self_collision.unwrap_or(shape_known)
 }
 
 /// `robot` with a line for every link if it is a planar arm without a shape, as in Wang et al. (2019); `None` for any
-/// other robot.
+/// other robot, or if links must not touch each other.
 ///
 /// # Errors
 /// As [`Robot::with_capsules_along_links`].
-pub(super) fn as_lines(robot: &Robot) -> Result<Option<Robot>> {
+pub(super) fn as_lines(robot: &Robot, options: &PointToPointOptions) -> Result<Option<Robot>> {
     let no_shape = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    let may_cross = options.self_collision != Some(true);
     let is_planar = || PlanarArm::of(robot).is_some();
-    if no_shape && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
+    if no_shape && may_cross && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
 }
 
-/// The scene of `robot`, or of its `lines` if it has no shape, among `obstacles`. Lines may cross each other: they have
+/// The scene of `robot`, or of its `lines` if it has no shape, among the obstacles. Lines may cross each other: they have
 /// no thickness.
 ///
 /// # Errors
 /// As [`Scene::new`].
-pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &'a [Shape]) -> Result<Scene<'a>> {
-    match lines {
-        Some(lines) => Ok(Scene::new(lines, obstacles)?.without_self_collision()),
-        None => Scene::new(robot, obstacles),
-    }
+pub(super) fn scene<'a>(
+    robot: &'a Robot,
+    lines: Option<&'a Robot>,
+    options: &'a PointToPointOptions,
+) -> Result<Scene<'a>> {
+    let scene = Scene::new(lines.unwrap_or(robot), &options.obstacles)?;
+    let may_cross = lines.is_some() || options.self_collision == Some(false);
+    Ok(if may_cross { scene.without_self_collision() } else { scene })
 }
 
 /// Checks that a configuration keeps the margin; `what` names it in the error.
@@ -60,6 +65,24 @@ pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64
         }
         _ => Ok(()),
     }
+}
+
+/// The nearest two bodies on a motion at the time `at` (s).
+///
+/// # Errors
+/// None in practice: the joints are those of the robot.
+pub(super) fn nearest_at(scene: &Scene, motion: &Trajectory, at: f64) -> Result<Option<NearestContact>> {
+    scene.nearest_contact(&configuration_at(motion, at)?)
+}
+
+/// The configuration of a motion at the time `t` (s).
+///
+/// # Errors
+/// [`Error::NotFinite`] for a time that is not finite.
+pub(super) fn configuration_at(motion: &Trajectory, t: f64) -> Result<Vec<f64>> {
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; motion.joints().len()]);
+    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    Ok(q)
 }
 
 /// Returns the violation for a distance below the margin.
@@ -111,6 +134,7 @@ fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
 mod tests {
     use super::*;
     use crate::rng;
+    use crate::shape::Shape;
     use crate::trajectory::polynomial;
 
     #[test]
@@ -138,10 +162,20 @@ mod tests {
     #[test]
     fn an_arm_without_obstacles_collides_only_with_a_known_shape() {
         let bare = Robot::planar(&[1.0, 1.0]).unwrap();
-        let ball = [Shape::sphere([3.0, 0.0, 0.0], 0.1).unwrap()];
-        assert!(!can_collide(&bare, &[]) && can_collide(&bare, &ball));
-        assert!(can_collide(&bare.with_capsules_along_links(0.1).unwrap(), &[]));
-        assert!(as_lines(&bare).unwrap().is_some());
-        assert!(as_lines(&Robot::named("panda").unwrap()).unwrap().is_none());
+        let thick = bare.with_capsules_along_links(0.1).unwrap();
+        let ball = Shape::sphere([3.0, 0.0, 0.0], 0.1).unwrap();
+        let with = |obstacles: &[&Shape], self_collision| PointToPointOptions {
+            obstacles: obstacles.iter().map(|shape| (*shape).clone()).collect(),
+            self_collision,
+            ..PointToPointOptions::default()
+        };
+        let (empty, obstructed) = (with(&[], None), with(&[&ball], None));
+        assert!(!can_collide(&bare, &empty) && can_collide(&bare, &obstructed) && can_collide(&thick, &empty));
+        assert!(can_collide(&bare, &with(&[], Some(true))) && !can_collide(&thick, &with(&[], Some(false))));
+        assert!(can_collide(&thick, &with(&[&ball], Some(false))));
+        assert!(
+            as_lines(&bare, &empty).unwrap().is_some() && as_lines(&bare, &with(&[], Some(true))).unwrap().is_none()
+        );
+        assert!(as_lines(&Robot::named("panda").unwrap(), &empty).unwrap().is_none());
     }
 }

@@ -2,10 +2,10 @@
 
 use super::tip_path::TipPath;
 use super::violation::Violation;
-use crate::math::MAX_DOF;
 use crate::math::so3::{norm, rotation_between};
+use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
-use crate::task::Target;
+use crate::task::{Target, Tolerance};
 
 /// Samples between two knots; the maximum is then refined between the neighbours of the best sample.
 const SAMPLES: usize = 10;
@@ -85,10 +85,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let target = self.tip_path.target(share);
         let (tip, due) = (self.robot.tip_position(q), target.position().unwrap_or_default());
         let distance = norm(&std::array::from_fn(|k| tip[k] - due[k]));
-        match target {
-            Target::Pose(due) => distance.max(norm(&rotation_between(&due, &self.robot.tip(q)))),
-            _ => distance,
-        }
+        distance.max(angle_between(&target, || self.robot.tip(q)))
     }
 
     /// The largest [`at`](Self::at) at `samples` parameters between two path parameters.
@@ -109,11 +106,23 @@ impl<C: Configurations> TipDeviation<'_, C> {
     }
 
     fn angle(&self, share: f64) -> f64 {
-        let Target::Pose(wanted) = self.tip_path.target(share) else { return 0.0 };
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        (self.configurations)(share, q);
-        norm(&rotation_between(&wanted, &self.robot.tip(q)))
+        angle_between(&self.tip_path.target(share), || {
+            (self.configurations)(share, q);
+            self.robot.tip(q)
+        })
+    }
+}
+
+/// Angle (rad) of the tip from a target's orientation, or from the direction of its axis; 0 for a position.
+fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
+    match target {
+        Target::Pose(due) => norm(&rotation_between(due, &tip())),
+        Target::Pointing { .. } => {
+            target.assess_tip(&tip(), &Tolerance::default().into()).error.rotation.map_or(0.0, f64::sqrt)
+        }
+        Target::Position(_) | Target::Orientation(_) => 0.0,
     }
 }
 

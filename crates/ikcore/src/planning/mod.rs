@@ -15,6 +15,7 @@
 //! | `motion_limits` | constant limits of each joint, and their violations by a trajectory |
 //! | `minmax` | between two ends: the nearest configurations, joined directly or around obstacles |
 //! | `timed` | along a path: redundancy and fastest timing in one search |
+//! | `clear_path` | the same among obstacles |
 //! | `time_optimal` | the fastest timing of a joint path |
 //! | `tpbso` | both problems as published by Wang et al. (2019) |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
@@ -24,6 +25,7 @@
 //! | `collision_checks` | margins, collision errors and certifiable motions, shared by planners with obstacles |
 
 mod along_path;
+mod clear_path;
 mod collision_checks;
 mod cost;
 mod deadline;

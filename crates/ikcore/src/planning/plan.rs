@@ -10,6 +10,7 @@ use super::planar_arm::Orientations;
 use super::time_optimal::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
+use crate::obstacle::{NearestContact, Surroundings};
 use crate::solver::Status;
 use crate::stored::from_bytes;
 use crate::trajectory::Trajectory;
@@ -28,6 +29,12 @@ pub struct Plan {
     pub history: Vec<Improvement>,
     /// Smallest distance (m) between robot and obstacles on the trajectory; `None` without obstacles.
     pub clearance: Option<f64>,
+    /// The nearest two bodies, where on the trajectory they are nearest; `None` without obstacles.
+    pub nearest: Option<NearestContact>,
+    /// Why no clear motion was found along a path, if that is so.
+    pub obstruction: Option<String>,
+    /// What a motion along a path keeps clear of, if anything.
+    pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
     /// Positions of the path (m), joined by straight lines; `None` for point-to-point plans.
@@ -70,6 +77,10 @@ pub struct Improvement {
     pub cost: f64,
 }
 
+/// What to try where the path leads into collision.
+const ADVICE_AMONG_OBSTACLES: &str =
+    "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
+
 /// Number of violations that a message lists.
 const NAMED_IN_MESSAGE: usize = 3;
 
@@ -101,9 +112,12 @@ impl Plan {
 
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
+        if let Some(obstruction) = &self.obstruction {
+            return format!("no clear plan for {obstruction}; {ADVICE_AMONG_OBSTACLES}");
+        }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
-            Status::Solved => format!("planned with {cost}{}", self.peak_in_words()),
+            Status::Solved => format!("planned with {cost}{}{}", self.clearance_in_words(), self.peak_in_words()),
             Status::Interrupted if self.violations.is_empty() => {
                 format!("stopped with {cost}: {}", self.status.advice())
             }
@@ -112,6 +126,19 @@ impl Plan {
                 self.broken(),
                 self.advice()
             ),
+        }
+    }
+
+    /// Of a motion that is certified along its path.
+    fn clearance_in_words(&self) -> String {
+        let Some(surroundings) = &self.surroundings else { return String::new() };
+        let clear = match self.clearance {
+            None => ", with nothing to touch".into(),
+            Some(clearance) => format!(", {} m clear of everything", number(clearance)),
+        };
+        match surroundings.first_open_mesh() {
+            None => clear,
+            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
         }
     }
 

@@ -7,9 +7,11 @@ use super::motion_limits::MotionLimits;
 use super::tpbso::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
+use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::shape::Shape;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
+use crate::task::Task;
 
 /// Methods of point-to-point planning.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -78,10 +80,12 @@ pub struct PointToPointOptions {
     pub method: PointToPointMethod,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// Obstacles to avoid. A robot with capsules also avoids self-collision.
+    /// Obstacles to avoid.
     pub obstacles: Vec<Shape>,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
+    /// Whether links must not touch each other. `None`: where the robot has bodies.
+    pub self_collision: Option<bool>,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
     /// Budget of the search. `None` means the method's own.
@@ -97,6 +101,10 @@ pub struct AlongPathOptions {
     pub method: AlongPathMethod,
     /// Quantity to minimise.
     pub objective: Cost,
+    /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
+    pub task: Option<Task>,
+    /// What the motion keeps clear of. By default nothing is checked.
+    pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,
     /// Limits to keep. `None` means the robot's.

@@ -1,10 +1,12 @@
 //! Other limits for a finished plan: the same path, passed at other times.
 
+use super::collision_checks::{TimedMotion, nearest_at, too_near};
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::time_optimal::{TimingLimits, time_all};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
+use crate::obstacle::Sweep;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::trajectory::Trajectory;
@@ -47,8 +49,29 @@ impl Plan {
         }
         let cost = self.objective.of(robot, &trajectory);
         let mut retimed = Self { trajectory, cost, elapsed: stopwatch.elapsed(), ..self.clone() };
+        retimed.certify(robot, limits.limit_jerk())?;
         retimed.name_peak(&limits);
         Ok(retimed)
+    }
+
+    /// Checks that the motion keeps the margin. `smoothed` for jerk limits, it leaves the path a little.
+    fn certify(&mut self, robot: &Robot, smoothed: bool) -> Result<()> {
+        let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
+        let Some(space) = space else { return Ok(()) };
+        let (scene, margin) = (space.scene(), space.margin());
+        let (motion, whole) = (TimedMotion(&self.trajectory), [0.0, self.trajectory.duration()]);
+        let mut sweep = Sweep::new(scene);
+        if let Err(near) = sweep.check(&motion, whole, margin) {
+            let violation = too_near(&near.contact, margin);
+            let problem =
+                format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
+            return Err(Error::Infeasible { problem });
+        }
+        if smoothed && let Some(near) = sweep.smallest(&motion, whole) {
+            self.nearest = nearest_at(scene, &self.trajectory, near.at)?;
+            self.clearance = Some(near.contact.distance.max(margin));
+        }
+        Ok(())
     }
 }
 

@@ -244,6 +244,11 @@ impl Shape {
         matches!(self.geometry, Geometry::Ellipse { .. })
     }
 
+    /// Whether it is a mesh that is not closed: its inside is not known.
+    pub fn is_open_mesh(&self) -> bool {
+        matches!(&self.geometry, Geometry::Mesh(mesh) if !mesh.is_closed())
+    }
+
     /// Whether it can be a body of a robot: convex and bounded, in space.
     pub fn can_be_carried(&self) -> bool {
         use Geometry::{Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Sphere};

@@ -1,10 +1,10 @@
 //! `plan_along_path`.
 
+use ikcore::obstacle::Surroundings;
 use ikcore::path::Waypoints;
 use ikcore::planning::{self, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 
 use super::plan::PyPlan;
 use super::tpbso::read_method;
@@ -12,10 +12,12 @@ use crate::convert::{array, count, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
+use crate::obstacle::Obstacles;
 use crate::path::PyPath;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
+use crate::task::read_task;
 
 /// Plans a motion that moves the tip along a path.
 ///
@@ -23,10 +25,15 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     robot: the arm.
 ///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
 ///     start_q: joint positions (n,) at the start; None: chosen by the planner.
+///     task: which part of the poses matters: `tasks.Pose`, `Position` or `Pointing`, each with a tool if need be. The planner
+///         uses what is free. None: all of it.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: quantity to minimise, "time" or "joint_travel".
+///     obstacles: a `Scene` or a list of obstacles to keep clear of, with "timed".
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
 ///         decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
 ///         the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
@@ -37,27 +44,35 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With obstacles
+///     a plan with success is certified to keep the margin at every instant; if none is found, the status is IN_COLLISION, and
+///     the message names the place on the path, the two bodies and the depth.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
+///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
+///         a robot without bodies.
 ///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method=None, objective="time", accuracy=None, solver=None,
-                    stop=None, seed=0, progress=None),
-       text_signature = "(robot, path, *, start_q=None, limits=None, method='timed', objective='time', accuracy=None, \
-                         solver=None, stop=None, seed=0, progress=None)")]
+#[pyo3(signature = (robot, path, *, start_q=None, task=None, limits=None, method=None, objective="time", obstacles=None,
+                    margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),
+       text_signature = "(robot, path, *, start_q=None, task=None, limits=None, method='timed', objective='time', \
+                         obstacles=None, margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, \
+                         progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
     py: Python<'_>,
     robot: &Bound<'_, PyRobot>,
     path: &Bound<'_, PyAny>,
     start_q: Option<&Bound<'_, PyAny>>,
+    task: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -67,10 +82,13 @@ pub fn plan_along_path(
     let arm = robot.get().core.clone();
     let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
+    let given = Obstacles::read(py, obstacles)?;
     let options = AlongPathOptions {
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
+        task: read_task(task)?,
+        surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,
         accuracy,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
@@ -79,7 +97,7 @@ pub fn plan_along_path(
     };
     let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
     python_calls::log(py, format!("plan_along_path: {}", plan.message()))?;
-    PyPlan::new(plan, robot, in_force, PyTuple::empty(py).unbind())
+    PyPlan::new(plan, robot, in_force, given.tuple)
 }
 
 /// Reads a `Path`, points (k, 3) or poses (k, 4, 4).

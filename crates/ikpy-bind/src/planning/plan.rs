@@ -11,6 +11,7 @@ use crate::convert::table;
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
+use crate::obstacle::PyNearest;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
@@ -81,6 +82,12 @@ impl PyPlan {
         self.core.clearance.unwrap_or(f64::NAN)
     }
 
+    /// The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles.
+    #[getter]
+    fn nearest(&self) -> Option<PyNearest> {
+        self.core.nearest.clone().map(PyNearest::from)
+    }
+
     /// Largest distance of the tip from the path (m), at its points and between them; NaN for a point-to-point plan.
     #[getter]
     fn accuracy(&self) -> f64 {
@@ -103,8 +110,8 @@ impl PyPlan {
     ///
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
-    ///     InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
-    ///         acceleration jumps.
+    ///     InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
+    ///         acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
     ///     UnsupportedLimit: limits that vary in time.
     fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let robot = self.robot.bind(py);

@@ -28,9 +28,9 @@ use crate::solver::PyStop;
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
 ///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
-///     obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
-///         either.
+///     obstacles: a `Scene` or a list of obstacles that the robot must not touch.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where the robot has bodies.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -45,9 +45,10 @@ use crate::solver::PyStop;
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, limits=None, method=None, objective="time",
-                    obstacles=None, margin=None, stop=None, seed=0, progress=None),
+                    obstacles=None, margin=None, self_collision=None, stop=None, seed=0, progress=None),
        text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, limits=None, method='minmax', \
-                         objective='time', obstacles=None, margin=None, stop=None, seed=0, progress=None)")]
+                         objective='time', obstacles=None, margin=None, self_collision=None, stop=None, seed=0, \
+                         progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -62,6 +63,7 @@ pub fn plan_point_to_point(
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
+    self_collision: Option<bool>,
     stop: Option<&PyStop>,
     seed: i128,
     progress: Option<&Bound<'_, PyAny>>,
@@ -77,6 +79,7 @@ pub fn plan_point_to_point(
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,
         margin,
+        self_collision,
         limits: resolved,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import TPBSO, InvalidInputError, Robot, plan_along_path
+from ... import TPBSO, InvalidInputError, Robot, Scene, plan_along_path
 from ... import Path as ReferencePath
 from ..curves import CurveName, make_curve, read_points
 from ..options import (
@@ -14,7 +14,10 @@ from ..options import (
     AsJson,
     BaseLink,
     Jerk,
+    LinkRadius,
+    Margin,
     RobotName,
+    SceneFile,
     Seed,
     StartQ,
     TipLink,
@@ -53,6 +56,9 @@ def along_path(
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
     accuracy: Annotated[float | None, typer.Option(help="Largest distance of the tip from the path in m.")] = None,
     start_q: StartQ = None,
+    scene: SceneFile = None,
+    margin: Margin = None,
+    link_radius: LinkRadius = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
@@ -67,15 +73,18 @@ def along_path(
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion that moves the tip along a path."""
-    arm = load_robot(robot, urdf, base, tip)
+    arm = load_robot(robot, urdf, base, tip, link_radius)
     path = _path(arm, curve, points)
     chosen = _method(method, solver) | options(velocity, acceleration, jerk, max_evaluations)
+    obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_along_path(
             arm,
             path,
             start_q=None if start_q is None else numbers("--start-q", start_q),
             objective=objective.value,
+            obstacles=obstacles,
+            margin=margin,
             accuracy=accuracy,
             seed=seed,
             progress=not as_json,

@@ -10,7 +10,9 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{Scene, Sweep, kept_margin};
-use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
+use crate::planning::collision_checks::{
+    RESERVE, TimedMotion, as_lines, configuration_at, nearest_at, refuse_collision, scene, too_near,
+};
 use crate::planning::cost::tip_travel_along;
 use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
@@ -33,8 +35,8 @@ const NARROWINGS: usize = 12;
 /// Plans for checked ends and options.
 pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
     let margin = kept_margin(options.margin)?;
-    let lines = as_lines(search.robot)?;
-    let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
+    let lines = as_lines(search.robot, options)?;
+    let scene = scene(search.robot, lines.as_ref(), options)?;
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
@@ -201,9 +203,7 @@ fn timed(trees: &mut TreeSearch, path: &JointPolyline, limits: &MotionLimits, ma
 
 /// The inner point of the path that the motion is nearest to at time `t` (s).
 fn nearest_corner(path: &JointPolyline, motion: &Trajectory, t: f64) -> Result<usize> {
-    let n = motion.joints().len();
-    let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    let q = configuration_at(motion, t)?;
     let distance = |i: usize| squared_distance(&path.0[i], &q);
     let inner = 1..path.0.len() - 1;
     let nearest = inner.min_by(|i, k| distance(*i).total_cmp(&distance(*k)));
@@ -225,6 +225,7 @@ fn finish(
 ) -> Result<Plan> {
     let smallest = Sweep::new(scene).smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]);
     let mut violations = search.limits.violations(&trajectory);
+    let nearest = smallest.as_ref().map_or(Ok(None), |near| nearest_at(scene, &trajectory, near.at))?;
     let clearance = smallest.map(|near| {
         let distance = near.contact.distance;
         if ended == Status::Solved {
@@ -251,6 +252,9 @@ fn finish(
         cost,
         history,
         clearance,
+        nearest,
+        obstruction: None,
+        surroundings: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

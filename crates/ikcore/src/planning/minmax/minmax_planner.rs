@@ -36,7 +36,7 @@ pub(crate) fn point_to_point(
             }
         };
     }
-    if can_collide(robot, &options.obstacles) {
+    if can_collide(robot, options) {
         among_obstacles::plan(&mut search, options, monitor)
     } else {
         without_obstacles(&mut search, options.objective, monitor)

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{Sweep, kept_margin};
-use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, scene};
+use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, nearest_at, scene};
 use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -40,9 +40,9 @@ pub(super) fn begin(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let margin = kept_margin(options.margin)?;
-    let collides = can_collide(search.robot, &options.obstacles);
-    let lines = if collides { as_lines(search.robot)? } else { None };
-    let scene = collides.then(|| scene(search.robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let collides = can_collide(search.robot, options);
+    let lines = if collides { as_lines(search.robot, options)? } else { None };
+    let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
     let mut sweep = scene.as_ref().map(Sweep::new);
     let mut is_free = |motion: &Trajectory| {
         let check = |sweep: &mut Sweep| sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
@@ -56,13 +56,20 @@ pub(super) fn begin(
     if let Some(trajectory) = motions.into_iter().find(&mut is_free) {
         let evaluations = search.evaluations;
         let cost = options.objective.of(search.robot, &trajectory);
-        let nearest =
+        let closest =
             sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]));
+        let nearest = match (&scene, &closest) {
+            (Some(scene), Some(near)) => nearest_at(scene, &trajectory, near.at)?,
+            _ => None,
+        };
         return Ok(Beginning::Whole(Box::new(Plan {
             objective: options.objective,
             cost,
             history: vec![Improvement { evaluations, cost }],
-            clearance: nearest.map(|near| near.contact.distance.max(margin)),
+            clearance: closest.map(|near| near.contact.distance.max(margin)),
+            nearest,
+            obstruction: None,
+            surroundings: None,
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -121,16 +128,19 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 
 /// A plan from rest, preceded by the stop that leads to it.
 pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
-    let collides = can_collide(robot, &options.obstacles);
-    let lines = if collides { as_lines(robot)? } else { None };
-    let scene = collides.then(|| scene(robot, lines.as_ref(), &options.obstacles)).transpose()?;
-    let nearest = scene.and_then(|scene| Sweep::new(&scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
-    let clearance = match (rest.clearance, nearest) {
-        (Some(clearance), Some(near)) => Some(clearance.min(near.contact.distance)),
-        (clearance, _) => clearance,
+    let collides = can_collide(robot, options);
+    let lines = if collides { as_lines(robot, options)? } else { None };
+    let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
+    let closest =
+        scene.as_ref().and_then(|scene| Sweep::new(scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
+    let (clearance, nearest) = match (rest.clearance, &scene, closest) {
+        (Some(clearance), Some(scene), Some(near)) if near.contact.distance < clearance => {
+            (Some(near.contact.distance), nearest_at(scene, &stop, near.at)?)
+        }
+        (clearance, ..) => (clearance, rest.nearest),
     };
     let trajectory = stop.then(&rest.trajectory, 0.0)?;
     let cost = rest.objective.of(robot, &trajectory);
     let history = vec![Improvement { evaluations: rest.evaluations, cost }];
-    Ok(Plan { trajectory, cost, history, clearance, ..rest })
+    Ok(Plan { trajectory, cost, history, clearance, nearest, ..rest })
 }

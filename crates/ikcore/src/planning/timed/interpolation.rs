@@ -12,7 +12,7 @@ use crate::robot::Robot;
 
 /// Joint positions along a path.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct JointWaypoints {
+pub(in crate::planning) struct JointWaypoints {
     /// Path parameters, from 0 to 1.
     pub knots: Vec<f64>,
     /// Joint positions at each knot, in row-major order.
@@ -21,7 +21,7 @@ pub(super) struct JointWaypoints {
 
 /// Behaviour of the joints at the corners of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Corners {
+pub(in crate::planning) enum Corners {
     /// One spline passes through them: it rounds each corner, less with denser knots.
     Passed,
     /// A spline ends at each corner and the next one begins: the arm stops there, and follows the path as closely as
@@ -41,7 +41,7 @@ impl Corners {
 
 /// Splines of a robot's joints along a path.
 #[derive(Debug)]
-pub(super) struct Interpolation<'a> {
+pub(in crate::planning) struct Interpolation<'a> {
     /// The robot.
     pub robot: &'a Robot,
     /// The path.

@@ -7,6 +7,7 @@
 //! | file | what |
 //! |---|---|
 //! | `timed_planner` | the planner |
+//! | `path_problem` | the path, what the motion has to keep, and the motion through given configurations |
 //! | `redundant_motion` | configurations along the path, and their free offsets |
 //! | `null_space` | joint motions that leave the tip in place |
 //! | `projection` | the nearest configuration that reaches a target |
@@ -16,10 +17,17 @@
 
 mod interpolation;
 mod null_space;
+mod path_problem;
 mod projection;
 mod redundant_motion;
 mod timed_cost;
 mod timed_planner;
 mod unreachable;
 
-pub(super) use timed_planner::along_path;
+pub(super) use interpolation::{Interpolation, JointWaypoints};
+pub(super) use path_problem::{PathMotion, PathProblem};
+pub(super) use projection::project;
+pub(super) use redundant_motion::RedundantMotion;
+pub(super) use timed_cost::TimedCost;
+pub(super) use timed_planner::{along_path, search};
+pub(super) use unreachable::unreachable_points;

@@ -17,7 +17,7 @@ const MET: f64 = 1e-16;
 const DAMPING: f64 = 0.05;
 
 /// Moves `q` onto the target, to a nearby solution. Returns the remaining error (m, rad); 0 if the target is met.
-pub(super) fn project(
+pub(in crate::planning) fn project(
     robot: &Robot,
     target: &Target,
     bounds: &Bounds,

@@ -36,7 +36,7 @@ const STARTS: usize = 16;
 const JUMP: f64 = 1.5;
 
 /// The arm on its path.
-pub(super) struct RedundantMotion<'a> {
+pub(in crate::planning) struct RedundantMotion<'a> {
     robot: &'a Robot,
     tip_path: &'a TipPath,
     bounds: Bounds,
@@ -59,19 +59,8 @@ impl<'a> RedundantMotion<'a> {
     /// [`Error::Unreachable`] names the points that no configuration reaches, or else the first place that no motion from
     /// any start reached.
     pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
-        let joints = robot.joints();
         let knots = tip_path.knots(INTERVALS);
-        let mut motion = Self {
-            robot,
-            tip_path,
-            bounds: Bounds::from_ranges(joints.iter().map(|joint| (joint.lower, joint.upper))),
-            targets: knots.iter().map(|knot| tip_path.target(*knot)).collect(),
-            weights: node_weights(&knots),
-            nominal: JointWaypoints { knots, rows: vec![] },
-            bases: vec![],
-            starts_as_given: start.is_some(),
-            linearization: Linearization::default(),
-        };
+        let mut motion = Self::unplaced(robot, tip_path, JointWaypoints { knots, rows: vec![] }, start.is_some());
         motion.nominal.rows = match start {
             Some(q) => match motion.follow(q) {
                 Ok(nominal) => nominal,
@@ -81,6 +70,32 @@ impl<'a> RedundantMotion<'a> {
         };
         motion.bases = motion.self_motions();
         Ok(motion)
+    }
+
+    /// The arm on `path`, with this nominal motion.
+    pub(in crate::planning) fn around(
+        robot: &'a Robot,
+        tip_path: &'a TipPath,
+        nominal: JointWaypoints,
+        starts_as_given: bool,
+    ) -> Self {
+        let mut motion = Self::unplaced(robot, tip_path, nominal, starts_as_given);
+        motion.bases = motion.self_motions();
+        motion
+    }
+
+    fn unplaced(robot: &'a Robot, tip_path: &'a TipPath, nominal: JointWaypoints, starts_as_given: bool) -> Self {
+        Self {
+            robot,
+            tip_path,
+            bounds: Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))),
+            targets: nominal.knots.iter().map(|knot| tip_path.target(*knot)).collect(),
+            weights: node_weights(&nominal.knots),
+            nominal,
+            bases: vec![],
+            starts_as_given,
+            linearization: Linearization::default(),
+        }
     }
 
     /// The nominal motion.

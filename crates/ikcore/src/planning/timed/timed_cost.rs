@@ -3,30 +3,28 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::interpolation::{Interpolation, JointWaypoints};
+use super::path_problem::PathProblem;
 use super::redundant_motion::{NODES, RedundantMotion, travel};
 use crate::error::Result;
 use crate::objective::{Bounds, Objective, Score};
+use crate::obstacle::ClearSpace;
 use crate::planning::deviation::TipDeviation;
 use crate::planning::time_optimal::coarse_duration;
-use crate::planning::{Cost, JointPath, MotionLimits, TimingLimits};
+use crate::planning::{Cost, JointPath};
 
 /// The duration, or the joint travel, of the motion along a path, as a function of the offsets along the self-motion at
 /// its nodes.
-pub(super) struct TimedCost<'a> {
+pub(in crate::planning) struct TimedCost<'a> {
+    /// The path, and what the motion has to keep.
+    pub problem: &'a PathProblem<'a>,
     /// The configurations to choose from.
     pub motion: RedundantMotion<'a>,
     /// The splines through the chosen configurations.
     pub interpolation: Interpolation<'a>,
-    /// Limits that the motion keeps.
-    pub limits: &'a MotionLimits,
-    /// Limits of the timing.
-    pub timing_limits: &'a TimingLimits,
-    /// Quantity to minimise.
-    pub objective: Cost,
-    /// Allowed deviation of the tip from the path (m, rad).
-    pub accuracy: f64,
+    /// What the motion keeps clear of, if anything.
+    pub space: Option<&'a ClearSpace<'a>>,
     /// A large value of the cost, which scales penalties.
-    pub scale: f64,
+    scale: f64,
 }
 
 /// Largest offset to either side (rad, m).
@@ -39,10 +37,22 @@ const SEGMENTS_A_PIECE: usize = 2;
 /// may move it by as much.
 const MARGIN: f64 = 5e-4;
 
+/// The search keeps this much more than the margin at the knots (m): between them the motion may come nearer.
+const KEPT_IN_SEARCH: f64 = 1e-3;
+
 /// Cost of a violation as large as its limit, as a multiple of the scale.
 const BROKEN: f64 = 10.0;
 
-impl TimedCost<'_> {
+impl<'a> TimedCost<'a> {
+    pub(in crate::planning) fn new(
+        problem: &'a PathProblem<'a>,
+        motion: RedundantMotion<'a>,
+        interpolation: Interpolation<'a>,
+    ) -> Self {
+        let scale = problem.options.objective.scale(&problem.robot, &problem.limits);
+        Self { problem, motion, interpolation, space: None, scale }
+    }
+
     /// Returns the range of the offsets; `None` if the arm is not redundant.
     pub(super) fn bounds(&self) -> Option<Bounds> {
         let freedom = self.motion.freedom();
@@ -53,7 +63,7 @@ impl TimedCost<'_> {
 
     /// Returns the joint positions for these offsets, at the knots of the nominal motion, and their total distance to
     /// the path (m, rad).
-    pub(super) fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
+    pub(in crate::planning) fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
         let knots = self.motion.nominal().knots.clone();
         let mut waypoints = JointWaypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
         let missed = self.motion.place(z, &mut waypoints.rows);
@@ -67,19 +77,27 @@ impl TimedCost<'_> {
             return Ok(BROKEN * BROKEN * self.scale * (1.0 + missed));
         }
         let path = self.interpolation.path(&waypoints)?;
-        let cost = match self.objective {
+        let cost = match self.problem.options.objective {
             Cost::JointTravel => travel(&waypoints.rows, self.motion.dof()),
-            _ => coarse_duration(&path, self.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
+            _ => coarse_duration(&path, &self.problem.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
         };
-        Ok(cost + BROKEN * self.scale * (self.deviation(&waypoints, &path) + self.outside(&path)))
+        let broken = self.deviation(&waypoints, &path) + self.outside(&path) + self.blocked(&waypoints);
+        Ok(cost + BROKEN * self.scale * broken)
+    }
+
+    /// Returns the share of waypoints that are not clear.
+    fn blocked(&self, waypoints: &JointWaypoints) -> f64 {
+        let Some(space) = self.space else { return 0.0 };
+        let rows = waypoints.rows.chunks_exact(self.motion.dof());
+        rows.filter(|q| !space.keeps(q, KEPT_IN_SEARCH)).count() as f64 / waypoints.knots.len() as f64
     }
 
     /// Returns by how much joints are nearer to their limits than the margin, summed (rad, m).
     fn outside(&self, path: &JointPath) -> f64 {
         let excess = |j: usize| {
-            let (lower, upper) = self.limits.finite_range(j);
+            let (lower, upper) = self.problem.limits.finite_range(j);
             let margin = MARGIN * (upper - lower);
-            path.excess(j, self.limits.lower[j] + margin, self.limits.upper[j] - margin)
+            path.excess(j, self.problem.limits.lower[j] + margin, self.problem.limits.upper[j] - margin)
         };
         (0..self.motion.dof()).map(excess).sum()
     }
@@ -89,7 +107,7 @@ impl TimedCost<'_> {
     fn deviation(&self, waypoints: &JointWaypoints, path: &JointPath) -> f64 {
         let Interpolation { robot, tip_path, .. } = self.interpolation;
         let tip = TipDeviation { robot, tip_path, configurations: |share: f64, q: &mut [f64]| path.position(share, q) };
-        let off = |ends: &[f64]| (tip.bound(0.5 * (ends[0] + ends[1])) / self.accuracy - 1.0).max(0.0);
+        let off = |ends: &[f64]| (tip.bound(0.5 * (ends[0] + ends[1])) / self.problem.accuracy - 1.0).max(0.0);
         waypoints.knots.windows(2).map(off).sum()
     }
 }

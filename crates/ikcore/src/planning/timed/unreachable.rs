@@ -19,7 +19,7 @@ const EVALUATIONS: usize = 5000;
 ///
 /// # Errors
 /// None in practice: the targets are those of a checked path.
-pub(super) fn unreachable_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Result<Option<Error>> {
+pub(in crate::planning) fn unreachable_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Result<Option<Error>> {
     let points = tip_path.numbered_points();
     let stop = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
     let options = SolveOptions { stop, seed, ..SolveOptions::default() };

@@ -5,10 +5,11 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use super::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
 use crate::error::{Error, Result};
+use crate::math::so3::norm;
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
 use crate::path::Waypoints;
-use crate::task::Target;
+use crate::task::{Target, Task, TaskKind};
 use crate::wording::number;
 
 /// The curve that the tip follows: straight segments between positions, with a rotation about a fixed axis on each if
@@ -20,6 +21,10 @@ pub struct TipPath {
     pub(super) shares: Vec<f64>,
     pub(super) positions: Vec<[f64; 3]>,
     rotations: Option<Vec<UnitQuaternion<f64>>>,
+    /// The axis of the tip whose direction matters, of unit length; `None` if the whole orientation does.
+    pointing: Option<[f64; 3]>,
+    /// Length of the curve (m); a radian of rotation counts as a metre.
+    length: f64,
     /// Rows at which the direction jumps.
     corners: Vec<usize>,
     /// Time of each row of a timed path (s); `None` for given points, which messages number instead.
@@ -73,7 +78,9 @@ impl TipPath {
         let turned = points.iter().map(|i| waypoints.rotation(*i)).collect();
         let tip_path = Self {
             shares: kept.iter().map(|i| share(*i)).collect(),
+            length: way,
             corners: vec![],
+            pointing: None,
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
             points: Waypoints::new(place, turned)?,
@@ -81,6 +88,34 @@ impl TipPath {
             positions,
         };
         Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
+    }
+
+    /// The same curve, of whose poses only the part matters that `task` uses.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`] for a path without orientations and a task that needs them; [`Error::Contradiction`] for a
+    /// task that leaves the position free, or has weights, tolerances or a region.
+    pub(in crate::planning) fn for_task(&self, task: &Task) -> Result<Self> {
+        task.validate()?;
+        let refused = |problem: &str| Err(Error::Contradiction { problem: problem.into() });
+        if task.components.is_some() || task.region.is_some() {
+            return refused("along a path the task takes no weights, tolerance or region: accuracy= is its tolerance");
+        }
+        task.target(&self.target(0.0))?;
+        match task.kind {
+            TaskKind::Pose => Ok(self.clone()),
+            TaskKind::Position => {
+                let positions = Waypoints::new(self.positions.clone(), None)?;
+                Self::from_rows(&positions, &(0..self.positions.len()).collect::<Vec<_>>(), self.times.as_deref())
+            }
+            TaskKind::Pointing { axis } => {
+                let length = norm(&axis);
+                Ok(Self { pointing: Some(axis.map(|entry| entry / length)), ..self.clone() })
+            }
+            TaskKind::Orientation => {
+                refused("a path is followed with the position: take task Pose, Position or Pointing")
+            }
+        }
     }
 
     /// The points that the published planner passes: the given ones, or 51 at equal times.
@@ -101,6 +136,11 @@ impl TipPath {
     /// End points of the straight segments (m).
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
+    }
+
+    /// Length of the curve (m); a radian of rotation counts as a metre.
+    pub fn length(&self) -> f64 {
+        self.length
     }
 
     /// Longest edge of the bounding box (m); for a rotation in place, its angle (rad).
@@ -161,14 +201,10 @@ impl TipPath {
     pub fn target(&self, share: f64) -> Target {
         let (row, part) = self.locate(share);
         let position = self.position(share);
-        match &self.rotations {
-            None => Target::Position(position),
-            Some(rows) => {
-                let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
-                let pose = pose::from_parts(position, rotation.to_rotation_matrix().into_inner());
-                Target::Pose(Frame::from(&pose))
-            }
-        }
+        let Some(rows) = &self.rotations else { return Target::Position(position) };
+        let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
+        let frame = Frame::from(&pose::from_parts(position, rotation.to_rotation_matrix().into_inner()));
+        self.pointing.map_or(Target::Pose(frame), |axis| Target::Pointing { frame, axis })
     }
 
     pub(super) fn position(&self, share: f64) -> [f64; 3] {

@@ -1,8 +1,8 @@
 //! Collisions of a motion: tested at samples during the search, certified for the plan.
 
 use crate::error::Result;
-use crate::obstacle::{Scene, Sweep, kept_margin};
-use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
+use crate::obstacle::{NearestContact, Scene, Sweep, kept_margin};
+use crate::planning::collision_checks::{self, TimedMotion, nearest_at, refuse_collision, too_near};
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::planner_options::PointToPointOptions;
 use crate::planning::violation::Violation;
@@ -17,6 +17,16 @@ pub(super) struct CollisionTest<'a> {
     margin: f64,
     /// For a planar arm of lines among ellipses: the exact test of section 4, several times faster than distances.
     flat: Option<(PlanarArm, Vec<UnitDisc>)>,
+}
+
+/// How near a motion comes to anything.
+pub(super) struct Clearance {
+    /// The smallest distance (m).
+    pub distance: f64,
+    /// The two bodies there.
+    pub nearest: Option<NearestContact>,
+    /// The violation, if it is below the margin.
+    pub violation: Option<Violation>,
 }
 
 /// An ellipse, given by the map onto the unit disc.
@@ -40,7 +50,7 @@ impl<'a> CollisionTest<'a> {
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
     pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
         let margin = kept_margin(options.margin)?;
-        let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
+        let scene = collision_checks::scene(robot, lines, options)?;
         let flat = lines.and_then(|lines| {
             let arm = PlanarArm::of(lines)?;
             let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();
@@ -76,10 +86,14 @@ impl<'a> CollisionTest<'a> {
 
     /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
     /// `None` if nothing can touch.
-    pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
+    pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<Clearance> {
         let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
-        Some((distance, (distance < self.margin).then(|| too_near(&near.contact, self.margin))))
+        Some(Clearance {
+            distance,
+            nearest: nearest_at(&self.scene, trajectory, near.at).ok().flatten(),
+            violation: (distance < self.margin).then(|| too_near(&near.contact, self.margin)),
+        })
     }
 }
 

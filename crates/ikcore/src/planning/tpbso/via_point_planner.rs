@@ -1,6 +1,6 @@
 //! The point-to-point planner.
 
-use super::collision_constraint::CollisionTest;
+use super::collision_constraint::{Clearance, CollisionTest};
 use super::end_configurations::EndConfigurations;
 use super::published_settings::{METHOD, no_configuration, search};
 use super::tpbso_options::Tpbso;
@@ -25,8 +25,8 @@ pub(crate) fn point_to_point(
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
-    let can_collide = can_collide(robot, &options.obstacles);
-    let lines = if can_collide { as_lines(robot)? } else { None };
+    let can_collide = can_collide(robot, options);
+    let lines = if can_collide { as_lines(robot, options)? } else { None };
     let collisions = can_collide.then(|| CollisionTest::new(robot, lines.as_ref(), options)).transpose()?;
     let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {
         if let (Endpoint::Configuration(q), Some(collisions)) = (end, &collisions) {
@@ -42,15 +42,20 @@ pub(crate) fn point_to_point(
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("start or end")))?;
     let mut violations = limits.violations(&trajectory);
-    let nearest = collisions.and_then(|collisions| collisions.clearance(&trajectory));
-    let clearance = nearest.map(|(distance, violation)| {
-        violations.extend(violation);
-        distance
-    });
+    let (clearance, nearest) = match collisions.and_then(|collisions| collisions.clearance(&trajectory)) {
+        None => (None, None),
+        Some(Clearance { distance, nearest, violation }) => {
+            violations.extend(violation);
+            (Some(distance), nearest)
+        }
+    };
     let status = found.status(violations.is_empty());
     Ok(Plan {
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
+        nearest,
+        obstruction: None,
+        surroundings: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -1,0 +1,71 @@
+//! Why there is no clear motion along a path.
+
+use super::passage::Passage;
+use super::postures::are_all;
+use super::sequence::Unreached;
+use crate::objective::Point;
+use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact};
+use crate::task::Target;
+
+/// Postures at the points of a path, clear or not.
+pub(super) struct Layers<'a> {
+    pub shares: &'a [f64],
+    pub postures: &'a [Vec<Point>],
+}
+
+impl Layers<'_> {
+    /// Says why no clear motion was found: the first point without a clear posture, or else the one that none leads to.
+    pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: Unreached) -> String {
+        let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.shares[*i], q));
+        match (0..self.shares.len()).find(is_blocked) {
+            Some(layer) => self.blocked(passage, space, layer),
+            None => {
+                let place = passage.problem.tip_path.place(self.shares[dead_end.0]);
+                let count = self.clear(passage, dead_end.0);
+                format!(
+                    "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
+                    self.postures[dead_end.0].len()
+                )
+            }
+        }
+    }
+
+    fn clear(&self, passage: &Passage<'_>, layer: usize) -> usize {
+        self.postures[layer].iter().filter(|q| passage.is_clear(self.shares[layer], q)).count()
+    }
+
+    /// What is in the way at a point without a clear posture.
+    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> String {
+        let tip_path = passage.problem.tip_path;
+        let (share, postures) = (self.shares[layer], &self.postures[layer]);
+        let said = |contact: &Contact| {
+            format!("link '{}' is {} {}", contact.link, contact.depth(space.margin()), contact.other)
+        };
+        let fixes_pose = matches!(tip_path.target(share), Target::Pose(_));
+        let hopeless =
+            postures.first().and_then(|q| if fixes_pose { space.blocked_at_tip(q) } else { space.blocked_anywhere(q) });
+        let what = match hopeless {
+            Some(Blocked::Hand(contact)) => {
+                format!("{} whatever the arm does: the hand itself is in the way", said(&contact))
+            }
+            Some(Blocked::Base(contact)) => format!("{}, and no joint moves it", said(&contact)),
+            None => match least_deep(space, postures) {
+                Some(nearest) => {
+                    let (said, count) = (said(&nearest.contact), postures.len());
+                    match (are_all(passage, share), count) {
+                        (true, 1) => format!("{said} in the only posture inside the limits"),
+                        (true, _) => format!("{said} in the best of {count} postures, and there are no others"),
+                        _ => format!("{said} in the best of {count} postures tried, and others may exist"),
+                    }
+                }
+                None => "no posture was found".into(),
+            },
+        };
+        format!("{}: {what}", tip_path.place(share))
+    }
+}
+
+fn least_deep(space: &ClearSpace<'_>, postures: &[Point]) -> Option<NearestContact> {
+    let nearest = postures.iter().filter_map(|q| space.nearest(q));
+    nearest.max_by(|one, other| one.contact.distance.total_cmp(&other.contact.distance))
+}

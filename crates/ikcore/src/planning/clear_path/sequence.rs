@@ -1,0 +1,137 @@
+//! The cheapest sequence of postures, one in each layer.
+
+use super::passage::Passage;
+use super::price::Price;
+use crate::error::Result;
+use crate::interrupt::checkpoint;
+use crate::objective::Point;
+
+/// Steps to a posture that are checked, the cheapest first, before it counts as out of reach.
+const CHECKED: usize = 12;
+
+/// A candidate posture.
+#[derive(Debug, Clone)]
+pub(super) struct LayerPosture {
+    pub q: Point,
+    /// What it costs beside the steps.
+    pub penalty: f64,
+}
+
+/// A posture that a sequence has reached.
+struct Reached {
+    q: Point,
+    cost: f64,
+    /// Its number in the layer before.
+    before: usize,
+}
+
+/// The layer that no sequence reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Unreached(pub usize);
+
+/// A sequence, or where it would break off.
+pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
+
+/// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path. Where the start is
+/// free, the joints begin at whatever whole turns keep them inside their limits.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted).
+pub(super) fn cheapest(
+    layers: &[Vec<LayerPosture>],
+    shares: &[f64],
+    price: &Price,
+    passage: &mut Passage<'_>,
+) -> Result<FoundSequence> {
+    if passage.problem.options.start.is_none() {
+        passage.open_turns();
+        let reached = reached(layers, shares, price, passage);
+        passage.close_turns();
+        let reached = match reached? {
+            Ok(reached) => reached,
+            Err(unreached) => return Ok(Err(unreached)),
+        };
+        let mut ends = ends_by_cost(&reached).map(|end| traced(&reached, end));
+        if let Some(sequence) = ends.find_map(|mut sequence| passage.shift_inside(&mut sequence).then_some(sequence)) {
+            return Ok(Ok(sequence));
+        }
+    }
+    let reached = reached(layers, shares, price, passage)?;
+    Ok(reached.map(|reached| ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
+}
+
+/// The postures that sequences reach, layer by layer.
+fn reached(
+    layers: &[Vec<LayerPosture>],
+    shares: &[f64],
+    price: &Price,
+    passage: &mut Passage<'_>,
+) -> Result<std::result::Result<Vec<Vec<Reached>>, Unreached>> {
+    let first = |candidate: &LayerPosture| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
+    let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(first).collect()];
+    for i in 1..layers.len() {
+        checkpoint()?;
+        let before = &reached[i - 1];
+        let mut step = Step { shares: [shares[i - 1], shares[i]], price, passage: &mut *passage, costs: vec![] };
+        let next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
+        if next.is_empty() {
+            return Ok(Err(Unreached(if before.is_empty() { i - 1 } else { i })));
+        }
+        reached.push(next);
+    }
+    Ok(Ok(reached))
+}
+
+/// Steps from one layer to the next.
+struct Step<'s, 'a> {
+    shares: [f64; 2],
+    price: &'s Price,
+    passage: &'s mut Passage<'a>,
+    costs: Vec<f64>,
+}
+
+impl Step<'_, '_> {
+    /// The cheapest way to a candidate.
+    fn to(&mut self, candidate: &LayerPosture, before: &[Reached]) -> Option<Reached> {
+        let [from, to] = self.shares;
+        let cost = |reached: &Reached| reached.cost + self.price.of_turned_step(&reached.q, &candidate.q, to - from);
+        self.costs.clear();
+        self.costs.extend(before.iter().map(cost));
+        for _ in 0..CHECKED {
+            let nearest = (0..before.len()).min_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]))?;
+            if self.costs[nearest].is_infinite() {
+                return None;
+            }
+            let begin = &before[nearest].q;
+            let end = self.price.turned_near(begin, &candidate.q);
+            if self.passage.is_within_limits(&end) && self.passage.leads((from, begin), (to, &end)) {
+                return Some(Reached { q: end, cost: self.costs[nearest] + candidate.penalty, before: nearest });
+            }
+            self.costs[nearest] = f64::INFINITY;
+        }
+        None
+    }
+}
+
+/// The postures of the last layer, the cheapest first.
+fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
+    let last = reached.last().map_or(&[][..], |last| last);
+    let mut ends: Vec<usize> = (0..last.len()).collect();
+    ends.sort_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost));
+    ends.into_iter()
+}
+
+/// The sequence that leads to a posture of the last layer.
+fn traced(reached: &[Vec<Reached>], mut at: usize) -> Vec<Point> {
+    let mut postures: Vec<Point> = reached
+        .iter()
+        .rev()
+        .map(|layer| {
+            let Reached { q, before, .. } = &layer[at];
+            at = *before;
+            q.clone()
+        })
+        .collect();
+    postures.reverse();
+    postures
+}

@@ -1,0 +1,125 @@
+//! A path, and what the motion along it has to keep.
+
+use super::interpolation::{Corners, Interpolation, JointWaypoints};
+use crate::error::{Error, Result, require_positive};
+use crate::limits::Limits;
+use crate::planning::time_optimal::{coarse_duration, time_all};
+use crate::planning::tip_path::TipPath;
+use crate::planning::{AlongPathOptions, JointPath, MotionLimits, TimingLimits};
+use crate::robot::Robot;
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+const METHOD: &str = "method=\"timed\"";
+
+/// Allowed distance of the tip from the path, relative to the extent of the path.
+const ACCURACY: f64 = 1e-3;
+
+/// Segments of the timing per piece of the spline when the alternatives at corners are compared.
+const SEGMENTS_A_PIECE: usize = 4;
+
+/// A path with checked options.
+pub(in crate::planning) struct PathProblem<'a> {
+    /// The robot, with the position limits to keep.
+    pub robot: Robot,
+    /// The path of its tip.
+    pub tip_path: &'a TipPath,
+    /// Limits to keep.
+    pub limits: MotionLimits,
+    /// Limits of the timing.
+    pub timing_limits: TimingLimits,
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
+    pub accuracy: f64,
+    /// The options of the call.
+    pub options: &'a AlongPathOptions,
+}
+
+/// A motion along the path.
+pub(in crate::planning) struct PathMotion {
+    /// The configurations that it passes.
+    pub waypoints: JointWaypoints,
+    /// The joint paths between stops.
+    pub stretches: Vec<JointPath>,
+    /// All of them, joined.
+    pub path: JointPath,
+    /// The same in time.
+    pub trajectory: Trajectory,
+}
+
+impl<'a> PathProblem<'a> {
+    /// # Errors
+    /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path.
+    pub(in crate::planning) fn new(
+        robot: &Robot,
+        tip_path: &'a TipPath,
+        options: &'a AlongPathOptions,
+    ) -> Result<Self> {
+        let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+        let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
+        // The accuracy of a sampled curve is limited by the distance of its points.
+        let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent() + tip_path.coarseness());
+        require_positive("accuracy", accuracy)?;
+        if let Some(q) = options.start_within(robot, &limits)? {
+            require_on_path(robot, q, tip_path, accuracy)?;
+        }
+        let robot = limits.applied_to(robot)?;
+        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options })
+    }
+
+    /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
+    /// with the knots that this motion needs.
+    ///
+    /// # Errors
+    /// None in practice: waypoints that differ define a spline.
+    pub(in crate::planning) fn corners_of(
+        &'a self,
+        nominal: &JointWaypoints,
+        accuracy: f64,
+    ) -> Result<(Interpolation<'a>, JointWaypoints)> {
+        let Self { robot, tip_path, timing_limits, .. } = self;
+        let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
+        for corners in Corners::on(tip_path) {
+            let interpolation = Interpolation { robot, tip_path, corners: *corners };
+            let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
+            let path = interpolation.path(&waypoints)?;
+            let duration = coarse_duration(&path, timing_limits, SEGMENTS_A_PIECE * path.pieces())?;
+            if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
+                quickest = Some((duration, interpolation, waypoints));
+            }
+        }
+        let stopping = || (Interpolation { robot, tip_path, corners: Corners::Stopped }, nominal.clone());
+        Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
+    }
+
+    /// The fastest motion through `waypoints`, and through the knots added that its accuracy needs.
+    ///
+    /// # Errors
+    /// None in practice, as for [`corners_of`](Self::corners_of).
+    pub(in crate::planning) fn motion(
+        &self,
+        interpolation: &Interpolation<'_>,
+        waypoints: JointWaypoints,
+        accuracy: f64,
+    ) -> Result<PathMotion> {
+        let waypoints = interpolation.refined(waypoints, accuracy)?;
+        let stretches = interpolation.stretches(&waypoints)?;
+        let path = interpolation.path(&waypoints)?;
+        let trajectory = time_all(&stretches, &self.timing_limits)?;
+        Ok(PathMotion { waypoints, stretches, path, trajectory })
+    }
+}
+
+/// Checks that at `q` the tip is at the start of the path, within `accuracy`.
+fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) -> Result<()> {
+    let distance = tip_path.distance(robot.tip_position(q), 0.0, 0.0);
+    if distance <= accuracy {
+        return Ok(());
+    }
+    let (distance, accuracy) = (number(distance), number(accuracy));
+    let problem = format!("start_q has the tip {distance} m from the path's first point, allowed {accuracy} m");
+    Err(Error::Infeasible { problem })
+}
+
+fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {
+    TimingLimits::new(&limits.cloned().unwrap_or_else(|| Limits::of(robot)), METHOD)
+}
