@@ -109,9 +109,10 @@ impl<'a> PoseFamily<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::redundant::tests::{IIWA14, PANDA, random_angles};
+
     use super::*;
     use crate::closed_form::axis_chain::AxisChain;
+    use crate::closed_form::seven_joint_arms::{IIWA14, PANDA, random_angles};
 
     const LIMITS: [[f64; 7]; 2] = [[-2.9, -1.8, -2.9, -3.07, -2.9, -0.1, -2.9], [2.9, 1.8, 2.9, -0.07, 2.9, 3.75, 2.9]];
 

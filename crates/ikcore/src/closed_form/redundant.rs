@@ -8,10 +8,11 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
-use crate::closed_form::branches::{Branches, Candidates, Given};
+use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
+use crate::closed_form::given_joint::GivenJoint;
 use crate::closed_form::parameter_arcs::ParameterArcs;
-use crate::closed_form::six::{ClosedForm, Structure};
+use crate::closed_form::six::Structure;
 use crate::closed_form::verify::{Verifier, verified_seven};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
@@ -37,10 +38,7 @@ pub struct Redundant {
 
 #[derive(Debug, Clone)]
 enum Method {
-    /// The first joint is given: the others see the target from where it puts them.
-    First(Box<ClosedForm>),
-    /// The last joint is given: it moves the tip.
-    Last(Box<ClosedForm>),
+    Given(Box<GivenJoint>),
     ArmAngle(Box<ArmAngle>),
 }
 
@@ -68,14 +66,9 @@ impl Redundant {
         let (method, distance) = match ArmAngle::new(chain) {
             Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::of(chain)),
             None => {
-                let (last, first) = (six_without(chain, 6), six_without(chain, 0));
-                match (rank(&last), rank(&first)) {
-                    (Some(of_last), of_first) if of_first.is_none_or(|of_first| of_last <= of_first) => {
-                        (Method::Last(Box::new(last)), ElbowDistance::of(chain))
-                    }
-                    (_, Some(_)) => (Method::First(Box::new(first)), None),
-                    _ => return None,
-                }
+                let given = GivenJoint::new(chain)?;
+                let distance = if given.axis() == 6 { ElbowDistance::of(chain) } else { None };
+                (Method::Given(Box::new(given)), distance)
             }
         };
         let verifier = Verifier::new(&AxisChain { tip: Frame::IDENTITY, ..*chain }, 1e-3);
@@ -84,9 +77,8 @@ impl Redundant {
 
     /// What the value in [`Self::solve`] means.
     pub fn parameter(&self) -> Parameter {
-        match self.method {
-            Method::First(_) => Parameter::Axis(0),
-            Method::Last(_) => Parameter::Axis(6),
+        match &self.method {
+            Method::Given(given) => Parameter::Axis(given.axis()),
             Method::ArmAngle(_) => Parameter::ArmAngle,
         }
     }
@@ -94,7 +86,7 @@ impl Redundant {
     /// The structure of the six joints that are left with the parameter given; `None` for the arm angle.
     pub fn structure(&self) -> Option<Structure> {
         match &self.method {
-            Method::First(form) | Method::Last(form) => Some(form.structure()),
+            Method::Given(given) => Some(given.structure()),
             Method::ArmAngle(_) => None,
         }
     }
@@ -102,7 +94,7 @@ impl Redundant {
     /// Whether [`Self::add_candidates`] finds all configurations but for rounding.
     pub fn has_exact_candidates(&self) -> bool {
         match &self.method {
-            Method::First(form) | Method::Last(form) => form.has_exact_candidates(),
+            Method::Given(given) => given.has_exact_candidates(),
             Method::ArmAngle(_) => true,
         }
     }
@@ -129,18 +121,8 @@ impl Redundant {
 
     /// All joint values, angles in (-pi, pi], that reach a pose with the parameter at `value` (rad, m).
     pub fn solve(&self, pose: &RedundantPose, value: f64) -> Branches<7> {
-        let [first, .., last] = &self.chain.joints;
         match &self.method {
-            // E2 ... E7 = E1^-1 goal.
-            Method::First(form) => {
-                let left = first.displacement(-value).then::<Baseline>(&pose.goal);
-                self.inserted(&form.solve_displacement(&left, &left), 0, value)
-            }
-            // E1 ... E6 = goal E7^-1.
-            Method::Last(form) => {
-                let left = pose.goal.then::<Baseline>(&last.displacement(-value));
-                self.inserted(&form.solve_displacement(&left, &left), 6, value)
-            }
+            Method::Given(given) => given.solve(&pose.goal, value),
             Method::ArmAngle(_) => {
                 let mut candidates = Candidates::new();
                 self.add_candidates(pose, value, &[AngleRange::ANY; 7], &mut candidates);
@@ -153,21 +135,8 @@ impl Redundant {
 
     /// Adds all joint values that may reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
     fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
-        let [a, b, c, d, e, f, g] = *ranges;
-        let [first, .., last] = &self.chain.joints;
         match (&self.method, &pose.by_arm_angle) {
-            (Method::First(form), _) => {
-                let turn = first.turn(value);
-                let left = first.displacement_by(turn.back()).then::<Baseline>(&pose.goal);
-                found.give(Given::First(turn));
-                form.add_candidates(&left, &[b, c, d, e, f, g], found);
-            }
-            (Method::Last(form), _) => {
-                let turn = last.turn(value);
-                let left = pose.goal.then::<Baseline>(&last.displacement_by(turn.back()));
-                found.give(Given::Last(turn));
-                form.add_candidates(&left, &[a, b, c, d, e, f], found);
-            }
+            (Method::Given(given), _) => given.add_candidates(&pose.goal, value, ranges, found),
             (Method::ArmAngle(method), Some(pose)) => {
                 arm_angle_candidates(method, pose, Angle::by(value), ranges, found);
             }
@@ -205,24 +174,6 @@ impl Redundant {
             (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
         }
     }
-
-    /// The branches of six joints with the value of one more.
-    fn inserted(&self, six: &Branches<6>, joint: usize, value: f64) -> Branches<7> {
-        let mut seven = Branches::none();
-        (seven.complete, seven.singular, seven.evaluations) = (six.complete, six.singular, six.evaluations);
-        seven.nearly = six.nearly;
-        let turns = self.chain.joints[joint].motion == AxisMotion::Turns;
-        let value = if turns { Angle::by(value).angle() } else { value };
-        for (set, error) in six.iter().zip(six.errors()) {
-            let values = std::array::from_fn(|k| match k {
-                k if k < joint => set[k],
-                k if k == joint => value,
-                k => set[k - 1],
-            });
-            seven.push(values, *error);
-        }
-        seven
-    }
 }
 
 by_instructions! {
@@ -237,100 +188,16 @@ by_instructions! {
     }
 }
 
-/// The closed form of the chain without one joint; its tip is the displacement of the others.
-fn six_without(chain: &AxisChain<7>, skipped: usize) -> ClosedForm {
-    let joints = std::array::from_fn(|k| chain.joints[if k < skipped { k } else { k + 1 }]);
-    // A few solutions lost beside folds matter less than the time where only samples are asked for.
-    ClosedForm::structured(&AxisChain { joints, tip: Frame::IDENTITY })
-}
-
-/// How good a method is, best first.
-fn rank(form: &ClosedForm) -> Option<u8> {
-    match form.structure() {
-        Structure::ThreeMeet { nearly: false, .. } => Some(0),
-        Structure::ThreeParallel { nearly: false, .. } => Some(1),
-        Structure::ThreeMeet { nearly: true, .. } => Some(2),
-        Structure::ThreeParallel { nearly: true, .. } => Some(3),
-        Structure::General => Some(4),
-        Structure::Unsolved => None,
-    }
-}
-
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use std::f64::consts::{FRAC_PI_2 as Q, PI, TAU};
 
     use super::*;
     use crate::closed_form::axis_chain::JointAxis;
+    use crate::closed_form::seven_joint_arms::{
+        BAXTER, GEN3, IIWA14, PANDA, SAWYER, XARM7, iiwa14_of_urdf, random_angles,
+    };
     use crate::closed_form::vector::{norm, sub};
-    use crate::rng;
-
-    pub const PANDA: [[f64; 4]; 7] = [
-        [0.0, -Q, 0.333, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.0825, Q, 0.316, 0.0],
-        [-0.0825, -Q, 0.0, 0.0],
-        [0.0, Q, 0.384, 0.0],
-        [0.088, Q, 0.0, 0.0],
-        [0.0, 0.0, 0.107, 0.0],
-    ];
-    pub const IIWA14: [[f64; 4]; 7] = [
-        [0.0, -Q, 0.36, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.0, Q, 0.42, 0.0],
-        [0.0, -Q, 0.0, 0.0],
-        [0.0, -Q, 0.4, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.0, 0.0, 0.126, 0.0],
-    ];
-    const GEN3: [[f64; 4]; 7] = [
-        [0.0, Q, -0.2848, 0.0],
-        [0.0, Q, -0.0118, PI],
-        [0.0, Q, -0.4208, PI],
-        [0.0, Q, -0.0128, PI],
-        [0.0, Q, -0.3143, PI],
-        [0.0, Q, 0.0, PI],
-        [0.0, PI, -0.1674, PI],
-    ];
-    const XARM7: [[f64; 4]; 7] = [
-        [0.0, -Q, 0.267, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.0525, Q, 0.293, 0.0],
-        [0.0775, Q, 0.0, 0.0],
-        [0.0, Q, 0.3425, 0.0],
-        [0.076, -Q, 0.0, 0.0],
-        [0.0, 0.0, 0.097, 0.0],
-    ];
-    const SAWYER: [[f64; 4]; 7] = [
-        [0.081, -Q, 0.317, 0.0],
-        [0.0, Q, 0.1925, Q],
-        [0.0, -Q, 0.4, 0.0],
-        [0.0, Q, -0.1685, 0.0],
-        [0.0, -Q, 0.4, 0.0],
-        [0.0, Q, 0.1366, 0.0],
-        [0.0, 0.0, 0.13375, 0.0],
-    ];
-    const BAXTER: [[f64; 4]; 7] = [
-        [0.069, -Q, 0.27035, 0.0],
-        [0.0, Q, 0.0, Q],
-        [0.069, -Q, 0.36435, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.01, -Q, 0.37429, 0.0],
-        [0.0, Q, 0.0, 0.0],
-        [0.0, 0.0, 0.229525, 0.0],
-    ];
-
-    /// The public URDF: axes 1 and 2, and 3 and 4, miss each other by 0.436 mm.
-    fn iiwa14_of_urdf() -> [[f64; 4]; 7] {
-        let mut rows = IIWA14;
-        (rows[0][0], rows[2][0]) = (-0.00043624, 0.00043624);
-        rows
-    }
-
-    pub fn random_angles(count: usize) -> Vec<[f64; 7]> {
-        let mut rng = rng::stream(21, 0);
-        (0..count).map(|_| std::array::from_fn(|_| rng.uniform_in(-PI, PI))).collect()
-    }
 
     /// Largest difference of angles, whole turns aside.
     fn apart(a: &[f64; 7], b: &[f64; 7]) -> f64 {

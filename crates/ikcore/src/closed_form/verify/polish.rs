@@ -128,8 +128,9 @@ fn solved<const N: usize>(a: impl Fn(usize, usize) -> f64, damping: f64, b: [f64
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::redundant::tests::{PANDA, random_angles};
+
     use super::*;
+    use crate::closed_form::seven_joint_arms::{PANDA, random_angles};
 
     #[test]
     fn a_redundant_arm_moves_as_little_as_it_must() {

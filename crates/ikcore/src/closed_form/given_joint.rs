@@ -1,0 +1,100 @@
+//! Seven joints of which the first or the last is given: the other six see the target from where it puts them.
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::branches::{Branches, Candidates, Given};
+use crate::closed_form::six::{ClosedForm, Structure};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// A given joint, and the closed form of the other six.
+#[derive(Debug, Clone)]
+pub struct GivenJoint {
+    /// 0 or 6.
+    axis: usize,
+    joint: JointAxis,
+    others: ClosedForm,
+}
+
+impl GivenJoint {
+    /// Gives the joint that leaves six with the better method, of equal ones the last; `None` where joints slide and no method fits.
+    pub fn new(chain: &AxisChain<7>) -> Option<Self> {
+        let (last, first) = (Self::at(6, chain), Self::at(0, chain));
+        match (last.rank(), first.rank()) {
+            (Some(of_last), of_first) if of_first.is_none_or(|of_first| of_last <= of_first) => Some(last),
+            (_, Some(_)) => Some(first),
+            _ => None,
+        }
+    }
+
+    fn at(axis: usize, chain: &AxisChain<7>) -> Self {
+        let joints = std::array::from_fn(|k| chain.joints[if k < axis { k } else { k + 1 }]);
+        // The tip is the displacement of the others. A few solutions lost beside folds matter less than the time where only samples
+        // are asked for.
+        let others = ClosedForm::structured(&AxisChain { joints, tip: Frame::IDENTITY });
+        Self { axis, joint: chain.joints[axis], others }
+    }
+
+    /// How good the method of the others is, best first.
+    fn rank(&self) -> Option<u8> {
+        match self.others.structure() {
+            Structure::ThreeMeet { nearly: false, .. } => Some(0),
+            Structure::ThreeParallel { nearly: false, .. } => Some(1),
+            Structure::ThreeMeet { nearly: true, .. } => Some(2),
+            Structure::ThreeParallel { nearly: true, .. } => Some(3),
+            Structure::General => Some(4),
+            Structure::Unsolved => None,
+        }
+    }
+
+    /// Which joint is given: 0 or 6.
+    pub fn axis(&self) -> usize {
+        self.axis
+    }
+
+    /// The structure of the others.
+    pub fn structure(&self) -> Structure {
+        self.others.structure()
+    }
+
+    /// Whether [`Self::add_candidates`] finds all configurations but for rounding.
+    pub fn has_exact_candidates(&self) -> bool {
+        self.others.has_exact_candidates()
+    }
+
+    /// All joint values, angles in (-pi, pi], whose displacements make `goal` with the joint at `value` (rad, m).
+    pub fn solve(&self, goal: &Frame, value: f64) -> Branches<7> {
+        let left = self.left(goal, self.joint.turn(value));
+        let six = self.others.solve_displacement(&left, &left);
+        let mut seven = Branches::none();
+        (seven.complete, seven.singular, seven.evaluations) = (six.complete, six.singular, six.evaluations);
+        seven.nearly = six.nearly;
+        let turns = self.joint.motion == AxisMotion::Turns;
+        let value = if turns { Angle::by(value).angle() } else { value };
+        for ([a, b, c, d, e, f], error) in six.iter().copied().zip(six.errors()) {
+            let set = if self.axis == 0 { [value, a, b, c, d, e, f] } else { [a, b, c, d, e, f, value] };
+            seven.push(set, *error);
+        }
+        seven
+    }
+
+    /// Adds all joint values that may make `goal` with the joint at `value` (rad, m), as far as `ranges` may hold them.
+    pub fn add_candidates(&self, goal: &Frame, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
+        let turn = self.joint.turn(value);
+        let [a, b, c, d, e, f, g] = *ranges;
+        let (given, ranges) = match self.axis {
+            0 => (Given::First(turn), [b, c, d, e, f, g]),
+            _ => (Given::Last(turn), [a, b, c, d, e, f]),
+        };
+        found.give(given);
+        self.others.add_candidates(&self.left(goal, turn), &ranges, found);
+    }
+
+    /// What is left for the others: E2 ... E7 = E1^-1 goal, or E1 ... E6 = goal E7^-1.
+    #[inline]
+    fn left(&self, goal: &Frame, turn: Angle) -> Frame {
+        let back = self.joint.displacement_by(turn.back());
+        if self.axis == 0 { back.then::<Baseline>(goal) } else { goal.then::<Baseline>(&back) }
+    }
+}
