@@ -2657,7 +2657,7 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
         robot: an arm with bodies.
         q: joint positions (n,) or (m, n) (rad, m).
         obstacles: obstacles in the frame of the robot's base. All bodies are compared with them, those of the base and of held
-            links too: a table that the robot stands on must leave its base some room.
+            links too, but for the links that an obstacle names in its `touch`.
 
     Two links of the robot are compared if they are among `robot.collision_pairs`.
 
