@@ -109,6 +109,18 @@ impl RowStep<'_> {
 }
 
 impl RowSolver {
+    /// With room for steps of `n` entries and this many rows.
+    pub fn with_room(n: usize, rows: usize) -> Self {
+        let most = n + rows;
+        Self {
+            factor: Vec::with_capacity(n * n),
+            active: Vec::with_capacity(most),
+            system: Vec::with_capacity(most * most),
+            trial: Vec::with_capacity(most),
+            free: Vec::with_capacity(n),
+        }
+    }
+
     /// Writes the point after the step into `out`. Returns whether a row holds it back.
     pub fn write(&mut self, step: &RowStep<'_>, out: &mut [f64]) -> bool {
         let n = step.start.len();

@@ -7,6 +7,7 @@
 use super::body_model::BodyPair;
 use super::kept_distance::KeptDistance;
 use super::link_displacement::{displacement, sagitta};
+use super::near_rows::MOST_RESERVED;
 use super::scene::Scene;
 use crate::math::Frame;
 use crate::objective::Point;
@@ -15,6 +16,9 @@ use crate::shape::PlacedBody;
 
 /// Intervals examined before a motion counts as not clear.
 const MOST_INTERVALS: usize = 120;
+
+/// Places for which room is set aside; a deeper bisection takes more.
+const MOST_DEPTHS: usize = 32;
 
 /// A joint motion over whole ticks, from 0 to `ticks`.
 pub(crate) trait TickedMotion {
@@ -27,7 +31,7 @@ pub(crate) trait TickedMotion {
 }
 
 /// Checks motions; owns its scratch.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct ChordCheck {
     /// Configurations by depth of the bisection; both ends of the motion first.
     places: Vec<Place>,
@@ -61,6 +65,13 @@ enum Verdict {
 }
 
 impl ChordCheck {
+    /// For motions in `scene`.
+    pub(super) fn new(scene: &Scene<'_>) -> Self {
+        let pending = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
+        let [change, off_line, halfway] = [(); 3].map(|()| Point::new());
+        Self { places: Vec::with_capacity(MOST_DEPTHS), pending, intervals: 0, change, off_line, halfway }
+    }
+
     /// Whether `motion` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
     pub(super) fn is_clear(&mut self, scene: &Scene<'_>, motion: &impl TickedMotion, kept: &KeptDistance<'_>) -> bool {
         self.intervals = 0;

@@ -83,6 +83,11 @@ impl<'a> ClearSpace<'a> {
         NearRows::new(&self.scene)
     }
 
+    /// Scratch of [`is_kept_by`](Self::is_kept_by).
+    pub(crate) fn chord_check(&self) -> ChordCheck {
+        ChordCheck::new(&self.scene)
+    }
+
     /// Finds the pairs that are nearer than `up_to` (m) at `q`, without bodies that no joint moves.
     pub(crate) fn find_rows(&self, q: &[f64], up_to: f64, rows: &mut NearRows) {
         rows.find(&self.scene, q, up_to);

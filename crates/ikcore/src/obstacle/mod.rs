@@ -35,7 +35,7 @@ pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
 pub use contact::{Contact, NearestContact, Neighbor};
 pub(crate) use kept_distance::KeptDistance;
-pub(crate) use near_rows::{NearRow, NearRows};
+pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;

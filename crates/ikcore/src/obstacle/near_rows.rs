@@ -33,17 +33,23 @@ impl NearRow {
 #[derive(Debug)]
 pub(crate) struct NearRows {
     rows: Vec<NearRow>,
+    /// Near pairs and their distances (m), before the nearest are chosen.
+    pairs: Vec<(f64, BodyPair)>,
     placement: Placement,
 }
 
 /// Rows of one configuration; pairs farther than these do not count.
-const MOST_ROWS: usize = 24;
+pub(crate) const MOST_ROWS: usize = 24;
+
+/// Room for near pairs that is set aside; more take it when they come.
+pub(super) const MOST_RESERVED: usize = 4096;
 
 impl NearRows {
     /// For configurations in `scene`.
     pub(super) fn new(scene: &Scene<'_>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
-        Self { rows: vec![], placement: scene.place(&rest) }
+        let pairs = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
+        Self { rows: Vec::with_capacity(MOST_ROWS), pairs, placement: scene.place(&rest) }
     }
 
     /// The rows found last, the nearest first.
@@ -53,18 +59,18 @@ impl NearRows {
 
     /// Finds the pairs that are nearer than `up_to` (m) at `q`.
     pub(super) fn find(&mut self, scene: &Scene<'_>, q: &[f64], up_to: f64) {
-        let Self { rows, placement } = self;
-        rows.clear();
+        let Self { rows, pairs, placement } = self;
+        (rows.clear(), pairs.clear());
         scene.place_into(q, placement);
-        scene.for_each_within(up_to, placement, |pair, distance| {
-            rows.push(NearRow { pair, distance, normal: Vector3::zeros(), gradient: [0.0; MAX_DOF] });
-        });
-        rows.sort_unstable_by(|one, other| {
-            one.distance.total_cmp(&other.distance).then_with(|| one.pair.order().cmp(&other.pair.order()))
-        });
-        rows.truncate(MOST_ROWS);
-        for row in rows {
-            [_, row.normal] = scene.add_gradient(row.pair, placement, 1.0, &mut row.gradient);
+        scene.for_each_within(up_to, placement, |pair, distance| pairs.push((distance, pair)));
+        let order = |(one, pair): &(f64, BodyPair), (other, with): &(f64, BodyPair)| {
+            one.total_cmp(other).then_with(|| pair.order().cmp(&with.order()))
+        };
+        pairs.sort_unstable_by(order);
+        for (distance, pair) in pairs.iter().take(MOST_ROWS) {
+            let mut gradient = [0.0; MAX_DOF];
+            let [_, normal] = scene.add_gradient(*pair, placement, 1.0, &mut gradient);
+            rows.push(NearRow { pair: *pair, distance: *distance, normal, gradient });
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::math::row_step::{Row, RowSolver, RowStep};
 use crate::math::vector::{between, dot, norm, squared_size};
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization, Point};
-use crate::obstacle::{ChordCheck, ClearSpace, KeptDistance, NearRow, NearRows};
+use crate::obstacle::{ChordCheck, ClearSpace, KeptDistance, MOST_ROWS, NearRow, NearRows};
 use crate::robot::Robot;
 use crate::task::{Criterion, Target};
 
@@ -122,12 +122,12 @@ impl ClearMotion {
         }
         Ok(Self {
             near: space.near_rows(),
+            check: space.chord_check(),
+            solver: RowSolver::with_room(limits.dof(), MOST_ROWS),
             space: Arc::new(space),
             obstacles: ObstacleMotion::default(),
             since: 0.0,
-            rows: vec![],
-            solver: RowSolver::default(),
-            check: ChordCheck::default(),
+            rows: Vec::with_capacity(MOST_ROWS),
             linearization: Box::default(),
             goal_is_held: false,
         })
