@@ -245,7 +245,7 @@ fn what_is_in_the_way_is_named() {
     let q = [0.3, -1.6, 1.8, -1.7, -1.5, 0.2];
     let elbows = ur5e.link_poses(&q).unwrap();
     let around = elbows[2].translation.vector + 0.5 * (elbows[3].translation.vector - elbows[2].translation.vector);
-    let ball = Shape::sphere([0.3 * around.x, 0.3 * around.y, 0.45], 0.3).unwrap();
+    let ball = Shape::sphere([0.3 * around.x, 0.3 * around.y, 0.45], 0.3).unwrap().with_touch(vec!["link_1".into()]);
     let plan = planned(&ur5e, &bent(&ur5e, &q, [0.0, 0.1, 0.0], [0.0; 3]), &options(&ur5e, vec![ball]));
     assert!(plan.message().contains(" postures, and there are no others; "), "{}", plan.message());
 }

@@ -220,11 +220,8 @@ impl RowSolver {
                 for k in 0..j {
                     entry -= self.system[i * m + k] * self.system[j * m + k];
                 }
-                self.system[i * m + j] = if i == j {
-                    entry.max(f64::MIN_POSITIVE.sqrt()).sqrt()
-                } else {
-                    entry / self.system[j * m + j]
-                };
+                self.system[i * m + j] =
+                    if i == j { entry.max(f64::MIN_POSITIVE.sqrt()).sqrt() } else { entry / self.system[j * m + j] };
             }
         }
         solve_factored(&self.system, &mut self.trial);
@@ -273,7 +270,8 @@ mod tests {
         }
 
         fn cost(&self, x: &[f64]) -> f64 {
-            let residual = (0..6).map(|k| self.residual[k] + (0..x.len()).map(|j| self.columns[j][k] * x[j]).sum::<f64>());
+            let residual =
+                (0..6).map(|k| self.residual[k] + (0..x.len()).map(|j| self.columns[j][k] * x[j]).sum::<f64>());
             residual.map(|r| r * r).sum::<f64>() + LAMBDA * x.iter().map(|x| x * x).sum::<f64>()
         }
 
@@ -281,9 +279,8 @@ mod tests {
         fn constraints(&self) -> Vec<(Vec<f64>, f64)> {
             let n = self.columns.len();
             let unit = |j: usize, sign: f64| (0..n).map(|k| if k == j { sign } else { 0.0 }).collect::<Vec<f64>>();
-            let mut all: Vec<(Vec<f64>, f64)> = (0..n)
-                .flat_map(|j| [(unit(j, 1.0), self.lower[j]), (unit(j, -1.0), -self.upper[j])])
-                .collect();
+            let mut all: Vec<(Vec<f64>, f64)> =
+                (0..n).flat_map(|j| [(unit(j, 1.0), self.lower[j]), (unit(j, -1.0), -self.upper[j])]).collect();
             all.extend(self.rows.iter().map(|row| (row.gradient[..n].to_vec(), row.least)));
             all
         }

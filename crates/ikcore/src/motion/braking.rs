@@ -38,7 +38,7 @@ fn whole(x: f64) -> f64 {
 
 /// Progress of a stop in the direction in which it ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Phases {
+pub(super) struct StopPhases {
     /// Step of the last tick.
     pub step: f64,
     pub displacement: f64,
@@ -46,7 +46,7 @@ pub(super) struct Phases {
     pub ticks: f64,
 }
 
-impl Phases {
+impl StopPhases {
     /// At the beginning, with this step.
     pub fn begin(step: f64) -> Self {
         Self { step, displacement: 0.0, lowest: 0.0, ticks: 0.0 }
@@ -119,11 +119,11 @@ impl Braking {
             return StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
         }
         let sign = self.direction(step, change);
-        let mut phases = Phases::begin(sign * step);
+        let mut phases = StopPhases::begin(sign * step);
         let braking = self.build_up(-sign * change, &mut phases);
         self.brake_fully(braking, &mut phases);
         self.fade(&mut phases);
-        let Phases { displacement, lowest, ticks, .. } = phases;
+        let StopPhases { displacement, lowest, ticks, .. } = phases;
         let (lowest, highest) = (lowest.min(displacement), displacement.max(0.0));
         let [lowest, highest] = if sign > 0.0 { [lowest, highest] } else { [-highest, -lowest] };
         StoppingMotion { ticks, end: sign * displacement, lowest, highest }
@@ -131,7 +131,7 @@ impl Braking {
 
     /// Builds the braking up from `braking` by `jerk` per tick, as long as the joint will not reverse. Returns the braking
     /// reached.
-    pub(super) fn build_up(&self, braking: f64, phases: &mut Phases) -> f64 {
+    pub(super) fn build_up(&self, braking: f64, phases: &mut StopPhases) -> f64 {
         let Self { acceleration: most, jerk } = *self;
         if jerk == f64::INFINITY {
             return braking;
@@ -170,7 +170,7 @@ impl Braking {
     }
 
     /// Brakes with the full acceleration, as long as the joint will not reverse, if the `braking` reached allows it.
-    pub(super) fn brake_fully(&self, braking: f64, phases: &mut Phases) {
+    pub(super) fn brake_fully(&self, braking: f64, phases: &mut StopPhases) {
         let most = self.acceleration;
         if braking + self.jerk < most {
             return;
@@ -185,7 +185,7 @@ impl Braking {
     }
 
     /// Brakes by what remains, fading out by `jerk` per tick.
-    fn fade(&self, phases: &mut Phases) {
+    fn fade(&self, phases: &mut StopPhases) {
         let step = phases.step;
         if step <= 0.0 {
             return;

@@ -1,7 +1,7 @@
 //! The fastest stop of a joint, tick by tick in closed form.
 
 use super::Braking;
-use super::braking::{Phases, fade_out};
+use super::braking::{StopPhases, fade_out};
 
 /// Where a joint is during its fastest stop.
 #[derive(Debug, Clone, Copy)]
@@ -14,8 +14,8 @@ pub(crate) struct StopCurve {
     /// By how much it grows per tick.
     jerk: f64,
     /// When it stops growing, and when it begins to fade.
-    built_up: Phases,
-    fading: Phases,
+    built_up: StopPhases,
+    fading: StopPhases,
     /// The deceleration between the two.
     most: f64,
     /// Number of ticks in which it fades, and the first deceleration of these.
@@ -28,7 +28,7 @@ impl StopCurve {
         let Braking { acceleration: most, jerk } = *limits;
         let sign = limits.direction(step, change);
         let (first, braking) = (sign * step, -sign * change);
-        let mut phases = Phases::begin(first);
+        let mut phases = StopPhases::begin(first);
         if step == 0.0 && change.abs() <= jerk {
             return Self { sign, first, braking, jerk, built_up: phases, fading: phases, most, fade: (0.0, 0.0) };
         }
@@ -75,11 +75,11 @@ impl StopCurve {
             };
         }
         if ticks <= self.fading.ticks {
-            let Phases { step, displacement, ticks: begin, .. } = self.built_up;
+            let StopPhases { step, displacement, ticks: begin, .. } = self.built_up;
             let k = ticks - begin;
             return displacement + k * (step - 0.5 * self.most * (k + 1.0));
         }
-        let Phases { step, displacement, ticks: begin, .. } = self.fading;
+        let StopPhases { step, displacement, ticks: begin, .. } = self.fading;
         let k = ticks - begin;
         // A deceleration that fades within a tick has no next value.
         let fading = if k > 1.0 { self.jerk * (k - 1.0) * k * (k + 1.0) / 6.0 } else { 0.0 };

@@ -11,17 +11,18 @@ use super::limited_motion::LimitedMotion;
 use super::stop_motion::StopMotion;
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
+use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
 use crate::math::row_step::{Row, RowSolver, RowStep};
 use crate::math::vector::{between, dot, norm, squared_size};
-use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::obstacle::{ChordCheck, ClearSpace, KeptDistance, MOST_ROWS, NearRow, NearRows};
 use crate::robot::Robot;
 use crate::task::{Criterion, Target};
 
-/// Kept beyond the margin where the arm comes to rest (m): room for the certificate.
+/// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
 const ROOM: f64 = 2e-4;
+const LEAST_ROOM: f64 = 2e-5;
 
 /// Least distance beyond the margin at which a pair becomes a row (m), and largest.
 const NEAR: [f64; 2] = [0.03, 0.2];
@@ -64,7 +65,7 @@ pub(super) struct Wish<'a> {
 }
 
 /// What a goal configuration is to meet.
-pub(super) struct Goal<'a> {
+pub(super) struct GoalToClear<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
     pub criterion: &'a Criterion,
@@ -190,7 +191,7 @@ impl ClearMotion {
 
     /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
     /// beside the rows from `expected`, the goal so far.
-    pub fn clear_goal(&mut self, goal: &Goal<'_>, expected: &[f64], sample: &mut Point) {
+    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, expected: &[f64], sample: &mut Point) {
         self.goal_is_held = !self.set_goal_rows(sample);
         if !self.goal_is_held {
             return;
@@ -259,8 +260,9 @@ impl ClearMotion {
         let pace = if wish.limited.is_some() { (wish.dt / PACE).min(1.0) } else { 1.0 };
         for near in self.near.rows() {
             let [until_rest, while_leaving] = self.approach_of(near, stop_time);
-            let missing = self.space.margin() + ROOM + until_rest - near.distance;
-            self.rows.push(response.row(&near.gradient, missing.max(pace * (missing + while_leaving))));
+            let missing = self.space.margin() + until_rest - near.distance;
+            let least = (missing + LEAST_ROOM).max(pace * (missing + ROOM + while_leaving));
+            self.rows.push(response.row(&near.gradient, least));
         }
         self.rows.iter().any(|row| dot(&row.gradient, wanted) < row.least)
     }
@@ -305,7 +307,8 @@ struct Response {
 
 impl Response {
     fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
-        let at_once = Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
+        let at_once =
+            Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
         let Some(limited) = wish.limited else { return at_once };
         let (braking, state) = (limited.braking(), limited.state());
         let Self { mut slope, mut offset } = at_once;

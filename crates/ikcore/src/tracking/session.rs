@@ -166,7 +166,8 @@ impl Session {
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
         let nearest = self.space().map(|space| space.nearest(&self.q));
-        let distance = |nearest: Option<NearestContact>| nearest.map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+        let distance =
+            |nearest: Option<NearestContact>| nearest.map_or(f64::INFINITY, |nearest| nearest.contact.distance);
         Accepted { q: &self.q, tick_box: &self.tick_box, clearance: nearest.map_or(f64::NAN, distance) }
     }
 

@@ -37,7 +37,10 @@ impl Step {
                 format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
             }
             Status::InCollision => {
-                format!("nearer than the margin to an obstacle or another link, {error} away{limits}: {}", self.status.advice())
+                format!(
+                    "nearer than the margin to an obstacle or another link, {error} away{limits}: {}",
+                    self.status.advice()
+                )
             }
             Status::HeldByObstacle => {
                 format!("held back by an obstacle or another link, {error} away{limits}: {}", self.status.advice())

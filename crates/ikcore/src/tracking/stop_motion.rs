@@ -6,9 +6,6 @@ use crate::math::MAX_DOF;
 use crate::motion::{Braking, JointState, StopCurve};
 use crate::obstacle::TickedMotion;
 
-/// A cubic B-spline passes a commanded position at a sixth of its second difference.
-const SPLINE: f64 = 1.0 / 6.0;
-
 /// The motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
 #[derive(Debug)]
 pub(super) struct StopMotion<'a> {
@@ -16,12 +13,14 @@ pub(super) struct StopMotion<'a> {
     command: &'a [f64],
     /// The stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
     stops: SmallVec<[(StopCurve, f64); MAX_DOF]>,
+    /// Displacements in the tick before.
+    before: &'a [f64],
     ticks: f64,
 }
 
 impl<'a> StopMotion<'a> {
     /// Of an arm at `from` that is given `command`. `limited`: how its joints may brake, and their motion in the last tick.
-    pub fn new(from: &'a [f64], command: &'a [f64], limited: Option<(&[Braking], &JointState)>) -> Self {
+    pub fn new(from: &'a [f64], command: &'a [f64], limited: Option<(&[Braking], &'a JointState)>) -> Self {
         let mut stops: SmallVec<[(StopCurve, f64); MAX_DOF]> = SmallVec::new();
         if let Some((braking, state)) = limited {
             for (j, limits) in braking.iter().enumerate() {
@@ -30,7 +29,8 @@ impl<'a> StopMotion<'a> {
             }
         }
         let ticks = stops.iter().map(|(stop, _)| stop.ticks()).fold(0.0, f64::max);
-        Self { from, command, stops, ticks }
+        let before = limited.map_or(&[][..], |(_, state)| &state.step);
+        Self { from, command, stops, before, ticks }
     }
 
     /// Ticks from the end of the command until the arm is at rest.
@@ -50,6 +50,12 @@ impl TickedMotion for StopMotion<'_> {
     }
 
     fn write(&self, tick: f64, q: &mut [f64]) {
+        if tick < 0.0 && self.is_spline() {
+            for (q, (from, step)) in q.iter_mut().zip(self.from.iter().zip(self.before)) {
+                *q = from - step;
+            }
+            return;
+        }
         if tick <= 1.0 {
             for (q, (from, command)) in q.iter_mut().zip(self.from.iter().zip(self.command)) {
                 *q = from + tick * (command - from);
@@ -65,12 +71,16 @@ impl TickedMotion for StopMotion<'_> {
     }
 
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
-        // Between two ticks the motion is straight, but for the spline.
-        let ticks = if to - from <= 1.0 { 0.0 } else { to - from };
+        if to - from <= 1.0 {
+            return;
+        }
         for (j, (stop, acceleration)) in self.stops.iter().enumerate() {
             let range = stop.range() + (self.command[j] - self.from[j]).abs();
-            let spline = SPLINE * acceleration.min(range);
-            off_line[j] = (acceleration * ticks * ticks / 8.0).min(range) + spline;
+            off_line[j] = (acceleration * (to - from).powi(2) / 8.0).min(range);
         }
+    }
+
+    fn is_spline(&self) -> bool {
+        !self.stops.is_empty()
     }
 }

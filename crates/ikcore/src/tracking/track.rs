@@ -147,7 +147,8 @@ fn first_configuration(
     let surroundings = options.surroundings.clone();
     let (limits, prefer) = (Some(limits), Prefer::Best);
     let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
-    let options = SolveOptions { task, goals, prefer, tolerance, limits, surroundings, stop, seed, ..SolveOptions::default() };
+    let options =
+        SolveOptions { task, goals, prefer, tolerance, limits, surroundings, stop, seed, ..SolveOptions::default() };
     let chosen = solve(robot, &target, &options, monitor)?;
     if chosen.status != Status::BudgetSpent {
         return Ok(chosen.q.to_vec());

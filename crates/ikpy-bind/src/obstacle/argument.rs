@@ -51,9 +51,9 @@ pub(super) fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, P
 fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {
     let shape = |(i, item): (usize, &Bound<'_, PyAny>)| match item.cast::<PyObstacle>() {
         Ok(obstacle) => Ok(obstacle.get().core.clone()),
-        Err(_) if item.cast::<PyMoving>().is_ok() => Err(invalid(format!(
-            "obstacle {i} is a Moving; only a Tracker takes obstacles that move: give its shape"
-        ))),
+        Err(_) if item.cast::<PyMoving>().is_ok() => {
+            Err(invalid(format!("obstacle {i} is a Moving; only a Tracker takes obstacles that move: give its shape")))
+        }
         Err(_) => Err(not_made_here(&format!("obstacle {i}"), item)),
     };
     items.iter().enumerate().map(shape).collect()

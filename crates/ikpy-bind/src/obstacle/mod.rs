@@ -16,8 +16,8 @@ pub use argument::{Obstacles, Touch, read_touch};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
-use moving::PyMoving;
 pub use moving::MovingObstacles;
+use moving::PyMoving;
 pub use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 

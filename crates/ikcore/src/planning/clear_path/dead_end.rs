@@ -48,7 +48,9 @@ impl Layers<'_> {
             Some(Blocked::Hand(contact)) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(&contact))
             }
-            Some(Blocked::Base(contact)) => format!("{}, and no joint moves it", said(&contact)),
+            Some(Blocked::Base(contact)) => {
+                format!("{}, and no joint moves it; {}", said(&contact), contact.remedy())
+            }
             None => match least_deep(space, postures) {
                 Some(nearest) => {
                     let (said, count) = (said(&nearest.contact), postures.len());

@@ -11,7 +11,7 @@ use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
-use crate::tracking::clear_motion::Goal;
+use crate::tracking::clear_motion::GoalToClear;
 use crate::tracking::limited_motion::LimitedMotion;
 
 /// Steps that Gauss-Newton may take in a tick; they converge quadratically.
@@ -31,6 +31,10 @@ pub(crate) struct GoalPursuit {
     now: f64,
     expected: Point,
     sample: Point,
+    /// Obstacles changed the last sample.
+    held: bool,
+    /// They no longer do: what the goal remembers are motions along obstacles, not noise.
+    released: bool,
     linearization: Box<Linearization>,
 }
 
@@ -45,7 +49,8 @@ impl GoalPursuit {
     pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
         let mut found = TickResult::at(q);
         let Some(motion) = tick.limited else { return found };
-        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none()) {
+        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none() || self.released) {
+            self.released = false;
             self.goal = Some(MovingGoal::of_arm(q, motion.state(), self.now, self.now + 1.0 - ago));
         }
         self.now += 1.0;
@@ -79,8 +84,15 @@ impl GoalPursuit {
         }
         self.solve(time, &positions, found, tick);
         if let Some(clear) = &mut tick.clear {
-            let goal = Goal { robot: tick.robot, target: tick.target, criterion: tick.criterion, positions: &positions };
+            let goal = GoalToClear {
+                robot: tick.robot,
+                target: tick.target,
+                criterion: tick.criterion,
+                positions: &positions,
+            };
             clear.clear_goal(&goal, &self.expected, &mut self.sample);
+            self.released = self.held && !clear.goal_is_held();
+            self.held = clear.goal_is_held();
         }
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
