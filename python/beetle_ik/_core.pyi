@@ -542,7 +542,8 @@ class Status(IntEnum):
     - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
     - `OUTSIDE_LIMITS`: The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.
     - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
-    - `IN_COLLISION`: The target is reached, but nearer than the margin to an obstacle, or with two links nearer to each other.
+    - `IN_COLLISION`: Nearer than the margin to an obstacle, or with two links nearer to each other; the target may be reached.
+    - `HELD_BY_OBSTACLE`: A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.
     """
 
     SOLVED = 0
@@ -2107,6 +2108,11 @@ def track(
             dt. They need the model-based rule or `WeightedPseudoInverse`.
         position_tolerance: error band of positions (m).
         rotation_tolerance: error band of orientations (rad).
+        obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
+            robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
+            or stops. None: nothing is checked.
+        margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
             "start".
@@ -2155,7 +2161,8 @@ class TrackResult:
     def qd(self) -> _Array:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
-    def clearance(self) -> _Array: ...
+    def clearance(self) -> _Array:
+        """Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`."""
     @property
     def velocity_limit(self) -> _Array:
         """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
@@ -2267,6 +2274,8 @@ class Tracker:
         goals: as in `track`.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error (rad).
+        obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
+            ticks: `tracker.obstacles = [...]`.
         seed: seed of the random draws.
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
@@ -2317,9 +2326,15 @@ class Tracker:
             How long the stop takes (s); 0 without acceleration and jerk limits.
         """
     @property
-    def obstacles(self) -> tuple[Obstacle | Moving, ...] | None: ...
+    def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
+        """What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
+        certified before goes on if the new ones are in the way.
+        """
     @obstacles.setter
-    def obstacles(self, value: Iterable[Obstacle | Moving] | None) -> None: ...
+    def obstacles(self, value: Iterable[Obstacle | Moving] | None) -> None:
+        """What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
+        certified before goes on if the new ones are in the way.
+        """
     def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
         """Resets to q (n,) and t = 0, at rest or in motion.
 
@@ -2353,7 +2368,9 @@ class Step:
         """Whether the tip is within the tolerances."""
     @property
     def status(self) -> Status:
-        """SOLVED within the tolerances, IMPROVED nearer than in the previous step, otherwise CAPPED."""
+        """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links; HELD_BY_OBSTACLE if one
+        keeps the tip from the target; IMPROVED nearer than in the previous step, otherwise CAPPED.
+        """
     @property
     def message(self) -> str:
         """A sentence that says what happened and what to try."""
@@ -2382,9 +2399,13 @@ class Step:
     def inside_limits(self) -> bool:
         """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""
     @property
-    def clearance(self) -> float: ...
+    def clearance(self) -> float:
+        """Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
+        NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+        """
     @property
-    def nearest(self) -> Nearest | None: ...
+    def nearest(self) -> Nearest | None:
+        """The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch."""
 
 # --- obstacles ----------------------------------------------------------------------------------
 
@@ -2598,11 +2619,23 @@ class Body:
 
 @final
 class Moving:
+    """An obstacle that moves, for a `Tracker`: where it is now, and its velocity.
+
+    Give the obstacles anew, `tracker.obstacles = [...]`, as often as they are seen. In between each counts as anywhere that its speed
+    could have taken it, in any direction: its clearance is guaranteed as long as it is no faster.
+
+    Args:
+        shape: a shape of `bik.obstacles`, where it is now.
+        velocity: (3,) (m/s), in the frame of the robot's base.
+    """
+
     def __new__(cls, shape: Obstacle, velocity: ArrayLike) -> Moving: ...
     @property
-    def shape(self) -> Obstacle: ...
+    def shape(self) -> Obstacle:
+        """The shape, where it is now."""
     @property
-    def velocity(self) -> _Array: ...
+    def velocity(self) -> _Array:
+        """Its velocity (3,) (m/s)."""
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def __getnewargs__(self) -> tuple[Obstacle, list[float]]: ...

@@ -110,7 +110,8 @@ impl ChordCheck {
         off_line.clear();
         off_line.resize(from.len(), 0.0);
         motion.write_off_line(interval.from, interval.to, off_line);
-        (aside.clone_from(off_line), halfway.clone_from(change));
+        aside.clone_from(off_line);
+        halfway.clone_from(change);
         if motion.is_spline() {
             let mut q = from.clone();
             for (tick, end) in [(interval.from - 1.0, from), (interval.to + 1.0, to)] {

@@ -60,7 +60,8 @@ impl NearRows {
     /// Finds the pairs that are nearer than `up_to` (m) at `q`.
     pub(super) fn find(&mut self, scene: &Scene<'_>, q: &[f64], up_to: f64) {
         let Self { rows, pairs, placement } = self;
-        (rows.clear(), pairs.clear());
+        rows.clear();
+        pairs.clear();
         scene.place_into(q, placement);
         scene.for_each_within(up_to, placement, |pair, distance| pairs.push((distance, pair)));
         let order = |(one, pair): &(f64, BodyPair), (other, with): &(f64, BodyPair)| {
