@@ -140,6 +140,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "obstacles.HalfSpace": {"normal": (0, 0, 1), "offset": -1.0},
     "obstacles.Mesh": {"vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "faces": [(0, 1, 2)]},
     "obstacles.PointCloud": {"points": [(0, 0, 0), (1, 0, 0)], "radius": 0.1},
+    "obstacles.Moving": {"shape": bik.obstacles.Sphere((0, 0, 0), 0.1), "velocity": (0, 0, 0)},
     "obstacles.Sphere": {"center": (0, 0, 0), "radius": 0.1},
     "obstacles.clearance": {"robot": ARM, "q": START},
     "obstacles.nearest": {"robot": ARM, "q": START},

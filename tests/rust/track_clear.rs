@@ -182,7 +182,7 @@ fn an_arm_that_starts_in_collision_moves_out() {
         assert!(last < 0.0);
         let first = session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
         assert_eq!(first.status, Status::InCollision);
-        for tick in 0..500 {
+        for tick in 0..1500 {
             session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
             let now = scene.clearance(session.q()).unwrap();
             // Where another side of the wall becomes the nearest, the depth has a kink.

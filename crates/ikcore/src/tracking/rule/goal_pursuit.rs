@@ -23,6 +23,9 @@ const SHORT: f64 = 1e-5;
 /// Evaluations of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
 const MOST_EVALUATIONS: usize = 60;
 
+/// So many samples after obstacles changed one, the goal begins anew: what it remembers are motions along obstacles, not noise.
+const RELEASED: usize = 5;
+
 /// State of the rule between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct GoalPursuit {
@@ -31,10 +34,8 @@ pub(crate) struct GoalPursuit {
     now: f64,
     expected: Point,
     sample: Point,
-    /// Obstacles changed the last sample.
-    held: bool,
-    /// They no longer do: what the goal remembers are motions along obstacles, not noise.
-    released: bool,
+    /// Samples since obstacles changed one.
+    since_held: Option<usize>,
     linearization: Box<Linearization>,
 }
 
@@ -49,8 +50,9 @@ impl GoalPursuit {
     pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
         let mut found = TickResult::at(q);
         let Some(motion) = tick.limited else { return found };
-        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none() || self.released) {
-            self.released = false;
+        let released = self.since_held == Some(RELEASED);
+        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none() || released) {
+            self.since_held = None;
             self.goal = Some(MovingGoal::of_arm(q, motion.state(), self.now, self.now + 1.0 - ago));
         }
         self.now += 1.0;
@@ -91,8 +93,7 @@ impl GoalPursuit {
                 positions: &positions,
             };
             clear.clear_goal(&goal, &self.expected, &mut self.sample);
-            self.released = self.held && !clear.goal_is_held();
-            self.held = clear.goal_is_held();
+            self.since_held = if clear.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
         }
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
