@@ -26,7 +26,9 @@ SPEED = 0.2  # of the sphere, m/s
 PERIOD = 3.0  # of a turn on a circle, s
 HELD = 100  # ticks from jump to jump
 APART = 0.05  # m: every obstacle begins at least so far from the arm
-FROM_BASE = 0.35  # m: nearer to its axis are no targets, nor the sphere, which no joint could get out of the way of there
+FROM_BASE = (
+    0.35  # m: nearer to its axis are no targets, nor the sphere, which no joint could get out of the way of there
+)
 BETWEEN = 5  # judged steps of a tick
 
 
@@ -110,9 +112,7 @@ def circle(first: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return path
 
 
-def boxes(
-    robot: bik.Robot, start: np.ndarray, targets: np.ndarray, random: np.random.Generator
-) -> Iterator[Thing]:
+def boxes(robot: bik.Robot, start: np.ndarray, targets: np.ndarray, random: np.random.Generator) -> Iterator[Thing]:
     """Yields six boxes in random orientations near the targets, clear of the start."""
     count = 0
     while count < 6:
@@ -125,9 +125,7 @@ def boxes(
             count += 1
 
 
-def spheres(
-    robot: bik.Robot, start: np.ndarray, targets: np.ndarray, random: np.random.Generator
-) -> Iterator[Thing]:
+def spheres(robot: bik.Robot, start: np.ndarray, targets: np.ndarray, random: np.random.Generator) -> Iterator[Thing]:
     """Yields spheres that are near the target at half the time, and never near the base."""
     half = DT * TICKS / 2.0
     while True:
@@ -155,9 +153,9 @@ class Judge:
         links, count = [link for link, *_ in robot.capsules], len(self.capsules)
         self.shapes = [*self.capsules, *(thing.shape for thing in scene.things)]
         self.reach = np.array([bounding_radius(shape) for shape in self.shapes])
-        self.pairs = [
-            (i, j) for j in range(count) for i in range(j) if frozenset((links[i], links[j])) in apart
-        ] + [(i, j) for i in range(count) for j in range(count, len(self.shapes))]
+        self.pairs = [(i, j) for j in range(count) for i in range(j) if frozenset((links[i], links[j])) in apart] + [
+            (i, j) for i in range(count) for j in range(count, len(self.shapes))
+        ]
         self.request = coal.DistanceRequest()
         self.request.gjk_tolerance = 1e-9
 
@@ -190,9 +188,7 @@ class Judge:
         """
         found = []
         for tick in range(len(q) - 1):
-            near = [
-                self.clearance(point, DT * (tick + s)) for s, point in between(q, tick, smooth=smooth)
-            ]
+            near = [self.clearance(point, DT * (tick + s)) for s, point in between(q, tick, smooth=smooth)]
             found.append(min(near))
         least, with_sphere = zip(*found, strict=True)
         return np.array(least), np.array(with_sphere)
