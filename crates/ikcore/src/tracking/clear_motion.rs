@@ -30,7 +30,7 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
 const WARNING: f64 = 0.2;
 
-/// Time in which the distance from an obstacle falls to its 2.7th part (s).
+/// Time in which a distance that is wanted, but not needed, comes about (s).
 const PACE: f64 = 0.1;
 
 /// Parts of a command that are tried if the whole is not certified.
@@ -190,14 +190,14 @@ impl ClearMotion {
     }
 
     /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
-    /// beside the rows from `expected`, the goal so far.
-    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, expected: &[f64], sample: &mut Point) {
+    /// beside the rows from `q`, where the arm is.
+    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, q: &[f64], sample: &mut Point) {
         self.goal_is_held = !self.set_goal_rows(sample);
         if !self.goal_is_held {
             return;
         }
         let n = sample.len();
-        sample.copy_from_slice(expected);
+        sample.copy_from_slice(q);
         goal.positions.clip(sample);
         for _ in 0..STEPS {
             self.set_goal_rows(sample);
@@ -256,13 +256,15 @@ impl ClearMotion {
         }
         let response = Response::new(wish, rest);
         let stop_time = wish.dt * stop.ticks_to_stop();
-        // An arm that cannot change its velocity at once begins to give way before it must.
-        let pace = if wish.limited.is_some() { (wish.dt / PACE).min(1.0) } else { 1.0 };
+        let pace = (wish.dt / PACE).min(1.0);
         for near in self.near.rows() {
             let [until_rest, while_leaving] = self.approach_of(near, stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
-            let least = (missing + LEAST_ROOM).max(pace * (missing + ROOM + while_leaving));
-            self.rows.push(response.row(&near.gradient, least));
+            let wanted = missing + ROOM + while_leaving;
+            // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
+            // velocity at once also comes nearer in time, so that it can give way.
+            let paced = if wanted > 0.0 || wish.limited.is_some() { pace * wanted } else { wanted };
+            self.rows.push(response.row(&near.gradient, paced.max(missing + LEAST_ROOM)));
         }
         self.rows.iter().any(|row| dot(&row.gradient, wanted) < row.least)
     }

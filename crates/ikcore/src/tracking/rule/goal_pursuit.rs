@@ -60,7 +60,7 @@ impl GoalPursuit {
             goal.advance(motion.scales());
         }
         if let Some(ago) = tick.sampled_ago {
-            self.take_sample(ago, &mut found, &mut tick, motion);
+            self.take_sample(q, ago, &mut found, &mut tick, motion);
         }
         match &self.goal {
             Some(goal) if !found.interrupted => {
@@ -78,7 +78,14 @@ impl GoalPursuit {
     }
 
     /// Corrects the goal by the target, of the given age in ticks.
-    fn take_sample(&mut self, ago: f64, found: &mut TickResult, tick: &mut Tick<'_>, motion: &LimitedMotion) {
+    fn take_sample(
+        &mut self,
+        q: &[f64],
+        ago: f64,
+        found: &mut TickResult,
+        tick: &mut Tick<'_>,
+        motion: &LimitedMotion,
+    ) {
         let time = self.now - ago;
         let positions = positions(tick, tick.velocity_limit.len());
         if let Some(goal) = &self.goal {
@@ -92,7 +99,7 @@ impl GoalPursuit {
                 criterion: tick.criterion,
                 positions: &positions,
             };
-            clear.clear_goal(&goal, &self.expected, &mut self.sample);
+            clear.clear_goal(&goal, q, &mut self.sample);
             self.since_held = if clear.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
         }
         if let Some(goal) = &mut self.goal {
