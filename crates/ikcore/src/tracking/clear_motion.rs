@@ -34,7 +34,7 @@ const WARNING: f64 = 0.2;
 const PACE: f64 = 0.1;
 
 /// Parts of a command that are tried if the whole is not certified.
-const PARTS: [f64; 3] = [1.0, 0.5, 0.125];
+const PARTS: [f64; 2] = [0.5, 0.125];
 
 /// Damping of the joints beside the task, relative to the squared size of the Jacobian.
 const DAMPING: f64 = 1e-5;
@@ -79,7 +79,10 @@ pub(super) struct ClearMotion {
     obstacles: ObstacleMotion,
     /// Time since the obstacles were where they are said to be (s).
     since: f64,
+    /// Near pairs where the arm comes to rest if it brakes now.
     near: NearRows,
+    /// Where it would come to rest after the command.
+    after: NearRows,
     rows: Vec<Row>,
     solver: RowSolver,
     check: ChordCheck,
@@ -123,6 +126,7 @@ impl ClearMotion {
         }
         Ok(Self {
             near: space.near_rows(),
+            after: space.near_rows(),
             check: space.chord_check(),
             solver: RowSolver::with_room(limits.dof(), MOST_ROWS),
             space: Arc::new(space),
@@ -166,27 +170,62 @@ impl ClearMotion {
         if self.set_rows(wish, &rest, &stop, &wanted) {
             self.step_beside_rows(wish, &wanted, q);
         }
+        let certified = self.certifies(wish, q) || {
+            self.correct(wish, q);
+            self.certifies(wish, q)
+        };
         let best = q.clone();
-        let certified = PARTS.into_iter().any(|part| {
-            if part < 1.0 {
+        let mut parts = PARTS.into_iter();
+        let certified = certified
+            || parts.any(|part| {
                 between(&brake, &best, part, q);
-            }
-            let motion = StopMotion::new(wish.q, q, limited);
-            let kept = KeptDistance {
-                margin: self.space.margin(),
-                speeds: &self.obstacles.speeds,
-                since: self.since,
-                dt: wish.dt,
-                at_rest: self.near.rows(),
-                leeway: ROOM,
-            };
-            self.space.is_kept_by(&motion, &kept, &mut self.check)
-        });
+                self.certifies(wish, q)
+            });
         if !certified {
             q.copy_from_slice(&brake);
         }
         self.since += wish.dt;
         *q != wanted
+    }
+
+    /// Whether the command `q` and the stop after it are certainly clear.
+    fn certifies(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
+        let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
+        let motion = StopMotion::new(wish.q, q, limited);
+        let kept = KeptDistance {
+            margin: self.space.margin(),
+            speeds: &self.obstacles.speeds,
+            since: self.since,
+            dt: wish.dt,
+            at_rest: self.near.rows(),
+            leeway: ROOM,
+        };
+        self.space.is_kept_by(&motion, &kept, &mut self.check)
+    }
+
+    /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it: they bend on the way.
+    fn correct(&mut self, wish: &Wish<'_>, q: &mut Point) {
+        let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
+        let stop = StopMotion::new(wish.q, q, limited);
+        let (n, rest): (usize, Point) = (q.len(), (0..q.len()).map(|j| stop.end(j)).collect());
+        let stop_time = wish.dt * stop.ticks_to_stop();
+        let slope = Response::new(wish, &rest).slope;
+        self.space.find_rows(&rest, self.space.margin() + NEAR[0], &mut self.after);
+        self.rows.clear();
+        for near in self.after.rows() {
+            let [until_rest, _] = self.approach_of(near, stop_time);
+            let mut row =
+                Row { gradient: [0.0; MAX_DOF], least: self.space.margin() + until_rest + LEAST_ROOM - near.distance };
+            (0..n).for_each(|j| row.gradient[j] = near.gradient[j] * slope[j]);
+            row.least += dot(&row.gradient[..n], q);
+            self.rows.push(row);
+        }
+        let start = q.clone();
+        wish.robot.tip_and_jacobian(&start, &mut self.linearization.columns);
+        let (columns, residual) = (&self.linearization.columns, &[0.0; ROWS]);
+        let (lower, upper, lambda) = (wish.bounds.lower(), wish.bounds.upper(), damping(&columns[..n]));
+        let step = RowStep { columns, residual, lambda, start: &start, lower, upper, rows: &self.rows };
+        self.solver.write(&step, q);
     }
 
     /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
