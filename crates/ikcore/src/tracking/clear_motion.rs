@@ -229,14 +229,14 @@ impl ClearMotion {
     }
 
     /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
-    /// beside the rows from `q`, where the arm is.
-    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, q: &[f64], sample: &mut Point) {
+    /// beside the rows, beginning at `from`.
+    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, from: &[f64], sample: &mut Point) {
         self.goal_is_held = !self.set_goal_rows(sample);
         if !self.goal_is_held {
             return;
         }
         let n = sample.len();
-        sample.copy_from_slice(q);
+        sample.copy_from_slice(from);
         goal.positions.clip(sample);
         for _ in 0..STEPS {
             self.set_goal_rows(sample);

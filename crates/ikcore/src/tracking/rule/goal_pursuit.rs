@@ -26,6 +26,9 @@ const MOST_EVALUATIONS: usize = 60;
 /// So many samples after obstacles changed one, the goal begins anew: what it remembers are motions along obstacles, not noise.
 const RELEASED: usize = 5;
 
+/// A goal farther from the arm than this (rad, m) does not show the way along an obstacle.
+const FAR: f64 = 0.1;
+
 /// State of the rule between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct GoalPursuit {
@@ -99,7 +102,10 @@ impl GoalPursuit {
                 criterion: tick.criterion,
                 positions: &positions,
             };
-            clear.clear_goal(&goal, q, &mut self.sample);
+            // A goal that obstacles have kept far away may be on the wrong side of one.
+            let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
+            let from = if away < FAR { &self.expected } else { q };
+            clear.clear_goal(&goal, from, &mut self.sample);
             self.since_held = if clear.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
         }
         if let Some(goal) = &mut self.goal {
