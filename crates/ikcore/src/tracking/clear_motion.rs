@@ -28,7 +28,7 @@ const LEAST_ROOM: f64 = 2e-5;
 const NEAR: [f64; 2] = [0.03, 0.2];
 
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
-const WARNING: f64 = 0.2;
+const WARNING: f64 = 0.4;
 
 /// Time in which a distance that is wanted, but not needed, comes about (s).
 const PACE: f64 = 0.1;
