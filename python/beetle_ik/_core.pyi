@@ -561,6 +561,7 @@ class Status(IntEnum):
     OUTSIDE_LIMITS = 12
     HELD_IN_REGION = 13
     IN_COLLISION = 14
+    HELD_BY_OBSTACLE = 15
 
 @final
 class APPS:
