@@ -7,6 +7,7 @@
 
 use super::MAX_DOF;
 use super::box_step::ROWS;
+use super::vector::dot;
 
 /// Violations below this (rad, m) count as rounding.
 const ROUNDING: f64 = 1e-12;
@@ -239,11 +240,6 @@ fn solve_factored(factor: &[f64], x: &mut [f64]) {
         let known: f64 = (i + 1..n).map(|k| factor[k * n + i] * x[k]).sum();
         x[i] = (x[i] - known) / factor[i * n + i];
     }
-}
-
-/// a'b over the shorter of both.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
