@@ -33,6 +33,8 @@ pub struct Plan {
     pub nearest: Option<NearestContact>,
     /// Why no clear motion was found along a path, if that is so.
     pub obstruction: Option<String>,
+    /// Index of the end that was taken, of those given; `None` for motions along a path.
+    pub chosen_end: Option<usize>,
     /// What a motion along a path keeps clear of, if anything.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.

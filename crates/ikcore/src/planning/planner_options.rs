@@ -76,6 +76,8 @@ impl FromStr for AlongPathMethod {
 pub struct PointToPointOptions {
     /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
     pub start_velocity: Option<Vec<f64>>,
+    /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
+    pub task: Option<Task>,
     /// The planner.
     pub method: PointToPointMethod,
     /// Quantity to minimise.

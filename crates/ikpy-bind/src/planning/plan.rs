@@ -94,6 +94,12 @@ impl PyPlan {
         self.core.accuracy.unwrap_or(f64::NAN)
     }
 
+    /// Index of the end that was taken, of those given; None for a plan along a path.
+    #[getter]
+    fn chosen_end(&self) -> Option<usize> {
+        self.core.chosen_end
+    }
+
     /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.
     #[getter]
     fn violations(&self) -> Vec<PyViolation> {

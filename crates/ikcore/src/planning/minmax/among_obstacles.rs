@@ -3,10 +3,10 @@
 
 use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
-use super::pair_search::{NAMES, PairSearch};
+use super::pair_search::PairSearch;
 use super::rrt_connect::{Connection, TreeSearch};
 use super::straight_line_plan::{PAIRS, no_pair, straight};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{Scene, Sweep, kept_margin};
@@ -14,6 +14,7 @@ use crate::planning::collision_checks::{
     RESERVE, TimedMotion, as_lines, configuration_at, nearest_at, refuse_collision, scene, too_near,
 };
 use crate::planning::cost::tip_travel_along;
+use crate::planning::endpoint::{EndName, no_usable_end};
 use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
 use crate::solver::{Monitor, Status};
@@ -40,14 +41,19 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
-    for (what, end) in NAMES.into_iter().zip(search.ends) {
-        if let Endpoint::Configuration(q) = end {
-            refuse_collision(what, &scene, q, margin)?;
-        }
+    let refusal = |name: EndName, end: &Endpoint| match end {
+        Endpoint::Configuration(q) => refuse_collision(&name.of_target(), &scene, q, margin),
+        Endpoint::Target(_) => Ok(()),
+    };
+    refusal(EndName::Start, search.start)?;
+    let refused: Vec<Error> =
+        (0..search.ends.len()).filter_map(|i| refusal(search.name(i), &search.ends[i]).err()).collect();
+    if refused.len() == search.ends.len() {
+        return Err(no_usable_end(search.ends.len(), refused));
     }
     let is_open = |pair: &EndPair| is_clear(&pair.start) && is_clear(&pair.end);
     let mut open: Vec<EndPair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
-    let given = search.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
+    let given = [search.start].into_iter().chain(search.ends).all(|end| matches!(end, Endpoint::Configuration(_)));
     if open.len() < FEW_PAIRS && !given {
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
     }
@@ -70,7 +76,12 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
             (straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?, status)
         }
     };
-    finish(search, &scene, trajectory, ended, options, margin)
+    let mut plan = finish(search, &scene, trajectory, ended, options, margin)?;
+    let last = configuration_at(&plan.trajectory, plan.trajectory.duration())?;
+    let distance = |pair: &&EndPair| squared_distance(&pair.end, &last);
+    let taken = pairs.iter().chain(&open).min_by(|one, other| distance(one).total_cmp(&distance(other)));
+    plan.chosen_end = taken.map(|pair| pair.chosen);
+    Ok(plan)
 }
 
 /// Returns the pair whose straight line penetrates least, at samples.
@@ -255,6 +266,7 @@ fn finish(
         nearest,
         obstruction: None,
         surroundings: None,
+        chosen_end: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -1,5 +1,6 @@
 //! Motions that begin at a velocity: directly to the end, or else to a stop from which a plan from rest continues.
 
+use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
@@ -31,7 +32,7 @@ pub(super) fn begin(
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Beginning> {
-    let Endpoint::Configuration(q) = search.ends[0] else {
+    let Endpoint::Configuration(q) = search.start else {
         return Err(Error::Contradiction {
             problem: "start_qd needs the configuration of the start: give start_q".into(),
         });
@@ -51,9 +52,10 @@ pub(super) fn begin(
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
-    let mut motions: Vec<Trajectory> = pairs.iter().chain([last]).filter_map(|pair| direct(&pair.end)).collect();
-    motions.sort_by(|one, other| one.duration().total_cmp(&other.duration()));
-    if let Some(trajectory) = motions.into_iter().find(&mut is_free) {
+    let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
+    let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
+    motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
+    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
         let evaluations = search.evaluations;
         let cost = options.objective.of(search.robot, &trajectory);
         let closest =
@@ -70,6 +72,7 @@ pub(super) fn begin(
             nearest,
             obstruction: None,
             surroundings: None,
+            chosen_end: Some(chosen),
             accuracy: None,
             reference: None,
             redundancy: vec![],
