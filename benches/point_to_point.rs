@@ -24,7 +24,7 @@ fn plane(c: &mut Criterion) {
         let limits = limits(&arm, Some(std::f64::consts::PI), std::f64::consts::TAU);
         let options = PointToPointOptions { limits, ..Default::default() };
         group.bench_function(format!("{links} links in the plane"), |b| {
-            b.iter(|| plan_point_to_point(&arm, &position(1.0, 0.0), &position(0.5, 1.5), &options, &mut Unattended));
+            b.iter(|| plan_point_to_point(&arm, &position(1.0, 0.0), &[position(0.5, 1.5)], &options, &mut Unattended));
         });
     }
 }
@@ -46,7 +46,9 @@ fn panda(c: &mut Criterion) {
             obstacles: vec![obstacle.clone()],
             ..Default::default()
         };
-        group.bench_function(name, |b| b.iter(|| plan_point_to_point(&arm, &start, &end, &options, &mut Unattended)));
+        group.bench_function(name, |b| {
+            b.iter(|| plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options, &mut Unattended))
+        });
     }
     let obstacles = [crate_];
     let scene = Scene::new(&arm, &obstacles).expect("a scene");

@@ -2709,6 +2709,7 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     start_qd: ArrayLike | None = None,
+    task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -2723,10 +2724,12 @@ def plan_point_to_point(
 
     Args:
         robot: the arm.
-        start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
-        start_q, end_q: joint positions (n,) instead.
+        start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
+            (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
+        start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+        task: which part of the poses counts, one of `tasks`, as for `solve`; None: all of it.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -2742,7 +2745,8 @@ def plan_point_to_point(
         A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
+        InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
+            only if none can be reached.
         LimitError: limits that contradict each other or exclude an end.
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
         UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
@@ -2946,6 +2950,9 @@ class Plan:
     @property
     def nearest(self) -> Nearest | None:
         """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
+    @property
+    def chosen_end(self) -> int | None:
+        """Index of the end that was taken, of those given; None for a plan along a path."""
     @property
     def violations(self) -> list[Violation]:
         """The bounds that the trajectory exceeds, a list of `Violation`; empty on success."""

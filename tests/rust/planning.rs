@@ -42,7 +42,7 @@ fn plan(k: usize, options: PointToPointOptions) -> Plan {
         given @ PointToPointMethod::Tpbso(_) => given,
     };
     let options = PointToPointOptions { method, limits: Some(limits), ..options };
-    plan_point_to_point(&robot, &at(1.0, 0.0), &at(0.5, 1.5), &options, &mut Unattended).expect("valid input")
+    plan_point_to_point(&robot, &at(1.0, 0.0), &[at(0.5, 1.5)], &options, &mut Unattended).expect("valid input")
 }
 
 fn by_evolution() -> PointToPointMethod {
@@ -176,7 +176,7 @@ fn robots_in_space_reach_both_poses() {
         let poses: Vec<Frame> = qs.chunks(robot.dof()).map(|q| robot.tip(q)).collect();
         let ends = poses.iter().map(|pose| Endpoint::Target(Target::Pose(*pose))).collect::<Vec<_>>();
         let options = PointToPointOptions { method: by_evolution(), limits, ..Default::default() };
-        let plan = plan_point_to_point(&robot, &ends[0], &ends[1], &options, &mut Unattended).unwrap();
+        let plan = plan_point_to_point(&robot, &ends[0], &ends[1..], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{name}: {}", plan.message());
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
         for (t, pose) in [(0.0, poses[0]), (plan.trajectory.duration(), poses[1])] {

@@ -43,7 +43,8 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
         let mut sum = 0.0;
         for seed in 0..20 {
             let options = PointToPointOptions { limits: Some(limits.clone()), seed, ..Default::default() };
-            let plan = plan_point_to_point(&robot, &position(1.0, 0.0), &position(0.5, 1.5), &options, &mut Unattended);
+            let plan =
+                plan_point_to_point(&robot, &position(1.0, 0.0), &[position(0.5, 1.5)], &options, &mut Unattended);
             let plan = plan.unwrap();
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
             assert!(plan.trajectory.max_velocity().iter().all(|v| *v <= std::f64::consts::PI));
@@ -75,7 +76,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
         let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
         let least = all.fold(f64::INFINITY, f64::min);
         let [start, end] = [0, 1].map(|i| Endpoint::Target(pair[i]));
-        let plan = plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap();
+        let plan = plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
     }
@@ -105,14 +106,15 @@ fn arms_find_their_way_around_a_box() {
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let start: Vec<f64> = robot.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
         let mut solved = 0;
-        for end in &poses_behind(&robot, &obstacles, 20) {
+        for end in poses_behind(&robot, &obstacles, 20) {
+            let ends = [end];
             let options = PointToPointOptions {
                 limits: Some(limits(&robot, None, 10.0)),
                 obstacles: obstacles.clone(),
                 ..Default::default()
             };
             let plan =
-                plan_point_to_point(&robot, &Endpoint::Configuration(start.clone()), end, &options, &mut Unattended);
+                plan_point_to_point(&robot, &Endpoint::Configuration(start.clone()), &ends, &options, &mut Unattended);
             let plan = plan.unwrap();
             if plan.status == Status::Solved {
                 solved += 1;
@@ -121,7 +123,7 @@ fn arms_find_their_way_around_a_box() {
                 let clearance = plan.clearance.unwrap();
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
-                if let Endpoint::Target(target) = end {
+                if let [Endpoint::Target(target)] = &ends {
                     let error = ikcore::task::TipError::from(
                         target.assess(&robot, &reached, &Tolerance::default().into()).error,
                     );
@@ -148,7 +150,7 @@ fn a_way_around_a_wall_is_found_and_smooth() {
             seed,
             ..Default::default()
         };
-        let plan = plan_point_to_point(&robot, &side(-0.7), &side(0.7), &options, &mut Unattended).unwrap();
+        let plan = plan_point_to_point(&robot, &side(-0.7), &[side(0.7)], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= 10.0));
         // Velocity and acceleration go on across every knot.
@@ -164,7 +166,7 @@ fn a_way_around_a_wall_is_found_and_smooth() {
                 assert!((before.0[j] - after.0[j]).abs() < 1e-6 && (before.1[j] - after.1[j]).abs() < 1e-4);
             }
         }
-        let again = plan_point_to_point(&robot, &side(-0.7), &side(0.7), &options, &mut Unattended).unwrap();
+        let again = plan_point_to_point(&robot, &side(-0.7), &[side(0.7)], &options, &mut Unattended).unwrap();
         assert_eq!(again.trajectory, plan.trajectory);
     }
 }
@@ -206,7 +208,7 @@ fn plans_reported_free_are_free_at_every_sample() {
             stop: Some(Stop { max_evaluations: 4000, ..Stop::default() }),
             ..Default::default()
         };
-        let Ok(plan) = plan_point_to_point(robot, &start, &end, &options, &mut Unattended) else { continue };
+        let Ok(plan) = plan_point_to_point(robot, &start, &[end], &options, &mut Unattended) else { continue };
         if plan.status != Status::Solved {
             assert!(!plan.violations.is_empty(), "{}", plan.message());
             continue;
@@ -241,7 +243,8 @@ fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
             ..Default::default()
         };
         let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
-        let plan = plan_point_to_point(&arm, &start, &end, &options(vec![]), &mut Unattended).unwrap();
+        let plan =
+            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![]), &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
         let ball = Shape::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
         let says = refused(&arm, &start, &end, options(vec![ball]));
@@ -250,7 +253,7 @@ fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
 }
 
 fn refused(robot: &Robot, start: &Endpoint, end: &Endpoint, options: PointToPointOptions) -> String {
-    plan_point_to_point(robot, start, end, &options, &mut Unattended).unwrap_err().to_string()
+    plan_point_to_point(robot, start, std::slice::from_ref(end), &options, &mut Unattended).unwrap_err().to_string()
 }
 
 #[test]
@@ -325,7 +328,7 @@ fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
         ..Default::default()
     };
     let [start, end] = [-0.5, 0.5].map(|y| Endpoint::Target(Target::Position([0.8, y, 0.0])));
-    plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap()
+    plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
 
 #[test]

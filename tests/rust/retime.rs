@@ -46,7 +46,7 @@ fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limi
     let options =
         PointToPointOptions { limits: Some(limits), obstacles: obstacles.to_vec(), ..PointToPointOptions::default() };
     let [start, end] = [start, end].map(|q| Endpoint::Configuration(q.clone()));
-    plan_point_to_point(robot, &start, &end, &options, &mut Unattended).unwrap()
+    plan_point_to_point(robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
 
 fn at(motion: &Trajectory, share: f64) -> Vec<f64> {
@@ -176,7 +176,7 @@ fn a_plan_can_begin_at_a_velocity() {
             ..PointToPointOptions::default()
         };
         let [from, to] = [start, end].map(|q| Endpoint::Configuration(q.clone()));
-        let Ok(plan) = plan_point_to_point(&robot, &from, &to, &options, &mut Unattended) else { continue };
+        let Ok(plan) = plan_point_to_point(&robot, &from, &[to], &options, &mut Unattended) else { continue };
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; 7]);
         plan.trajectory.at(0.0, &mut q, &mut qd, &mut qdd).unwrap();
         let near = |one: &[f64], other: &[f64]| one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-12);
@@ -199,7 +199,7 @@ fn an_arm_without_a_shape_can_begin_at_a_velocity_too() {
         ..PointToPointOptions::default()
     };
     let [from, to] = [[0.0; 6], [0.4; 6]].map(|q| Endpoint::Configuration(q.to_vec()));
-    let plan = plan_point_to_point(&robot, &from, &to, &options, &mut Unattended).unwrap();
+    let plan = plan_point_to_point(&robot, &from, &[to], &options, &mut Unattended).unwrap();
     // From 0.5 rad/s at 5 rad/s^2 over 0.4 rad: up to sqrt(0.125 + 2) rad/s, and down.
     let expected = (2.0 * 2.125_f64.sqrt() - 0.5) / 5.0;
     assert!((plan.cost - expected).abs() < 1e-9 && plan.clearance.is_none(), "{}", plan.cost);
@@ -236,7 +236,7 @@ fn errors_name_the_reason_and_the_remedy() {
             ..PointToPointOptions::default()
         };
         let [from, to] = [&ends[0], &ends[1]].map(|q| Endpoint::Configuration(q.clone()));
-        plan_point_to_point(&robot, &from, &to, &options, &mut Unattended).unwrap_err().to_string()
+        plan_point_to_point(&robot, &from, &[to], &options, &mut Unattended).unwrap_err().to_string()
     };
     let fields = [(Field::Velocity, 1.0), (Field::Acceleration, 2.0)];
     assert_eq!(start(vec![0.1], &fields, None), "start_qd: expected 2 joints, got 1");

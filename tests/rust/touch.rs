@@ -155,7 +155,7 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
         let floor = Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap().with_touch(names(touch));
         let options = PointToPointOptions { obstacles: vec![floor], ..PointToPointOptions::default() };
         let [start, end] = [READY.to_vec(), to.clone()].map(Endpoint::Configuration);
-        plan_point_to_point(&robot, &start, &end, &options, &mut Unattended)
+        plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended)
     };
     assert_eq!(
         plan(&["link_1"]).unwrap_err().to_string(),

@@ -180,6 +180,14 @@ pub enum Error {
         /// The distance to it, and what would be right.
         problem: String,
     },
+    /// Several ends were given for a motion, and none of them can be used.
+    #[error("none of the {count} ends can be reached: {problems}")]
+    NoUsableEnd {
+        /// The number of ends.
+        count: usize,
+        /// What is wrong with each, separated by semicolons.
+        problems: String,
+    },
     /// A limit that is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
     NegativeLimit {

@@ -78,24 +78,20 @@ impl<'a> EightScene<'a> {
         self.groups.iter().map(|(_, levers)| levers.travel(reach)).fold(0.0, f64::max)
     }
 
-    /// Places everything at the configurations in the lanes of `value(joint)`.
+    /// Places everything at these shares of the straight line between two configurations.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&mut self, value: impl Fn(usize) -> F32x8) {
-        for (j, q) in self.qs.iter_mut().enumerate() {
-            *q = value(j);
+    pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], shares: [f32; 8]) {
+        let shares = Eight::<A>::of(F32x8(shares));
+        for (q, (from, to)) in self.qs.iter_mut().zip(from.iter().zip(to)) {
+            *q = shares.mul_add(Eight::splat(to - from), Eight::splat(*from)).stored();
         }
         self.scene.bodies.eight.place::<A>(&self.qs, &mut self.placement);
     }
 
-    /// Calls `visit` with all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
-    /// configurations, the lanes in which they may, and the placement; until it returns false. Returns what it returned last.
+    /// Shows `visitor` all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
+    /// configurations, and the lanes in which they may. False if it wants no more.
     #[inline(always)]
-    pub fn each_near<A: Arithmetic>(
-        &mut self,
-        margin: f64,
-        reach: &[f64],
-        mut visit: impl FnMut(&mut Near<'_, '_>, BodyPair, u32) -> bool,
-    ) -> bool {
+    pub fn each_near<A: Arithmetic>(&mut self, margin: f64, reach: &[f64], visitor: &mut impl Visitor) -> bool {
         let Self { scene, obstacles, groups, pairs, placement, .. } = self;
         let (eight, others) = (&scene.bodies.eight, &scene.others);
         let mut near = Near { scene, obstacles, placement };
@@ -111,7 +107,7 @@ impl<'a> EightScene<'a> {
                     if lanes == 0 || others.allowed.allow(body, obstacle) {
                         continue;
                     }
-                    if !visit(&mut near, BodyPair::Obstacle { body, obstacle }, lanes) {
+                    if !visitor.goes_on::<A>(&mut near, BodyPair::Obstacle { body, obstacle }, lanes) {
                         return false;
                     }
                 }
@@ -127,7 +123,7 @@ impl<'a> EightScene<'a> {
                 let BodyPair::Bodies { near: one, far: other, .. } = pair else { continue };
                 let (a, b) = (eight.body::<A>(one, near.placement), eight.body::<A>(other, near.placement));
                 let lanes = near_each_other(&a, &b, enough);
-                if lanes != 0 && !visit(&mut near, pair, lanes) {
+                if lanes != 0 && !visitor.goes_on::<A>(&mut near, pair, lanes) {
                     return false;
                 }
             }
@@ -141,6 +137,12 @@ impl<'a> EightScene<'a> {
         let Self { scene, obstacles, placement, .. } = self;
         Near { scene, obstacles, placement }.meet::<A>(pair, margin)
     }
+}
+
+/// Is shown near pairs. No closure: that would be compiled without the instructions of the calling kernel.
+pub(super) trait Visitor {
+    /// Takes a pair and the lanes in which it may be near; returns whether it wants more.
+    fn goes_on<A: Arithmetic>(&mut self, near: &mut Near<'_, '_>, pair: BodyPair, lanes: u32) -> bool;
 }
 
 /// Everything at eight configurations.

@@ -76,6 +76,8 @@ impl FromStr for AlongPathMethod {
 pub struct PointToPointOptions {
     /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
     pub start_velocity: Option<Vec<f64>>,
+    /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
+    pub task: Option<Task>,
     /// The planner.
     pub method: PointToPointMethod,
     /// Quantity to minimise.
@@ -92,6 +94,14 @@ pub struct PointToPointOptions {
     pub stop: Option<Stop>,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
+}
+
+impl PointToPointOptions {
+    /// What the motion keeps clear of.
+    pub(super) fn surroundings(&self) -> Surroundings {
+        let obstacles = Some(self.obstacles.clone());
+        Surroundings { obstacles, margin: self.margin, self_collision: self.self_collision }
+    }
 }
 
 /// Options of [`plan_along_path`](super::plan_along_path).

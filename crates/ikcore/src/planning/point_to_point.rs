@@ -1,6 +1,6 @@
 //! Planning from point to point.
 
-use super::endpoint::Endpoint;
+use super::endpoint::{EndName, Endpoint};
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{PointToPointMethod, PointToPointOptions};
@@ -9,29 +9,58 @@ use crate::error::{Error, Result};
 use crate::obstacle::kept_margin;
 use crate::robot::Robot;
 use crate::solver::Monitor;
+use crate::task::Task;
 
-/// Plans a motion of `robot` from `start` to rest at `end`. It begins at rest, or with the velocity of the options.
+/// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
+/// rest, or with the velocity of the options.
+///
+/// Ends that cannot be reached or are in collision are passed over, unless all are.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, [`Error::Unreachable`] if an end is out of
-/// reach. A plan that violates limits is a status, not an error.
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] if the start or the only end is out of reach,
+/// [`Error::NoUsableEnd`] if all of several ends are. A plan that violates limits is a status, not an error.
 pub fn plan_point_to_point(
     robot: &Robot,
     start: &Endpoint,
-    end: &Endpoint,
+    ends: &[Endpoint],
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
-    start.check("start", robot)?;
-    end.check("end", robot)?;
-    kept_margin(options.margin)?;
+    check(robot, start, ends, options)?;
     let mut plan = match &options.method {
-        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
-        PointToPointMethod::Tpbso(_) if options.start_velocity.is_some() => Err(Error::Contradiction {
-            problem: "start_qd is kept by method=\"minmax\": method=\"tpbso\" begins at rest".into(),
-        }),
-        PointToPointMethod::Tpbso(tpbso) => tpbso::point_to_point(robot, [start, end], tpbso, options, monitor),
+        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, ends, options, monitor),
+        PointToPointMethod::Tpbso(tpbso) => {
+            let end = only_end(ends, options)?;
+            tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)
+        }
     }?;
     plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?);
     Ok(plan)
+}
+
+/// Checks what all methods share.
+fn check(robot: &Robot, start: &Endpoint, ends: &[Endpoint], options: &PointToPointOptions) -> Result<()> {
+    let task = options.task.as_ref();
+    task.map_or(Ok(()), Task::validate)?;
+    start.check(EndName::Start, robot, task)?;
+    if ends.is_empty() {
+        return Err(Error::Contradiction { problem: "no end was given: give at least one".into() });
+    }
+    for (i, end) in ends.iter().enumerate() {
+        end.check(EndName::of(i, ends.len()), robot, task)?;
+    }
+    kept_margin(options.margin).map(|_| ())
+}
+
+/// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
+fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&'a Endpoint> {
+    let refused = |what: &str, does: &str| {
+        Err(Error::Contradiction { problem: format!("{what} by method=\"minmax\": method=\"tpbso\" {does}") })
+    };
+    match ends {
+        _ if options.start_velocity.is_some() => refused("start_qd is kept", "begins at rest"),
+        _ if options.task.is_some() => refused("task is kept", "reaches whole targets"),
+        [end] => Ok(end),
+        _ => refused("several ends are taken", "plans to one"),
+    }
 }

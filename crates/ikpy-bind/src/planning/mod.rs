@@ -1,6 +1,7 @@
 //! Planning: point-to-point motions, motions along paths, and time-optimal timing.
 
 mod along_path;
+mod endpoints;
 mod plan;
 mod point_to_point;
 mod time_optimal;

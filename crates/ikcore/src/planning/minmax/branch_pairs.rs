@@ -4,7 +4,7 @@
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use crate::error::Result;
-use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
+use crate::ik::{AllOptions, bring_near, solve_all};
 use crate::objective::{Bounds, Point};
 use crate::planning::Endpoint;
 use crate::solver::Monitor;
@@ -13,24 +13,26 @@ use crate::solver::Monitor;
 const BRANCHES: usize = 40;
 
 impl PairSearch<'_> {
-    /// Returns the `count` quickest pairs of configurations of both ends, the quickest first.
+    /// Returns the `count` quickest pairs of configurations of the start and of end `chosen`, the quickest first.
     ///
     /// # Errors
     /// None if both ends have a configuration.
-    pub(super) fn branches(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
-        let [starts, ends] = [self.configurations(0, monitor)?, self.configurations(1, monitor)?];
+    pub(super) fn branches(&mut self, chosen: usize, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
+        let (given_start, given_end) = (self.start, &self.ends[chosen]);
+        let starts = self.configurations(given_start, monitor)?;
+        let ends = self.configurations(given_end, monitor)?;
         let bounds = Bounds::from_ranges(self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied()));
-        let start_is_free = matches!(self.ends[0], Endpoint::Target(_));
+        let start_is_free = matches!(given_start, Endpoint::Target(_));
         let mut pairs = Vec::with_capacity(starts.len() * ends.len());
         for start in &starts {
             for end in &ends {
                 let (mut start, mut end) = (start.clone(), end.clone());
-                match self.ends[1] {
+                match given_end {
                     Endpoint::Target(_) => bring_near(self.robot, &bounds, &start, &mut end),
                     Endpoint::Configuration(_) if start_is_free => bring_near(self.robot, &bounds, &end, &mut start),
                     Endpoint::Configuration(_) => {}
                 }
-                pairs.push(self.pair(start, end));
+                pairs.push(self.pair(start, end, chosen));
             }
         }
         pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
@@ -38,13 +40,12 @@ impl PairSearch<'_> {
         Ok(pairs)
     }
 
-    fn configurations(&mut self, end: usize, monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
-        let target = match self.ends[end] {
+    fn configurations(&mut self, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
+        let target = match end {
             Endpoint::Configuration(q) => return Ok(vec![q.as_slice().into()]),
             Endpoint::Target(target) => target,
         };
-        let each =
-            SolveOptions { limits: Some(self.position_limits.clone()), seed: self.seed, ..SolveOptions::default() };
+        let each = self.solve_options();
         let options = AllOptions { each, limit: Some(BRANCHES), redundancy: 0, ..AllOptions::default() };
         let found = solve_all(self.robot, target, &options, monitor)?;
         self.evaluations += found.evaluations;

@@ -9,6 +9,8 @@ use crate::wording::number;
 pub(super) struct EndPair {
     pub start: Point,
     pub end: Point,
+    /// Index of the end, of those given.
+    pub chosen: usize,
     pub duration: f64,
 }
 
@@ -18,7 +20,7 @@ const SAME: f64 = 1e-3;
 impl EndPair {
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let near = |a: &Point, b: &Point| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
-        near(&self.start, &other.start) && near(&self.end, &other.end)
+        self.chosen == other.chosen && near(&self.start, &other.start) && near(&self.end, &other.end)
     }
 
     /// Checks that the ends differ.

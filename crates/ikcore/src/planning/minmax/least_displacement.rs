@@ -4,14 +4,17 @@
 //! displacements, in which joints with larger displacements gain weight until the largest ones are equal. Each round is
 //! also a Gauss-Newton step towards the targets.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::end_pair::EndPair;
+use crate::error::Result;
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Point};
 use crate::planning::MotionLimits;
 use crate::robot::Robot;
-use crate::task::{Criterion, Target};
+use crate::task::{Criterion, Target, Task, Tolerance};
 
 const ROUNDS: usize = 20;
 /// Largest displacement of a joint in one round (rad, m).
@@ -22,10 +25,42 @@ const DAMPING: f64 = 0.0125;
 /// The smallest weight, relative to the sum.
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
+/// What the targets leave free.
+pub(super) struct Freedom<'a> {
+    /// With the tool of the task, if there is one.
+    robot: Cow<'a, Robot>,
+    limits: &'a MotionLimits,
+    task: Option<Task>,
+    criterion: Criterion,
+}
+
+impl<'a> Freedom<'a> {
+    /// # Errors
+    /// As [`Task::robot`].
+    pub(super) fn new(robot: &'a Robot, limits: &'a MotionLimits, task: Option<Task>) -> Result<Self> {
+        let with_tool = task.map_or(Ok(None), |task| task.robot(robot))?;
+        // The region may be left on the way: the ends are solved for once more.
+        let criterion = task.map(|task| Criterion { region: None, ..task.criterion(Tolerance::default()) });
+        Ok(Self {
+            robot: with_tool.map_or(Cow::Borrowed(robot), Cow::Owned),
+            limits,
+            task,
+            criterion: criterion.unwrap_or_default(),
+        })
+    }
+
+    /// The part of a target that the task uses.
+    fn part_used(&self, target: &Target) -> Option<Target> {
+        self.task.map_or(Some(*target), |task| task.target(target).ok())
+    }
+}
+
 /// Moves those ends of `pair` that are given by a target; returns the number of evaluations of the kinematics.
-pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut EndPair) -> usize {
+pub(super) fn shorten(freedom: &Freedom, free: [Option<&Target>; 2], pair: &mut EndPair) -> usize {
+    let Freedom { robot, limits, criterion, .. } = freedom;
     let n = robot.dof();
-    let free_ends: Vec<(usize, &Target)> = free.into_iter().enumerate().filter_map(|(i, t)| Some((i, t?))).collect();
+    let used = |end: Option<&Target>| end.and_then(|target| freedom.part_used(target));
+    let free_ends: Vec<(usize, Target)> = (0..2).filter_map(|i| Some((i, used(free[i])?))).collect();
     if free_ends.is_empty() {
         return 0;
     }
@@ -34,7 +69,7 @@ pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Targe
     for _ in 0..ROUNDS {
         for ((end, target), linearization) in free_ends.iter().zip(&mut linearizations) {
             let q = if *end == 0 { &pair.start } else { &pair.end };
-            target.linearize(robot, q, &Criterion::default(), linearization);
+            target.linearize(robot, q, criterion, linearization);
         }
         let displacement: Vec<f64> = pair.start.iter().zip(&pair.end).map(|(start, end)| end - start).collect();
         let duration = limits.quintic_duration(displacement.iter().copied());
@@ -62,7 +97,7 @@ fn weighted_step(
     displacement: &[f64],
     scales: &[f64],
     weights: &[f64],
-    free: &[(usize, &Target)],
+    free: &[(usize, Target)],
     linearizations: &[Linearization],
 ) -> Option<DVector<f64>> {
     let n = displacement.len();

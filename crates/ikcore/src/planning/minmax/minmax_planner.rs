@@ -13,25 +13,25 @@ use crate::solver::Monitor;
 
 const METHOD: &str = "method=\"minmax\"";
 
-/// Plans from `start` to `end`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
+/// Plans from `start` to one of `ends`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
 pub(crate) fn point_to_point(
     robot: &Robot,
     start: &Endpoint,
-    end: &Endpoint,
+    ends: &[Endpoint],
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let deadline = Deadline::start(options.stop.as_ref());
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
-    let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, deadline)?;
+    let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
         return match moving_start::begin(&mut search, velocity, options, monitor)? {
             Beginning::Whole(plan) => Ok(*plan),
             Beginning::Stop(stop) => {
                 let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };
-                let rest = point_to_point(robot, &at_rest, end, &options, monitor)?;
+                let rest = point_to_point(robot, &at_rest, ends, &options, monitor)?;
                 moving_start::followed_by(stop, rest, robot, &options)
             }
         };

@@ -1,5 +1,6 @@
 //! Motions that begin at a velocity: directly to the end, or else to a stop from which a plan from rest continues.
 
+use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
@@ -31,7 +32,7 @@ pub(super) fn begin(
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Beginning> {
-    let Endpoint::Configuration(q) = search.ends[0] else {
+    let Endpoint::Configuration(q) = search.start else {
         return Err(Error::Contradiction {
             problem: "start_qd needs the configuration of the start: give start_q".into(),
         });
@@ -51,9 +52,10 @@ pub(super) fn begin(
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
-    let mut motions: Vec<Trajectory> = pairs.iter().chain([last]).filter_map(|pair| direct(&pair.end)).collect();
-    motions.sort_by(|one, other| one.duration().total_cmp(&other.duration()));
-    if let Some(trajectory) = motions.into_iter().find(&mut is_free) {
+    let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
+    let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
+    motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
+    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
         let evaluations = search.evaluations;
         let cost = options.objective.of(search.robot, &trajectory);
         let closest =
@@ -70,6 +72,7 @@ pub(super) fn begin(
             nearest,
             obstruction: None,
             surroundings: None,
+            chosen_end: Some(chosen),
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -128,19 +131,11 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 
 /// A plan from rest, preceded by the stop that leads to it.
 pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
-    let collides = can_collide(robot, options);
-    let lines = if collides { as_lines(robot, options)? } else { None };
-    let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
-    let closest =
-        scene.as_ref().and_then(|scene| Sweep::new(scene).smallest(&TimedMotion::new(&stop), [0.0, stop.duration()]));
-    let (clearance, nearest) = match (rest.clearance, &scene, closest) {
-        (Some(clearance), Some(scene), Some(near)) if near.contact.distance < clearance => {
-            (Some(near.contact.distance), nearest_at(scene, &stop, near.at)?)
-        }
-        (clearance, ..) => (clearance, rest.nearest),
-    };
+    // The stop keeps the margin.
+    let margin = kept_margin(options.margin)?;
+    let clearance = rest.clearance.map(|clearance| clearance.min(margin));
     let trajectory = stop.then(&rest.trajectory, 0.0)?;
     let cost = rest.objective.of(robot, &trajectory);
     let history = vec![Improvement { evaluations: rest.evaluations, cost }];
-    Ok(Plan { trajectory, cost, history, clearance, nearest, ..rest })
+    Ok(Plan { trajectory, cost, history, clearance, nearest: None, ..rest })
 }

@@ -1,83 +1,129 @@
 //! Search for pairs of end configurations that are near each other in time.
 
 use super::end_pair::EndPair;
-use super::least_displacement;
+use super::least_displacement::{self, Freedom};
 use crate::error::{Error, Result};
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::{Field, Limits, Profile};
 use crate::objective::Point;
 use crate::planning::deadline::Deadline;
-use crate::planning::{Endpoint, MotionLimits};
+use crate::planning::endpoint::{EndName, no_usable_end};
+use crate::planning::{Endpoint, MotionLimits, PointToPointOptions};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::Target;
+use crate::task::{Target, Task};
 
 /// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
     pub limits: &'a MotionLimits,
-    pub ends: [&'a Endpoint; 2],
+    pub start: &'a Endpoint,
+    /// Any of them will do.
+    pub ends: &'a [Endpoint],
+    pub task: Option<Task>,
     pub rng: LazyRng,
     pub evaluations: usize,
     pub deadline: Deadline,
     pub seed: u64,
     pub position_limits: Limits,
+    freedom: Freedom<'a>,
 }
 
 /// Evaluations that random starts may cost in all, so that ends without a free configuration take a fraction of a second.
 const RANDOM_EVALUATIONS: usize = 500_000;
 
-/// Names of the two ends in messages.
-pub(super) const NAMES: [&str; 2] = ["start", "end"];
-
 impl<'a> PairSearch<'a> {
     /// # Errors
-    /// [`Error::OutsideLimits`] for a configuration outside the limits.
+    /// [`Error::OutsideLimits`] for a start outside the limits.
     pub(super) fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
-        ends: [&'a Endpoint; 2],
-        seed: u64,
+        start: &'a Endpoint,
+        ends: &'a [Endpoint],
+        options: &PointToPointOptions,
         deadline: Deadline,
     ) -> Result<Self> {
         let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
         let position_limits = Limits::of(robot)
             .replace(Field::Lower, constant(&limits.lower))?
             .replace(Field::Upper, constant(&limits.upper))?;
-        for (end, name) in ends.into_iter().zip(NAMES) {
-            if let Endpoint::Configuration(q) = end {
-                position_limits.require_inside(name, 0.0, q)?;
-            }
-        }
-        Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, deadline, seed, position_limits })
+        let (task, seed) = (options.task, options.seed);
+        let freedom = Freedom::new(robot, limits, task)?;
+        let search = Self {
+            robot,
+            limits,
+            start,
+            ends,
+            task,
+            rng: rng::stream(seed, 0),
+            evaluations: 0,
+            deadline,
+            seed,
+            position_limits,
+            freedom,
+        };
+        search.require_inside(EndName::Start, start)?;
+        Ok(search)
     }
 
-    /// Returns up to twice `count` pairs, the quickest first: half from random starts, half from the quickest pairs of
-    /// branches, all improved along the self-motion. One pair if both configurations are given.
+    /// The name of an end in messages.
+    pub(super) fn name(&self, chosen: usize) -> EndName {
+        EndName::of(chosen, self.ends.len())
+    }
+
+    /// Returns up to twice `count` pairs, shared between all ends, the quickest first: half from random starts, half from
+    /// the quickest pairs of branches, all improved along the self-motion. One pair for each end if all configurations
+    /// are given. Ends without a configuration are passed over.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] if no configuration was found for an end.
+    /// [`Error::Unreachable`] if no configuration was found for the start, [`Error::OutsideLimits`] or
+    /// [`Error::Unreachable`] for a single end, [`Error::NoUsableEnd`] for several.
     pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
-        let given = self.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
+        let count = count.div_ceil(self.ends.len());
+        let (mut pairs, mut problems) = (vec![], vec![]);
+        for chosen in 0..self.ends.len() {
+            if !pairs.is_empty() && (self.deadline.is_over() || !monitor.keep_going()) {
+                break;
+            }
+            match self.pairs_to(chosen, count, monitor) {
+                Ok(found) => pairs.extend(found),
+                Err(Missing::Start(problem)) => return Err(problem),
+                Err(Missing::End(problem)) => problems.push(problem),
+            }
+        }
+        if pairs.is_empty() {
+            return Err(no_usable_end(self.ends.len(), problems));
+        }
+        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        Ok(pairs)
+    }
+
+    /// The pairs to one end.
+    fn pairs_to(&mut self, chosen: usize, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>, Missing> {
+        let (start, end) = (self.start, &self.ends[chosen]);
+        self.require_inside(self.name(chosen), end).map_err(Missing::End)?;
+        let given = [start, end].iter().all(|end| matches!(end, Endpoint::Configuration(_)));
         let mut pairs: Vec<EndPair> = vec![];
         for attempt in 0..if given { 1 } else { count } {
             if attempt > 0 && (self.deadline.is_over() || !monitor.keep_going()) {
                 break;
             }
-            let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
+            let first = self.configuration(EndName::Start, start, None, attempt, monitor);
+            let Some(first) = first.map_err(Missing::Start)? else { continue };
             // The second end is solved from the first, so that the solution is usually near. If the first is given,
             // only once: every attempt would find the same.
-            let another = attempt == 0 || matches!(self.ends[0], Endpoint::Target(_));
+            let another = attempt == 0 || matches!(start, Endpoint::Target(_));
             let near = another.then_some(&first[..]);
-            let Some(second) = self.configuration(1, near, attempt, monitor)? else { continue };
-            let pair = self.improved(self.pair(first, second), monitor);
+            let second = self.configuration(self.name(chosen), end, near, attempt, monitor);
+            let Some(second) = second.map_err(Missing::End)? else { continue };
+            let pair = self.improved(self.pair(first, second, chosen), monitor);
             if pairs.iter().all(|known| !known.is_same(&pair)) {
                 pairs.push(pair);
             }
         }
         if !given && !self.deadline.is_over() {
-            for pair in self.branches(count, monitor)? {
+            for pair in self.branches(chosen, count, monitor).map_err(Missing::End)? {
                 if self.deadline.is_over() {
                     break;
                 }
@@ -87,12 +133,11 @@ impl<'a> PairSearch<'a> {
                 }
             }
         }
-        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
         Ok(pairs)
     }
 
     /// Returns up to `count` pairs accepted by `accept`, not improved, from up to `tries` random starts or
-    /// [`RANDOM_EVALUATIONS`]; the quickest first.
+    /// [`RANDOM_EVALUATIONS`], which all ends share; the quickest first.
     ///
     /// # Errors
     /// None if [`pairs`](Self::pairs) has found some.
@@ -110,9 +155,12 @@ impl<'a> PairSearch<'a> {
             if pairs.len() == count || is_spent || !monitor.keep_going() {
                 break;
             }
-            let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
-            let Some(second) = self.configuration(1, None, attempt, monitor)? else { continue };
-            let pair = self.pair(first, second);
+            let chosen = (attempt - 1) % self.ends.len();
+            let (start, end) = (self.start, &self.ends[chosen]);
+            let Some(first) = self.configuration(EndName::Start, start, None, attempt, monitor)? else { continue };
+            let name = self.name(chosen);
+            let Some(second) = self.configuration(name, end, None, attempt, monitor)? else { continue };
+            let pair = self.pair(first, second, chosen);
             if accept(&pair) && pairs.iter().all(|known| !known.is_same(&pair)) {
                 pairs.push(pair);
             }
@@ -121,20 +169,35 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    pub(super) fn pair(&self, start: Point, end: Point) -> EndPair {
+    pub(super) fn pair(&self, start: Point, end: Point, chosen: usize) -> EndPair {
         let duration = self.limits.quintic_duration(start.iter().zip(&end).map(|(start, end)| end - start));
-        EndPair { start, end, duration }
+        EndPair { start, end, chosen, duration }
+    }
+
+    /// Options of a solve for an end.
+    pub(super) fn solve_options(&self) -> SolveOptions {
+        let limits = Some(self.position_limits.clone());
+        SolveOptions { task: self.task, limits, seed: self.seed, ..SolveOptions::default() }
+    }
+
+    /// Checks that a configuration is inside the limits.
+    fn require_inside(&self, name: EndName, end: &Endpoint) -> Result<()> {
+        match end {
+            Endpoint::Configuration(q) => self.position_limits.require_inside(&name.of_target(), 0.0, q),
+            Endpoint::Target(_) => Ok(()),
+        }
     }
 
     /// Solves for a configuration of an end, from `near` or a random start. The first attempt must succeed.
     fn configuration(
         &mut self,
-        end: usize,
+        name: EndName,
+        end: &Endpoint,
         near: Option<&[f64]>,
         attempt: usize,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Point>> {
-        let target = match self.ends[end] {
+        let target = match end {
             Endpoint::Configuration(q) => return Ok(Some(q.as_slice().into())),
             Endpoint::Target(target) => target,
         };
@@ -148,15 +211,14 @@ impl<'a> PairSearch<'a> {
             Status::Solved => Ok(Some(solution.q)),
             _ if attempt == 0 => {
                 let problem = format!("the nearest configuration found stays {} away", solution.error);
-                Err(Error::Unreachable { what: NAMES[end].into(), problem })
+                Err(Error::Unreachable { what: name.of_target(), problem })
             }
             _ => Ok(None),
         }
     }
 
     fn solve(&mut self, target: &Target, start: Option<Vec<f64>>, monitor: &mut dyn Monitor) -> Result<Solution> {
-        let limits = Some(self.position_limits.clone());
-        let options = SolveOptions { start, limits, seed: self.seed, ..SolveOptions::default() };
+        let options = SolveOptions { start, ..self.solve_options() };
         let solution = solve(self.robot, target, &options, monitor)?;
         self.evaluations += solution.evaluations;
         Ok(solution)
@@ -170,13 +232,12 @@ impl<'a> PairSearch<'a> {
 
     /// Returns the pair moved along its self-motion, or unchanged if that does not help.
     fn improved(&mut self, pair: EndPair, monitor: &mut dyn Monitor) -> EndPair {
-        let ends = self.ends;
-        let free = ends.map(|end| match end {
+        let free = [self.start, &self.ends[pair.chosen]].map(|end| match end {
             Endpoint::Target(target) => Some(target),
             Endpoint::Configuration(_) => None,
         });
         let mut moved = pair.clone();
-        self.evaluations += least_displacement::shorten(self.robot, self.limits, free, &mut moved);
+        self.evaluations += least_displacement::shorten(&self.freedom, free, &mut moved);
         for (target, q) in free.into_iter().zip([&mut moved.start, &mut moved.end]) {
             let Some(target) = target else { continue };
             match self.solve(target, Some(q.to_vec()), monitor) {
@@ -184,7 +245,13 @@ impl<'a> PairSearch<'a> {
                 _ => return pair,
             }
         }
-        let moved = self.pair(moved.start, moved.end);
+        let moved = self.pair(moved.start, moved.end, pair.chosen);
         if moved.duration < pair.duration { moved } else { pair }
     }
+}
+
+/// The error of a search for a configuration, and the end that it concerns.
+enum Missing {
+    Start(Error),
+    End(Error),
 }

@@ -14,17 +14,17 @@ pub(super) const PAIRS: usize = 8;
 /// Plans the best straight motion between pairs.
 pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
     let pairs = search.pairs(PAIRS, monitor)?;
-    let mut best: Option<(f64, Trajectory)> = None;
+    let mut best: Option<(f64, usize, Trajectory)> = None;
     let mut history = vec![];
     for pair in &pairs {
         let trajectory = straight(pair, search.limits)?;
         let cost = objective.of(search.robot, &trajectory);
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
             history.push(Improvement { evaluations: search.evaluations, cost });
-            best = Some((cost, trajectory));
+            best = Some((cost, pair.chosen, trajectory));
         }
     }
-    let (cost, trajectory) = best.ok_or_else(no_pair)?;
+    let (cost, chosen, trajectory) = best.ok_or_else(no_pair)?;
     let violations = search.limits.violations(&trajectory);
     let status = if violations.is_empty() { Status::Solved } else { Status::Stalled };
     let evaluations = search.evaluations;
@@ -37,6 +37,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
         nearest: None,
         obstruction: None,
         surroundings: None,
+        chosen_end: Some(chosen),
         accuracy: None,
         reference: None,
         redundancy: vec![],

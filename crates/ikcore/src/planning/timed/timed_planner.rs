@@ -63,6 +63,7 @@ impl PathProblem<'_> {
             nearest: None,
             obstruction: None,
             surroundings: None,
+            chosen_end: None,
             accuracy: Some(deviation.distance.value),
             reference: Some(tip_path.positions().to_vec()),
             redundancy: vec![],

@@ -46,6 +46,7 @@ pub(crate) fn along_path(
         nearest: None,
         obstruction: None,
         surroundings: None,
+        chosen_end: None,
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),

@@ -56,6 +56,7 @@ pub(crate) fn point_to_point(
         nearest,
         obstruction: None,
         surroundings: None,
+        chosen_end: Some(0),
         accuracy: None,
         reference: None,
         redundancy: vec![],
