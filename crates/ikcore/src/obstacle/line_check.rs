@@ -10,7 +10,13 @@ use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::objective::Point;
 
 /// At first no body moves farther from one configuration to the next (m), by a bound that is two to three times what it moves.
-const SPACING: f64 = 0.05;
+const SPACING: f64 = 0.08;
+
+/// Bodies move no farther than this share of the bound.
+const SLACK: f64 = 0.6;
+
+/// Number of pairs that are tested first, since they met before.
+const LIKELY: usize = 24;
 
 /// Checks lines in a scene; owns its scratch.
 #[derive(Debug)]
@@ -20,15 +26,15 @@ pub struct LineCheck<'a> {
     spacing: f64,
     /// Pairs that may meet on the line.
     pending: Vec<BodyPair>,
-    /// The pair that met last.
-    likely: Option<BodyPair>,
+    /// The pairs that met last, the latest first.
+    likely: Vec<BodyPair>,
     examined: usize,
 }
 
 impl<'a> LineCheck<'a> {
     /// For lines that keep `margin` >= 0 (m) in `scene`, but for rounding.
     pub fn new(scene: &'a Scene<'a>, margin: f64) -> Self {
-        Self { eight: EightScene::new(scene), margin, spacing: SPACING, pending: vec![], likely: None, examined: 0 }
+        Self { eight: EightScene::new(scene), margin, spacing: SPACING, pending: vec![], likely: vec![], examined: 0 }
     }
 
     /// Keeps more: `margin` >= 0 (m), at configurations that are half as far apart.
@@ -50,8 +56,8 @@ impl<'a> LineCheck<'a> {
     fn examine<A: Arithmetic>(&mut self, from: &[f64], to: &[f64]) -> bool {
         let mut reach: Point = from.iter().zip(to).map(|(from, to)| (to - from).abs()).collect();
         let blocks = (self.eight.farthest(&reach) / (8.0 * self.spacing)).ceil().max(1.0) as usize;
-        // Every configuration of the line is this near to one of the first eight, which are in the middle of each eighth.
-        reach.iter_mut().for_each(|reach| *reach *= 1.0 / 16.0);
+        // Every configuration of the line is within half an eighth of one of the first eight.
+        reach.iter_mut().for_each(|reach| *reach *= SLACK / 16.0);
         let first = blocks / 2;
         self.place::<A>(from, to, first, blocks);
         if !self.first_block::<A>(&reach) {
@@ -65,7 +71,7 @@ impl<'a> LineCheck<'a> {
             for i in 0..self.pending.len() {
                 let pair = self.pending[i];
                 if self.eight.meet::<A>(pair, self.margin) {
-                    self.likely = Some(pair);
+                    note_hit(&mut self.likely, pair);
                     return false;
                 }
             }
@@ -86,10 +92,11 @@ impl<'a> LineCheck<'a> {
     fn first_block<A: Arithmetic>(&mut self, reach: &[f64]) -> bool {
         let Self { eight, margin, pending, likely, .. } = self;
         pending.clear();
-        if let Some(pair) = *likely
-            && eight.meet::<A>(pair, *margin)
-        {
-            return false;
+        for i in 0..likely.len() {
+            if eight.meet::<A>(likely[i], *margin) {
+                likely[..=i].rotate_right(1);
+                return false;
+            }
         }
         eight.each_near::<A>(*margin, reach, &mut UntilHit { margin: *margin, pending, likely })
     }
@@ -99,7 +106,7 @@ impl<'a> LineCheck<'a> {
 struct UntilHit<'v> {
     margin: f64,
     pending: &'v mut Vec<BodyPair>,
-    likely: &'v mut Option<BodyPair>,
+    likely: &'v mut Vec<BodyPair>,
 }
 
 impl Visitor for UntilHit<'_> {
@@ -107,12 +114,18 @@ impl Visitor for UntilHit<'_> {
     fn goes_on<A: Arithmetic>(&mut self, near: &mut Near<'_, '_>, pair: BodyPair, _lanes: u32) -> bool {
         let meets = near.meet::<A>(pair, self.margin);
         if meets {
-            *self.likely = Some(pair);
+            note_hit(self.likely, pair);
         } else {
             self.pending.push(pair);
         }
         !meets
     }
+}
+
+/// Remembers a pair that is not among the likely ones.
+fn note_hit(likely: &mut Vec<BodyPair>, pair: BodyPair) {
+    likely.truncate(LIKELY - 1);
+    likely.insert(0, pair);
 }
 
 by_instructions! {

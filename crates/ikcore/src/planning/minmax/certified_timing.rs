@@ -3,7 +3,7 @@
 use super::line_timing::JointPolyline;
 use crate::error::Result;
 use crate::math::vector::squared_distance;
-use crate::obstacle::Sweep;
+use crate::obstacle::{LineCheck, Sweep};
 use crate::planning::MotionLimits;
 use crate::planning::collision_checks::{TimedMotion, configuration_at};
 use crate::planning::deadline::Deadline;
@@ -12,9 +12,14 @@ use crate::trajectory::Trajectory;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
 
-/// A path, with blends as wide as seems best.
+/// Blends that are cut to less than this share stay as they are until they are certified.
+const LEAST_SHARE: f64 = 0.02;
+
+/// A path, with blends as wide as seems clear.
 pub(super) struct TimedPath {
     pub path: JointPolyline,
+    /// The share of the shorter adjacent line that each blend takes.
+    shares: Vec<f64>,
     /// The quicker of its timings with and without stops, not certified.
     pub motion: Trajectory,
 }
@@ -29,15 +34,29 @@ pub(super) struct Timing<'s, 'a> {
 }
 
 impl TimedPath {
-    /// Times a path.
-    pub(super) fn new(path: JointPolyline, limits: &MotionLimits) -> Result<Self> {
+    /// A straight line, timed by `motion`.
+    pub(super) fn straight(path: JointPolyline, motion: Trajectory) -> Self {
+        Self { shares: vec![1.0; path.0.len()], path, motion }
+    }
+
+    /// Times a path. A blend cuts its corner: it is as wide as the line between its ends is clear.
+    pub(super) fn new(path: JointPolyline, limits: &MotionLimits, check: &mut LineCheck) -> Result<Self> {
+        let mut shares = vec![1.0; path.0.len()];
+        for i in 1..path.0.len() - 1 {
+            while shares[i] > LEAST_SHARE {
+                let [from, to] = path.blend_ends(limits, i, shares[i]);
+                if check.is_clear(&from, &to) {
+                    break;
+                }
+                shares[i] *= 0.5;
+            }
+        }
         let stopping = path.with_stops(limits)?;
-        let blended = path.with_blends(limits, &vec![1.0; path.0.len()]).transpose()?;
-        let motion = match blended {
+        let motion = match path.with_blends(limits, &shares).transpose()? {
             Some(blended) if blended.duration() < stopping.duration() => blended,
             _ => stopping,
         };
-        Ok(Self { path, motion })
+        Ok(Self { path, shares, motion })
     }
 }
 
@@ -45,10 +64,10 @@ impl Timing<'_, '_> {
     /// The motion along a path, certified: with blends, narrower where they come too near, or else with a stop at each corner.
     /// `None` if a line of the path comes too near.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
-        let TimedPath { path, motion } = timed;
+        let TimedPath { path, mut shares, motion } = timed;
         let Some(mut near) = self.too_near(&motion) else { return Ok(Some(motion)) };
         let stopping = path.with_stops(self.limits)?;
-        let (mut blended, mut shares) = (motion, vec![1.0; path.0.len()]);
+        let mut blended = motion;
         for _ in 0..NARROWINGS {
             if path.0.len() < 3 || self.deadline.is_over() {
                 break;

@@ -16,9 +16,12 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
 /// Number of paths of which the cheapest is taken, the same number from each start ...
-const PATHS: usize = 4;
+const PATHS: usize = 3;
 /// ... as long as those after the first one cost no more configurations.
-const MORE: usize = 4000;
+const MORE: usize = 2000;
+/// Number of shortcuts tried on the first paths, and on later ones.
+const SHORTCUTS: usize = 20;
+const MORE_SHORTCUTS: usize = 60;
 /// How often all paths are searched again, with more distance, because none could be certified.
 const ROUNDS: u32 = 4;
 
@@ -112,7 +115,7 @@ impl<'a> PathSearch<'_, 'a> {
             if self.trees.check.is_clear(&pair.start, &pair.end) {
                 let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
                 let motion = straight(pair, self.search.limits)?;
-                if let Some(motion) = self.timing().certified(TimedPath { path: line, motion })? {
+                if let Some(motion) = self.timing().certified(TimedPath::straight(line, motion))? {
                     self.keep(motion, best);
                     return Ok(Some(i));
                 }
@@ -134,12 +137,12 @@ impl<'a> PathSearch<'_, 'a> {
         let mut ended = Ended::Done;
         for start in (0..PATHS.div_ceil(starts.len())).flat_map(|_| starts) {
             *stream += 1;
-            match self.path(open, start, *stream, monitor)? {
+            match self.path(open, start, (*stream, SHORTCUTS), monitor)? {
                 Connection::Found(path) => {
                     if candidates.is_empty() {
                         self.trees.budget = whole.min(self.trees.check.examined() + MORE);
                     }
-                    let timed = TimedPath::new(path, self.search.limits)?;
+                    let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
                     candidates.push((self.objective.of(self.search.robot, &timed.motion), timed));
                 }
                 Connection::NotFound => break,
@@ -155,7 +158,13 @@ impl<'a> PathSearch<'_, 'a> {
     }
 
     /// A short path from `start` to the end of any pair that shares it.
-    fn path(&mut self, open: &[EndPair], start: &Point, stream: u64, monitor: &mut dyn Monitor) -> Result<Connection> {
+    fn path(
+        &mut self,
+        open: &[EndPair],
+        start: &Point,
+        (stream, shortcuts): (u64, usize),
+        monitor: &mut dyn Monitor,
+    ) -> Result<Connection> {
         // Any of the ends will do. Their order is that of no objective.
         let mut sharing: Vec<&EndPair> = open.iter().filter(|pair| pair.start == *start).collect();
         sharing.sort_by(|one, other| one.duration.total_cmp(&other.duration));
@@ -170,7 +179,7 @@ impl<'a> PathSearch<'_, 'a> {
         let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| {
             self.objective != Cost::TipTravel || tip_travel_along(robot, new) <= tip_travel_along(robot, old)
         };
-        Ok(Connection::Found(self.trees.shorten(path, &is_shorter, &mut rng, monitor)))
+        Ok(Connection::Found(self.trees.shorten(path, (&is_shorter, shortcuts), &mut rng, monitor)))
     }
 
     /// Keeps the first of `candidates` that can be certified, if it is better than the best; they are sorted by cost.
@@ -206,8 +215,8 @@ impl<'a> PathSearch<'_, 'a> {
     ) -> Result<()> {
         for start in starts.iter().cycle() {
             stream += 1;
-            let Connection::Found(path) = self.path(open, start, stream, monitor)? else { break };
-            let timed = TimedPath::new(path, self.search.limits)?;
+            let Connection::Found(path) = self.path(open, start, (stream, MORE_SHORTCUTS), monitor)? else { break };
+            let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
             let cost = self.objective.of(self.search.robot, &timed.motion);
             self.keep_first(vec![(cost, timed)], best)?;
             monitor.progress(self.trees.check.examined(), self.trees.budget);
