@@ -2831,6 +2831,79 @@ def time_optimal(
         UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
     """
 
+class BatchPlan:
+    """Plans in the order of the problems. `b[i]` is a `Plan`, or None if problem i has none; `b[10:20]` and `b[b.success]` are
+    batches.
+    """
+
+    @property
+    def plans(self) -> tuple[Plan | None, ...]:
+        """Each a `Plan`, or None where `errors` has an exception."""
+    @property
+    def errors(self) -> tuple[Exception | None, ...]:
+        """The exception that `plan_point_to_point` raises for each problem; None where there is a plan."""
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Whether each motion meets all requirements (m,)."""
+    @property
+    def status(self) -> NDArray[np.uint8]:
+        """How the planning of each ended (m,), values of `Status`: those of the plans; OUT_OF_REACH for an end that cannot be
+        reached, IN_COLLISION for one in collision, INVALID for any other error.
+        """
+    @property
+    def message(self) -> str:
+        """How many were planned, and why the others were not."""
+    @property
+    def cost(self) -> _Array:
+        """Values of the objective (m,) (s, rad or m); NaN where there is no plan."""
+    @property
+    def elapsed(self) -> float:
+        """Total time (s)."""
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, index: int | np.integer, /) -> Plan | None: ...
+    @overload
+    def __getitem__(self, index: _Several, /) -> BatchPlan: ...
+    def __iter__(self) -> Iterator[Plan | None]: ...
+
+def plan_batch(
+    robot: Robot,
+    problems: Iterable[Mapping[str, Any]],
+    *,
+    threads: int | None = None,
+    progress: _Progress = None,
+    task: Task | None = None,
+    limits: Limits | None = None,
+    method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
+    objective: Literal["time", "joint_travel", "tip_travel"] = "time",
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+) -> BatchPlan:
+    """Plans many motions at once, on all cores.
+
+    Item i is bit-identical to what `plan_point_to_point` returns for problem i alone, for any number of threads.
+
+    Args:
+        robot: the arm.
+        problems: a sequence of dicts of arguments of `plan_point_to_point`: start or start_q, end or end_q, and any other. A
+            problem's own arguments override those given for all.
+        threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
+        progress: True shows a progress bar; a callable is called with (done, total).
+        task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for `plan_point_to_point`, for all
+            problems.
+
+    Returns:
+        A `BatchPlan`. If planning one problem raises an error, such as for an end that cannot be reached or is in collision, the
+        others are planned all the same: the plan is None, and the exception is in `errors`.
+
+    Raises:
+        InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
+            the argument), before anything is planned.
+    """
+
 def plan_along_path(
     robot: Robot,
     path: Path | _Pose,

@@ -50,6 +50,11 @@ def restored(result: Any, owner: Owner) -> Any:
     return restore(*(owner.limits() if isinstance(each, bik.Limits) else each for each in arguments))
 
 
+def holding(plan: bik.Plan) -> bik.BatchPlan:
+    restore, _ = bik.plan_batch(PLANAR, []).__reduce__()
+    return restore((plan,), (None,), [0], 0.0)
+
+
 HOLDERS: dict[str, Callable[[Owner], Any]] = {
     "Limits": lambda owner: owner.limits(),
     "Path of a function": lambda owner: bik.paths.from_function(owner.position, 1.0),
@@ -57,6 +62,7 @@ HOLDERS: dict[str, Callable[[Owner], Any]] = {
     "TrackResult": lambda owner: bik.track(IIWA, LINE, START, dt=0.1, limits=owner.limits()),
     "ModelFreeResult": lambda owner: bik.track_model_free(owner.failing, LINE, START, dt=0.1),
     "Plan": lambda owner: restored(plan(), owner),
+    "BatchPlan": lambda owner: holding(restored(plan(), owner)),
     "Solution": lambda owner: bik.solve(IIWA, (0.3, 0.3, 1.0), limits=owner.limits()),
     "SolutionSet": lambda owner: bik.solve_all(IIWA, (0.3, 0.3, 1.0), limit=1, limits=owner.limits()),
     "BatchSolution": lambda owner: bik.solve_batch(IIWA, [(0.3, 0.3, 1.0)], threads=1, limits=owner.limits()),

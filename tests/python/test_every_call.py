@@ -153,6 +153,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "paths.polyline": {"points": [(0, 0, 0), (1, 0, 0)], "duration": 1.0},
     "paths.rose": {**PLACED, "radius": 0.1, "k": 3},
     "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
+    "plan_batch": {"robot": PLANAR, "problems": [{"start": (1, 1, 0), "end": (1, 1.5, 0)}], "limits": LIMITS, **QUICK},
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
     "planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.CircleSwarm()},
     "plot.animation": {"result": PLAN},
@@ -204,6 +205,7 @@ def needed(name: str) -> dict[str, Any]:
 
 CALLS = {name: call for prefix, module in MODULES.items() for name, call in public(prefix, module)}
 MADE_BY_THE_LIBRARY = [
+    "BatchPlan",
     "BatchSolution",
     "Body",
     "ControlSession",

@@ -26,6 +26,7 @@ UR5 = bik.Robot.named("ur5")
 PLANAR = bik.Robot.planar([0.5] * 3)
 INSIDE_SHOULDER = [0.0, 0.0, 0.36]
 FAST = bik.Limits(velocity=1.0, acceleration=5.0)
+ENCLOSED = {"start_q": [1.57, 1.0, 0, 0, 0, 0, 0], "end_q": [-1.57, 1.0, 0, 0, 0, 0, 0], "limits": FAST}
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=1000.0)
 ORIENTED = CIRCLE.with_orientation(np.eye(3))
 
@@ -87,15 +88,9 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
+        "plan_batch": lambda: lambda: bik.plan_batch(CAPSULES, [ENCLOSED] * 3, obstacles=walled_in(), stop=ENDLESS),
         "plan_point_to_point": lambda: (
-            lambda: bik.plan_point_to_point(
-                CAPSULES,
-                start_q=[1.57, 1.0, 0, 0, 0, 0, 0],
-                end_q=[-1.57, 1.0, 0, 0, 0, 0, 0],
-                limits=FAST,
-                obstacles=walled_in(),
-                stop=ENDLESS,
-            )
+            lambda: bik.plan_point_to_point(CAPSULES, **ENCLOSED, obstacles=walled_in(), stop=ENDLESS)
         ),
         "planar_posture": lambda: (
             lambda: bik.planar_posture(

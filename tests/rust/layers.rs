@@ -50,7 +50,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "problem",
         ],
     ),
-    ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
+    ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning"]),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     (
         "planning",

@@ -29,6 +29,7 @@ mod motion;
 mod obstacle;
 mod pairs;
 mod path;
+mod plan_batch;
 mod planning;
 mod point_to_point;
 mod polynomial;

@@ -307,6 +307,14 @@ pub enum Error {
         /// The problem.
         error: Box<Error>,
     },
+    /// A mistake in one problem of a batch of plans.
+    #[error("problems[{index}]: {error}")]
+    InProblem {
+        /// The problem, from 0.
+        index: usize,
+        /// The mistake.
+        error: Box<Error>,
+    },
     /// The operating system cannot start this many threads.
     #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
     NoThreads {

@@ -20,7 +20,7 @@ struct Classes {
 impl Classes {
     fn of(&self, error: &Error) -> &Py<PyType> {
         match error {
-            Error::InRow { error, .. } => self.of(error),
+            Error::InRow { error, .. } | Error::InProblem { error, .. } => self.of(error),
             Error::UnknownRobot { .. } | Error::UnknownLink { .. } | Error::NotHeld { .. } => &self.unknown_name,
             Error::Urdf { .. } | Error::Srdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. }

@@ -3,17 +3,13 @@
 //! Items share no mutable state: item i draws from stream i of the seed and writes to row i. So the bits of an item
 //! depend neither on the number of threads nor on the other items.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::Duration;
-
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::batch_options::BatchOptions;
-use super::monitors::StopFlag;
 use super::results::{Batch, BatchItem};
 use super::targets::Targets;
+use super::workers;
 use crate::error::{Error, Result};
 use crate::ik::{Query, SolveContext, solve_query};
 use crate::robot::Robot;
@@ -35,9 +31,6 @@ const CHECKED_AT_ONCE: usize = 1024;
 
 /// Targets that a thread takes at once: enough that sharing them out costs nothing.
 const GROUP: usize = 16;
-
-/// Time between two polls of the monitor while threads work.
-const INTERVAL: Duration = Duration::from_millis(20);
 
 impl<'a> Job<'a> {
     pub fn new(robot: &'a Robot, targets: Targets<'a>, options: &'a BatchOptions<'a>) -> Result<Self> {
@@ -132,30 +125,12 @@ impl<'a> Job<'a> {
     }
 
     pub fn run_on(&self, pool: &ThreadPool, batch: &mut Batch, monitor: &mut dyn Monitor) {
-        let (done, total) = (AtomicUsize::new(0), batch.items.len());
-        let stopped = AtomicBool::new(false);
+        let total = batch.items.len();
         let groups = batch.q.par_chunks_mut(GROUP * self.dof).zip(batch.items.par_chunks_mut(GROUP)).enumerate();
-        let work = || {
+        workers::run_on(pool, total, monitor, |shared| {
             groups.for_each(|(i, (qs, items))| {
-                self.solve_rows(i * GROUP, qs, items, &mut StopFlag(&stopped), |_| {
-                    done.fetch_add(1, Ordering::Relaxed);
-                });
+                self.solve_rows(i * GROUP, qs, items, &mut shared.monitor(), |_| shared.count());
             });
-        };
-        // Nothing is ever sent: the sender is dropped when the threads are done.
-        let (working, finished) = mpsc::channel::<()>();
-        pool.in_place_scope(|scope| {
-            scope.spawn(move |_| {
-                let _working = working;
-                work();
-            });
-            while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(INTERVAL) {
-                if !monitor.keep_going() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                monitor.progress(done.load(Ordering::Relaxed), total);
-            }
         });
-        monitor.progress(done.into_inner(), total);
     }
 }

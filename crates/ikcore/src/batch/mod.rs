@@ -1,17 +1,21 @@
-//! Many targets at once, on all cores. The only module that uses threads.
+//! Many targets or motions at once, on all cores. The only module that uses threads.
 //!
-//! `solve_batch` is the call. A `job` reads rows, groups them and solves each group; `pool` holds the threads,
-//! `monitors` stop them on request, `results` holds the results.
+//! `solve_batch` and `plan_batch` are the calls. A `job` reads rows, groups them and solves each group; `pool` holds the
+//! threads, `workers` runs them under the eyes of the caller's monitor, `monitors` stop them on request, `results` holds the
+//! solutions.
 
 mod batch_options;
 mod job;
 mod monitors;
+mod plan_batch;
 mod pool;
 mod results;
 mod solve_batch;
 mod targets;
+mod workers;
 
 pub use batch_options::{BatchOptions, OnInvalid};
+pub use plan_batch::{PlanProblem, plan_batch, plan_status};
 pub use results::{Batch, BatchItem};
 pub use solve_batch::solve_batch;
 pub use targets::Targets;

@@ -1,4 +1,4 @@
-//! The monitor of the threads of a batch.
+//! The monitors of the items of a batch.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,5 +10,14 @@ pub(super) struct StopFlag<'a>(pub &'a AtomicBool);
 impl Monitor for StopFlag<'_> {
     fn keep_going(&mut self) -> bool {
         !self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// The caller's monitor for a single item, whose own progress is not that of the batch.
+pub(super) struct Quiet<'a>(pub &'a mut dyn Monitor);
+
+impl Monitor for Quiet<'_> {
+    fn keep_going(&mut self) -> bool {
+        self.0.keep_going()
     }
 }

@@ -52,6 +52,7 @@ pub(crate) use motion_limits::MotionLimits;
 pub use plan::{Improvement, Peak, Plan};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
 pub use planner_options::{AlongPathMethod, AlongPathOptions, PointToPointMethod, PointToPointOptions};
+pub(crate) use point_to_point::check_point_to_point;
 pub use point_to_point::plan_point_to_point;
 pub use time_optimal::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
 pub use tip_path::TipPath;

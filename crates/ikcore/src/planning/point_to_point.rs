@@ -26,7 +26,7 @@ pub fn plan_point_to_point(
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
-    check(robot, start, ends, options)?;
+    check_point_to_point(robot, start, ends, options)?;
     let mut plan = match &options.method {
         PointToPointMethod::MinMax => minmax::point_to_point(robot, start, ends, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
@@ -38,8 +38,16 @@ pub fn plan_point_to_point(
     Ok(plan)
 }
 
-/// Checks what all methods share.
-fn check(robot: &Robot, start: &Endpoint, ends: &[Endpoint], options: &PointToPointOptions) -> Result<()> {
+/// Checks the arguments of [`plan_point_to_point`]: numbers, lengths and kinds, not what only a planner finds out.
+///
+/// # Errors
+/// Any [`Error`] for wrong input.
+pub(crate) fn check_point_to_point(
+    robot: &Robot,
+    start: &Endpoint,
+    ends: &[Endpoint],
+    options: &PointToPointOptions,
+) -> Result<()> {
     let task = options.task.as_ref();
     task.map_or(Ok(()), Task::validate)?;
     start.check(EndName::Start, robot, task)?;

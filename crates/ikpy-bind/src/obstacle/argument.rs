@@ -45,7 +45,11 @@ pub(super) fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, P
     if value.cast::<PyObstacle>().is_ok() {
         return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(value))));
     }
-    value.try_iter().map_err(|_| not_made_here("obstacles", value))?.collect()
+    let wrong = |error: PyErr| match error.is_instance_of::<PyTypeError>(value.py()) {
+        true => not_made_here("obstacles", value),
+        false => error,
+    };
+    value.try_iter().map_err(wrong)?.collect()
 }
 
 fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {

@@ -1,8 +1,10 @@
 //! Planning: point-to-point motions, motions along paths, and time-optimal timing.
 
 mod along_path;
+mod batch_plan;
 mod endpoints;
 mod plan;
+mod plan_arguments;
 mod point_to_point;
 mod time_optimal;
 mod tpbso;
@@ -15,6 +17,8 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<violation::PyViolation>()?;
     module.add_class::<plan::PyPlan>()?;
     module.add_function(wrap_pyfunction!(point_to_point::plan_point_to_point, module)?)?;
+    module.add_class::<batch_plan::PyBatchPlan>()?;
+    module.add_function(wrap_pyfunction!(batch_plan::plan_batch, module)?)?;
     module.add_function(wrap_pyfunction!(along_path::plan_along_path, module)?)?;
     module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)
 }

@@ -1,20 +1,13 @@
 //! `plan_point_to_point`.
 
-use ikcore::planning::{self, PointToPointOptions};
+use ikcore::planning;
 use pyo3::prelude::*;
 
-use super::endpoints::{read_ends, read_start};
 use super::plan::PyPlan;
-use super::tpbso::read_method;
-use crate::convert::{count, vector};
-use crate::error::raise;
-use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::watched;
-use crate::obstacle::Obstacles;
+use super::plan_arguments::{EndArguments, PlanArguments};
+use crate::monitor::{Watcher, watched};
 use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::solver::PyStop;
-use crate::task::read_task;
 
 /// Plans a motion between two ends, to rest at the end.
 ///
@@ -47,49 +40,38 @@ use crate::task::read_task;
 ///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, task=None, limits=None, method=None, objective="time",
-                    obstacles=None, margin=None, self_collision=None, stop=None, seed=0, progress=None),
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, task=None, limits=None, method=None,
+                    objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None, progress=None),
        text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, task=None, limits=None, \
-                         method='minmax', objective='time', obstacles=None, margin=None, self_collision=None, stop=None, seed=0, \
-                         progress=None)")]
+                         method='minmax', objective='time', obstacles=None, margin=None, self_collision=None, stop=None, \
+                         seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
-pub fn plan_point_to_point(
-    py: Python<'_>,
-    robot: &Bound<'_, PyRobot>,
-    start: Option<&Bound<'_, PyAny>>,
-    end: Option<&Bound<'_, PyAny>>,
-    start_q: Option<&Bound<'_, PyAny>>,
-    end_q: Option<&Bound<'_, PyAny>>,
-    start_qd: Option<&Bound<'_, PyAny>>,
-    task: Option<&Bound<'_, PyAny>>,
-    limits: Option<&PyLimits>,
-    method: Option<&Bound<'_, PyAny>>,
-    #[pyo3(from_py_with = crate::convert::text)] objective: &str,
-    obstacles: Option<&Bound<'_, PyAny>>,
-    margin: Option<f64>,
-    self_collision: Option<bool>,
-    stop: Option<&PyStop>,
-    seed: i128,
-    progress: Option<&Bound<'_, PyAny>>,
+pub fn plan_point_to_point<'py>(
+    py: Python<'py>,
+    robot: &Bound<'py, PyRobot>,
+    start: Option<Bound<'py, PyAny>>,
+    end: Option<Bound<'py, PyAny>>,
+    start_q: Option<Bound<'py, PyAny>>,
+    end_q: Option<Bound<'py, PyAny>>,
+    start_qd: Option<Bound<'py, PyAny>>,
+    task: Option<Bound<'py, PyAny>>,
+    limits: Option<Bound<'py, PyAny>>,
+    method: Option<Bound<'py, PyAny>>,
+    objective: Option<Bound<'py, PyAny>>,
+    obstacles: Option<Bound<'py, PyAny>>,
+    margin: Option<Bound<'py, PyAny>>,
+    self_collision: Option<Bound<'py, PyAny>>,
+    stop: Option<Bound<'py, PyAny>>,
+    seed: Option<Bound<'py, PyAny>>,
+    progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let (start, ends) = (read_start(start, start_q)?, read_ends(end, end_q)?);
-    let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    let obstacles = Obstacles::read(py, obstacles)?;
-    let given = obstacles.tuple;
-    let options = PointToPointOptions {
-        start_velocity: start_qd.map(|qd| vector("start_qd", qd)).transpose()?,
-        task: read_task(task)?,
-        method: read_method(method)?,
-        objective: objective.parse().map_err(raise)?,
-        obstacles: obstacles.core,
-        margin,
-        self_collision,
-        limits: resolved,
-        stop: stop.map(PyStop::core),
-        seed: count("seed", seed)?,
-    };
-    let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &ends, &options, watcher))?;
+    let (start, ends) = EndArguments { start, end, start_q, end_q }.read()?;
+    let asked =
+        PlanArguments { start_qd, task, limits, method, objective, obstacles, margin, self_collision, stop, seed };
+    let options = asked.read(py, robot.get())?;
+    let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
+    let plan = watched(py, progress, call)?;
     python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
-    PyPlan::new(plan, robot, in_force, given)
+    PyPlan::new(plan, robot, options.limits, options.obstacles)
 }

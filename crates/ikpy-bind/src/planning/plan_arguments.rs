@@ -1,0 +1,171 @@
+//! Reading of the arguments that `plan_point_to_point` and `plan_batch` share.
+
+use std::sync::Arc;
+
+use ikcore::planning::{Endpoint, PointToPointOptions};
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::endpoints::{read_ends, read_start};
+use super::tpbso::read_method;
+use crate::convert::{count, summary, text, vector};
+use crate::error::{invalid, raise};
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::obstacle::Obstacles;
+use crate::robot::PyRobot;
+use crate::solver::PyStop;
+use crate::task::read_task;
+
+type Argument<'py> = Option<Bound<'py, PyAny>>;
+
+/// The ends as passed from Python.
+#[derive(Default)]
+pub struct EndArguments<'py> {
+    pub start: Argument<'py>,
+    pub end: Argument<'py>,
+    pub start_q: Argument<'py>,
+    pub end_q: Argument<'py>,
+}
+
+impl EndArguments<'_> {
+    /// Converts them to the start and the possible ends.
+    pub fn read(&self) -> PyResult<(Endpoint, Vec<Endpoint>)> {
+        let start = read_start(self.start.as_ref(), self.start_q.as_ref())?;
+        Ok((start, read_ends(self.end.as_ref(), self.end_q.as_ref())?))
+    }
+}
+
+/// The other arguments as passed from Python; None: the default.
+#[derive(Default, Clone)]
+pub struct PlanArguments<'py> {
+    pub start_qd: Argument<'py>,
+    pub task: Argument<'py>,
+    pub limits: Argument<'py>,
+    pub method: Argument<'py>,
+    pub objective: Argument<'py>,
+    pub obstacles: Argument<'py>,
+    pub margin: Argument<'py>,
+    pub self_collision: Argument<'py>,
+    pub stop: Argument<'py>,
+    pub seed: Argument<'py>,
+}
+
+/// The options of a plan, and what its result stores of the arguments.
+pub struct ReadOptions {
+    pub core: Arc<PointToPointOptions>,
+    pub limits: Py<PyLimits>,
+    pub obstacles: Py<PyTuple>,
+}
+
+impl PlanArguments<'_> {
+    /// Converts the arguments to options of the core.
+    pub fn read(&self, py: Python<'_>, robot: &PyRobot) -> PyResult<ReadOptions> {
+        self.read_among(py, robot, Obstacles::read(py, self.obstacles.as_ref())?)
+    }
+
+    /// The same for a problem that may override some of the arguments of `all`. Obstacles of all are not read again.
+    pub fn read_over(
+        &self,
+        py: Python<'_>,
+        robot: &PyRobot,
+        all: &Self,
+        of_all: &ReadOptions,
+    ) -> PyResult<ReadOptions> {
+        let obstacles = match (&self.obstacles, &all.obstacles) {
+            (Some(own), Some(common)) if own.is(common) => {
+                Obstacles { core: of_all.core.obstacles.clone(), tuple: of_all.obstacles.clone_ref(py) }
+            }
+            (own, _) => Obstacles::read(py, own.as_ref())?,
+        };
+        self.read_among(py, robot, obstacles)
+    }
+
+    fn read_among(&self, py: Python<'_>, robot: &PyRobot, obstacles: Obstacles) -> PyResult<ReadOptions> {
+        let given = self.limits.as_ref().map(|limits| cast::<PyLimits>("limits", limits)).transpose()?;
+        let (in_force, limits) = limits_of_call(py, given.as_ref().map(|given| given.get()), robot, &Sampling::once())?;
+        let objective = self.objective.as_ref().map(|name| text(name)).transpose();
+        let objective = objective.map_err(|error| in_argument(py, "objective", error))?;
+        let stop = self.stop.as_ref().map(|stop| cast::<PyStop>("stop", stop)).transpose()?;
+        let core = PointToPointOptions {
+            start_velocity: self.start_qd.as_ref().map(|qd| vector("start_qd", qd)).transpose()?,
+            task: read_task(self.task.as_ref())?,
+            method: read_method(self.method.as_ref())?,
+            objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
+            obstacles: obstacles.core,
+            margin: extracted("margin", self.margin.as_ref())?,
+            self_collision: extracted("self_collision", self.self_collision.as_ref())?,
+            limits,
+            stop: stop.map(|stop| stop.get().core()),
+            seed: extracted("seed", self.seed.as_ref())?.map_or(Ok(0), |seed: i128| count("seed", seed))?,
+        };
+        Ok(ReadOptions { core: Arc::new(core), limits: in_force, obstacles: obstacles.tuple })
+    }
+}
+
+/// Reads the arguments of one problem from its dict. The options are those of `common` where the dict has none; None if it has
+/// none at all.
+pub fn read_problem<'py>(
+    problem: &Bound<'py, PyAny>,
+    common: &PlanArguments<'py>,
+) -> PyResult<(EndArguments<'py>, Option<PlanArguments<'py>>)> {
+    let Ok(problem) = problem.cast::<PyDict>() else {
+        return Err(invalid(format!("expected a dict of arguments of plan_point_to_point, got {}", summary(problem))));
+    };
+    let mut ends = EndArguments::default();
+    let mut own: Option<PlanArguments<'py>> = None;
+    for (key, value) in problem {
+        let value = Some(value).filter(|value| !value.is_none());
+        let name = key.extract::<String>().unwrap_or_default();
+        if let Some(end) = ends.named(&name) {
+            *end = value;
+        } else if let Some(option) = own.get_or_insert_with(|| common.clone()).named(&name) {
+            *option = value;
+        } else {
+            let known = [EndArguments::NAMES, PlanArguments::NAMES].concat().join(", ");
+            return Err(invalid(format!("{} is no argument of a problem; its arguments: {known}", summary(&key))));
+        }
+    }
+    Ok((ends, own))
+}
+
+/// Gives the fields of a struct of arguments by their names.
+macro_rules! named {
+    ($class:ident: $($field:ident),+) => {
+        impl<'py> $class<'py> {
+            /// The names of the arguments.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
+
+            /// The argument of this name, if there is one.
+            fn named(&mut self, name: &str) -> Option<&mut Argument<'py>> {
+                match name {
+                    $(stringify!($field) => Some(&mut self.$field),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+named!(EndArguments: start, end, start_q, end_q);
+named!(PlanArguments: start_qd, task, limits, method, objective, obstacles, margin, self_collision, stop, seed);
+
+/// Extracts a number or a truth value, with the error that pyo3 raises for an argument of a function.
+fn extracted<T: for<'py> FromPyObjectOwned<'py>>(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<T>> {
+    let Some(value) = value else { return Ok(None) };
+    value.extract::<T>().map(Some).map_err(|error| in_argument(value.py(), name, error.into()))
+}
+
+/// Casts an argument to its class, with the same error.
+fn cast<'py, T: pyo3::PyTypeInfo>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, T>> {
+    value.cast::<T>().cloned().map_err(|error| in_argument(value.py(), name, error.into()))
+}
+
+/// Names the argument in an error of its type.
+fn in_argument(py: Python<'_>, name: &str, error: PyErr) -> PyErr {
+    if error.is_instance_of::<PyTypeError>(py) {
+        return PyTypeError::new_err(format!("argument '{name}': {}", error.value(py)));
+    }
+    error
+}
