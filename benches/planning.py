@@ -24,6 +24,7 @@ for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
 
 import argparse
 import itertools
+import json
 import sys
 import tempfile
 import xml.etree.ElementTree as ET
@@ -103,9 +104,17 @@ def describe(arm: MotionBenchArm, spheres: SphereArm, scratch: Path) -> Arm:
         if frozenset((one, other)) not in tested:
             ET.SubElement(root, "disable_collisions", link1=one, link2=other, reason="Never")
     srdf.write_text(ET.tostring(root, encoding="unicode"), encoding="utf-8")
-    pairs = [(min(pair), max(pair)) for pair in tested]
+    capsules = json.loads(arm.urdf.with_name("capsules.json").read_text(encoding="utf-8"))["capsules"]
     return Arm(
-        arm.name, str(urdf), str(srdf), ARMS[arm.name], spheres.moving, spheres.velocity, ACCELERATION, sorted(pairs)
+        arm.name,
+        str(urdf),
+        str(srdf),
+        ARMS[arm.name],
+        spheres.moving,
+        spheres.velocity,
+        ACCELERATION,
+        pairs=sorted((min(pair), max(pair)) for pair in tested),
+        capsules=[(each["link"], each["a"], each["b"], each["radius"]) for each in capsules],
     )
 
 

@@ -31,7 +31,7 @@ NEAR = 1.05  # times the duration that 5 s find
 FIRST = planners.BeetleIk.name
 BEGIN, END = "<!-- written by benches/planning.py -->", "<!-- end -->"
 OURS = (planners.BeetleIk, planners.BeetleIkTravel, planners.Within5Milliseconds)
-OTHERS = (planners.Old, planners.RoboPlan, planners.MpLib)
+OTHERS = (planners.Old, planners.OldCapsules, planners.RoboPlan, planners.MpLib)
 IMPROVING = (planners.Within1Second, planners.Within5Seconds)
 PICTURED = (("panda", "bookshelf_small", 3), ("panda", "cage", 1), ("ur5", "table_under_pick", 1))
 
@@ -193,10 +193,15 @@ def with_paragraph(page: str, text: str) -> str:
     return f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}"
 
 
+def table(docs: Path) -> list[dict[str, str]]:
+    """The table of the site."""
+    with (docs / "planning.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def paragraph(docs: Path) -> str:
     """What the tables of the site say, in words."""
-    with (docs / "planning.csv").open(encoding="utf-8", newline="") as file:
-        rows = {(row["planner"], row["arm"]): row for row in csv.DictReader(file)}
+    rows = {(row["planner"], row["arm"]): row for row in table(docs)}
     arms = list(dict.fromkeys(arm for _, arm in rows))
 
     def each(planner: str, say: str) -> str:

@@ -34,6 +34,9 @@ class Arm:
     velocity: np.ndarray  # rad/s, from the URDF
     acceleration: float  # rad/s^2, of every joint
     pairs: list[tuple[str, str]]  # links that must not touch
+    capsules: list[
+        tuple[str, list[float], list[float], float]
+    ]  # fewer bodies that hold the spheres, at most 4 mm larger
 
 
 @dataclass(frozen=True)
@@ -183,6 +186,14 @@ class Old(BeetleIk):
             for box in problem["boxes"]
         ]
         return boxes + [self.bik.obstacles.ConvexMesh(prism(cylinder)) for cylinder in problem["cylinders"]]
+
+
+class OldCapsules(Old):
+    name = "beetle-ik 0.1.0, capsules"
+    settings = "29 and 16 capsules that hold the spheres, at most 4 mm larger"
+
+    def _robot(self, arm: Arm) -> Any:
+        return self.bik.Robot.from_urdf(arm.urdf, tip=arm.tip).with_capsules(arm.capsules)
 
 
 def prism(cylinder: dict[str, Any], sides: int = 24) -> np.ndarray:

@@ -104,7 +104,7 @@ class SphereJudge:
 
     def judge(self, motion: Motion, acceleration: float) -> Verdict:
         """Judges a motion; `acceleration` is the limit of every joint (rad/s²)."""
-        q, centers = dense(self.arm, motion)
+        q, centers = dense(self.arm.centers, motion)
         ends = np.abs(q[[0, -1]] - [self.start, self.goal]).max()
         outside = max(0.0, np.maximum(self.arm.lower - q, q - self.arm.upper).max())
         length = np.linalg.norm(np.diff(q, axis=0), axis=1).sum()
@@ -141,16 +141,16 @@ class SphereJudge:
         return np.concatenate(found, axis=1)
 
 
-def dense(arm: SphereArm, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Configurations (m, n) along a motion, and centres of the spheres (m, k, 3) at most `APART` from row to row."""
+def dense(points: Callable[[np.ndarray], np.ndarray], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Configurations (m, n) along a motion, and points of the arm (m, k, 3), at most `APART` from row to row."""
     times = np.linspace(0.0, motion.duration, 257)
     while True:
         q = motion.at(times)
-        centers = arm.centers(q)
-        moved = np.linalg.norm(np.diff(centers, axis=0), axis=2).max(axis=1)
+        found = points(q)
+        moved = np.linalg.norm(np.diff(found, axis=0), axis=2).max(axis=1)
         parts = np.maximum(1, np.ceil(moved / APART)).astype(int)
         if (parts == 1).all():
-            return q, centers
+            return q, found
         starts, steps = np.repeat(times[:-1], parts), np.repeat(np.diff(times) / parts, parts)
         within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
         times = np.append(starts + within * steps, times[-1])
