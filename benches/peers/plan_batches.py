@@ -22,7 +22,7 @@ def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration
         return []
     limits = bik.Limits(acceleration=acceleration)
     batch = [
-        {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem), "margin": 0.0}
+        {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem)}
         for problem in problems
     ]
     one, two = (
