@@ -1,12 +1,12 @@
-"""Plans among obstacles on MotionBenchMaker: this library, its release 0.1.0, roboplan and mplib, one run.
+"""Plans among obstacles on MotionBenchMaker: this library, an earlier state of it, roboplan and mplib, one run.
 
     python benches/planning.py --data DIR --old FOLDER --peers PYTHON --out DIR [--docs docs]
 
-DIR holds `panda.json`, `ur5.json` and `robots/`, as in the README of the data; FOLDER holds the package of 0.1.0, and
-PYTHON is an interpreter with roboplan and mplib. A planner without its folder or library is named and left out. Each
-runs in a process of its own; they take turns, problem by problem. Bodies are the spheres that decide there what is
-valid; scenes are prepared before the clock starts. Times are those of the processor, so that a busy machine counts
-less; of a call that takes less than 50 ms, the median of three counts.
+DIR holds `panda.json`, `ur5.json` and `robots/`, as in the README of the data; FOLDER holds the package of commit
+c1eaf41 with its module, and PYTHON is an interpreter with roboplan and mplib. A planner without its folder or library
+is named and left out. Each runs in a process of its own; they take turns, problem by problem. Bodies are the spheres
+that decide there what is valid; scenes are prepared before the clock starts. Times are those of the processor, so that
+a busy machine counts less; of a call that takes less than 50 ms, the median of three counts.
 
 A judge that shares no code with any planner samples every motion so densely that no sphere moves more than 1 mm from
 sample to sample (`peers/sphere_judge.py`).
@@ -77,7 +77,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--arms", nargs="*", default=list(ARMS), help="arms (default: all)")
     parser.add_argument("--every", type=int, default=1, help="take one of so many problems (default: all)")
     parser.add_argument("--only", nargs="*", default=[], help="names that a planner must contain one of (default: all)")
-    parser.add_argument("--old", type=Path, help="folder that holds the package beetle_ik of 0.1.0")
+    parser.add_argument("--old", type=Path, help="folder that holds the package beetle_ik of commit c1eaf41")
     parser.add_argument(
         "--peers", default=sys.executable, help="interpreter with roboplan and mplib (default: this one)"
     )

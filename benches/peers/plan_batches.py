@@ -22,8 +22,7 @@ def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration
         return []
     limits = bik.Limits(acceleration=acceleration)
     batch = [
-        {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem)}
-        for problem in problems
+        {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem)} for problem in problems
     ]
     one, two = (
         best(lambda threads=threads: bik.plan_batch(arm.robot, batch, limits=limits, threads=threads))

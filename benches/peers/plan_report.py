@@ -17,7 +17,7 @@ from .sphere_judge import Verdict
 
 COLUMNS = [
     *("planner", "arm", "problems", "claimed", "kept", "claimed, not kept", "least clearance_mm"),
-    *("margin 0", "median_ms", "p95_ms", "slowest_ms", "length_rad", "length over 0.1.0", "duration_s"),
+    *("margin 0", "median_ms", "p95_ms", "slowest_ms", "length_rad", "length over c1eaf41", "duration_s"),
     "limits exceeded by",
 ]
 IMPROVED_COLUMNS = ["arm", "problems", "max_time", "at most 1.05 of 5 s", "duration over 5 s, median", "slowest_s"]
@@ -29,11 +29,20 @@ ROUNDING = 1e-6  # of a limit
 BUDGETS = {planners.BeetleIk.name: "none", planners.Within1Second.name: "1", planners.Within5Seconds.name: "5"}
 NEAR = 1.05  # times the duration that 5 s find
 FIRST = planners.BeetleIk.name
+BATCH = (
+    "`plan_batch` takes {one core, ms a problem} ms a problem of the {arm} on one core and "
+    "{two cores, ms a problem} ms on two: a gain of {gain}, where two empty loops gain {gain of two empty loops}."
+)
 BEGIN, END = "<!-- written by benches/planning.py -->", "<!-- end -->"
 OURS = (planners.BeetleIk, planners.BeetleIkTravel, planners.Within5Milliseconds)
 OTHERS = (planners.Old, planners.OldCapsules, planners.RoboPlan, planners.MpLib)
 IMPROVING = (planners.Within1Second, planners.Within5Seconds)
-PICTURED = (("panda", "bookshelf_small", 3), ("panda", "cage", 1), ("ur5", "table_under_pick", 1))
+# Arm, scene, number, and how it is seen: elevation and azimuth (degrees), zoom.
+PICTURED = (
+    ("panda", "bookshelf_small", 3, 30, 60, 1.3),
+    ("panda", "cage", 1, 25, 140, 1.3),
+    ("ur5", "table_under_pick", 1, 15, -130, 1.7),
+)
 
 
 @dataclass(frozen=True)
@@ -104,7 +113,7 @@ def summary(results: list[Result]) -> list[list[str]]:
 
 
 def summary_line(mine: list[Result], old: list[Result]) -> list[str]:
-    """The figures of one planner on one arm, compared with those of 0.1.0."""
+    """The figures of one planner on one arm, compared with those of the earlier one."""
     verdicts = [each.verdict for each in mine if each.verdict is not None]
     kept = [each for each in mine if each.kept]
     of_old = {each.key: each.verdict.length for each in old if each.kept}
@@ -193,15 +202,15 @@ def with_paragraph(page: str, text: str) -> str:
     return f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}"
 
 
-def table(docs: Path) -> list[dict[str, str]]:
-    """The table of the site."""
-    with (docs / "planning.csv").open(encoding="utf-8", newline="") as file:
+def table(docs: Path, name: str) -> list[dict[str, str]]:
+    """A table of the site."""
+    with (docs / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def paragraph(docs: Path) -> str:
     """What the tables of the site say, in words."""
-    rows = {(row["planner"], row["arm"]): row for row in table(docs)}
+    rows = {(row["planner"], row["arm"]): row for row in table(docs, "planning.csv")}
     arms = list(dict.fromkeys(arm for _, arm in rows))
 
     def each(planner: str, say: str) -> str:
@@ -218,24 +227,25 @@ def paragraph(docs: Path) -> str:
     ]
     others = [each.name for each in OTHERS if (each.name, arms[0]) in rows]
     sentences += [f"{other} keeps {each(other, '{kept} of {claimed}')} in {each(other, times)}." for other in others]
+    sentences += [BATCH.format(**row) for row in table(docs, "planning_batch.csv")]
     return fill(" ".join(sentences), 160, break_on_hyphens=False)
 
 
 def pictures(data: Path, acceleration: float, file: Path) -> None:
-    """Draws three plans: the arm at six instants, and the way of its tip."""
+    """Draws three plans: the bodies of the arm at both ends, its links at six instants, and the path of its tip."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
     import beetle_ik as bik
-    from beetle_ik import _plan_figure
+    from beetle_ik import _plan_figure, _shapes
 
     from .clear import MotionBenchArm
 
-    figure = plt.figure(figsize=(13.5, 4.8))
-    grid = figure.add_gridspec(1, len(PICTURED), left=0.0, right=0.97, wspace=0.05)
-    for place, (name, scene, index) in zip(grid, PICTURED, strict=True):
+    figure = plt.figure(figsize=(12.0, 4.2))
+    grid = figure.add_gridspec(1, len(PICTURED), left=0.01, right=0.97, bottom=0.02, top=0.92, wspace=0.08)
+    for place, (name, scene, index, elevation, azimuth, zoom) in zip(grid, PICTURED, strict=True):
         arm = MotionBenchArm(data, name)
         problem = next(each for each in arm.problems() if (each["scene"], each["index"]) == (scene, index))
         plan = bik.plan_point_to_point(
@@ -249,6 +259,11 @@ def pictures(data: Path, acceleration: float, file: Path) -> None:
         for share in np.linspace(0.0, 1.0, 6):
             drawn.draw_arm(share, color="#56B4E9", alpha=0.25 + 0.75 * share)
         drawn.draw_way()
+        for end in (problem["start"], problem["goal"]):
+            _shapes.draw_bodies(drawn.axes, _shapes.placed_bodies(arm.robot, end))
+        drawn.axes.set_box_aspect((1, 1, 1), zoom=zoom)
+        drawn.axes.set_axis_off()
+        drawn.axes.view_init(elevation, azimuth)
         drawn.axes.set_title(f"{name}, {scene}: {plan.trajectory.duration:.1f} s", fontsize="medium")
     figure.savefig(file, dpi=110)
     plt.close(figure)

@@ -1,4 +1,4 @@
-"""A planner in a process of its own, with its own interpreter and path: two releases of beetle-ik have one name.
+"""A planner in a process of its own, with its own interpreter and path: two states of beetle-ik have one name.
 
     python -m peers.plan_worker FILE_DESCRIPTOR CLASS
 

@@ -162,9 +162,9 @@ class Within5Seconds(Within):
 
 
 class Old(BeetleIk):
-    """Release 0.1.0: spheres as capsules without length on links of the chain, cylinders as prisms around them."""
+    """Its first planner: spheres are capsules without length on links of the chain, cylinders are prisms."""
 
-    name = "beetle-ik 0.1.0"
+    name = "beetle-ik, commit c1eaf41"
     settings = "as beetle-ik; cylinders are prisms of 24 sides around them, and it chooses the pairs of links itself"
     reserve = 5e-5
 
@@ -189,7 +189,7 @@ class Old(BeetleIk):
 
 
 class OldCapsules(Old):
-    name = "beetle-ik 0.1.0, capsules"
+    name = "beetle-ik, commit c1eaf41, capsules"
     settings = "29 and 16 capsules that hold the spheres, at most 4 mm larger"
 
     def _robot(self, arm: Arm) -> Any:
