@@ -67,7 +67,7 @@ def main() -> None:
             batches += batch_line(arm, problems, ACCELERATION)
     plan_report.write(arguments.out, results, batches)
     if arguments.docs:
-        plan_report.publish(arguments.docs, results, batches, arguments.data, ACCELERATION)
+        plan_report.publish(arguments.out, arguments.docs, arguments.data, ACCELERATION)
 
 
 def parse_arguments() -> argparse.Namespace:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from . import plan_batches, planners
+from . import plan_batches, plan_figures, planners
 from .plan_worker import Answer
 from .report import plain_section, write_table
 from .sphere_judge import Verdict
@@ -36,13 +36,8 @@ BATCH = (
 BEGIN, END = "<!-- written by benches/planning.py -->", "<!-- end -->"
 OURS = (planners.BeetleIk, planners.BeetleIkTravel, planners.Within5Milliseconds)
 OTHERS = (planners.Old, planners.OldCapsules, planners.RoboPlan, planners.MpLib)
+NAMES = [planner.name for planner in (*OURS, *OTHERS)]
 IMPROVING = (planners.Within1Second, planners.Within5Seconds)
-# Arm, scene, number, and how it is seen: elevation and azimuth (degrees), zoom.
-PICTURED = (
-    ("panda", "bookshelf_small", 3, 30, 60, 1.3),
-    ("panda", "cage", 1, 25, 140, 1.3),
-    ("ur5", "table_under_pick", 1, 15, -130, 1.7),
-)
 
 
 @dataclass(frozen=True)
@@ -72,19 +67,18 @@ class Result:
 
 
 def write(out: Path, results: list[Result], batches: list[list[str]]) -> None:
-    """Writes all tables, and every single result."""
-    lines, improved = summary(results), improvement(results)
-    write_table(out / "planning.csv", COLUMNS, lines)
+    """Writes all tables, every single result, and the figure."""
+    tables = [
+        ("planning", "Plans among obstacles, MotionBenchMaker", COLUMNS, summary(results)),
+        ("planning_improved", "Durations with a budget of time", IMPROVED_COLUMNS, improvement(results)),
+        ("planning_batch", "Batches", plan_batches.COLUMNS, batches),
+    ]
+    for name, _, columns, lines in tables:
+        write_table(out / f"{name}.csv", columns, lines)
     write_table(out / "planning_problems.csv", PROBLEM_COLUMNS, [problem_line(each) for each in results])
-    text = plain_section("Plans among obstacles, MotionBenchMaker", COLUMNS, lines)
-    if improved:
-        write_table(out / "planning_improved.csv", IMPROVED_COLUMNS, improved)
-        text += "\n" + plain_section("Durations with a budget of time", IMPROVED_COLUMNS, improved)
-    if batches:
-        write_table(out / "planning_batch.csv", plan_batches.COLUMNS, batches)
-        text += "\n" + plain_section("Batches", plan_batches.COLUMNS, batches)
+    plan_figures.success(table(out, "planning_problems.csv"), NAMES, out / "planning_success.png")
+    text = "\n".join(plain_section(title, columns, lines) for _, title, columns, lines in tables if lines)
     (out / "planning.md").write_text(text, encoding="utf-8")
-    success_figure(results, out / "planning_success.png")
     print(text)
 
 
@@ -105,10 +99,9 @@ def summary(results: list[Result]) -> list[list[str]]:
     for result in results:
         if result.planner not in {each.name for each in IMPROVING}:
             grouped.setdefault((result.planner, result.arm), []).append(result)
-    order = [planner.name for planner in (*OURS, *OTHERS)]
     return [
         summary_line(mine, grouped.get((planners.Old.name, arm), []))
-        for (_, arm), mine in sorted(grouped.items(), key=lambda item: order.index(item[0][0]))
+        for (_, arm), mine in sorted(grouped.items(), key=lambda item: NAMES.index(item[0][0]))
     ]
 
 
@@ -158,40 +151,12 @@ def improvement(results: list[Result]) -> list[list[str]]:
     return lines
 
 
-def success_figure(results: list[Result], file: Path) -> None:
-    """The share of the problems that are solved within a time, for each planner."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    shown = [each for each in results if each.planner in {planner.name for planner in (*OURS, *OTHERS)}]
-    arms, names = (list(dict.fromkeys(getattr(each, field) for each in shown)) for field in ("arm", "planner"))
-    figure, panels = plt.subplots(1, len(arms), figsize=(5.0 * len(arms), 4.4), sharey=True, squeeze=False)
-    for axes, arm in zip(panels[0], arms, strict=True):
-        for i, name in enumerate(names):
-            mine = [each for each in shown if (each.planner, each.arm) == (name, arm)]
-            times = np.sort([each.milliseconds for each in mine if each.kept])
-            share = 100.0 * np.arange(1, len(times) + 1) / len(mine)
-            axes.step(np.append(times, 1e4), np.append(share, share[-1:]), where="post", color=f"C{i}", label=name)
-        axes.set(xscale="log", xlim=(0.1, 1e4), ylim=(0, 102), xlabel="time of a call [ms]", title=arm)
-        axes.grid(alpha=0.3)
-    panels[0][0].set_ylabel("solved, and kept by the judge [%]")
-    handles, labels = panels[0][0].get_legend_handles_labels()
-    figure.tight_layout(rect=(0.0, 0.12, 1.0, 1.0))
-    figure.legend(handles, labels, loc="lower center", ncols=3, fontsize="small", frameon=False)
-    figure.savefig(file, dpi=150)
-    plt.close(figure)
-
-
-def publish(docs: Path, results: list[Result], batches: list[list[str]], data: Path, acceleration: float) -> None:
-    """Brings the site up to date: tables, paragraph and pictures."""
-    lines = summary(results)
-    write_table(docs / "planning.csv", COLUMNS, lines)
-    write_table(docs / "planning_improved.csv", IMPROVED_COLUMNS, improvement(results))
-    write_table(docs / "planning_batch.csv", plan_batches.COLUMNS, batches)
-    success_figure(results, docs / "images" / "planning_success.png")
-    pictures(data, acceleration, docs / "images" / "planning_scenes.png")
+def publish(out: Path, docs: Path, data: Path, acceleration: float) -> None:
+    """Brings the site up to date with the results in `out`: tables, paragraph and pictures."""
+    for name in ("planning.csv", "planning_improved.csv", "planning_batch.csv"):
+        (docs / name).write_bytes((out / name).read_bytes())
+    plan_figures.success(table(out, "planning_problems.csv"), NAMES, docs / "images" / "planning_success.png")
+    plan_figures.pictures(data, acceleration, docs / "images" / "planning_scenes.png")
     page = docs / "planning.md"
     page.write_text(with_paragraph(page.read_text(encoding="utf-8"), paragraph(docs)), encoding="utf-8")
 
@@ -202,9 +167,9 @@ def with_paragraph(page: str, text: str) -> str:
     return f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}"
 
 
-def table(docs: Path, name: str) -> list[dict[str, str]]:
-    """A table of the site."""
-    with (docs / name).open(encoding="utf-8", newline="") as file:
+def table(folder: Path, name: str) -> list[dict[str, str]]:
+    """A table that was written."""
+    with (folder / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -216,54 +181,18 @@ def paragraph(docs: Path) -> str:
     def each(planner: str, say: str) -> str:
         return " and ".join(say.format(**rows[planner, arm]) for arm in arms)
 
-    solved = "{kept} of {problems}"
-    times = "{median_ms} ms ({p95_ms} ms)"
     sentences = [
-        f"In the order {' and '.join(arms)}: beetle-ik solves {each(FIRST, solved)} problems, and keeps "
-        f"{each(FIRST, '{kept} of the {claimed}')} motions that it calls clear.",
-        f"The median of a call (95th percentile) is {each(FIRST, times)}, "
-        f"the slowest takes {each(FIRST, '{slowest_ms} ms')}.",
-        f"With `max_time=0.005` it solves {each(planners.Within5Milliseconds.name, solved)}.",
+        f"Figures are those of {' and '.join(arms)}. beetle-ik solves {each(FIRST, '{kept} of {problems}')} problems; "
+        f"of the {each(FIRST, '{claimed}')} motions that it calls clear, {each(FIRST, '{kept}')} are.",
+        f"A call takes {each(FIRST, '{median_ms} ms')} in the median, {each(FIRST, '{p95_ms} ms')} at the 95th "
+        f"percentile, {each(FIRST, '{slowest_ms} ms')} at most.",
+        f"With `max_time=0.005` it solves {each(planners.Within5Milliseconds.name, '{kept} of {problems}')}.",
     ]
-    others = [each.name for each in OTHERS if (each.name, arms[0]) in rows]
-    sentences += [f"{other} keeps {each(other, '{kept} of {claimed}')} in {each(other, times)}." for other in others]
+    sentences += [
+        f"{other.name} claims {each(other.name, '{claimed}')}, of which {each(other.name, '{kept}')} are kept, and "
+        f"takes {each(other.name, '{median_ms} ms')} in the median."
+        for other in OTHERS
+        if (other.name, arms[0]) in rows
+    ]
     sentences += [BATCH.format(**row) for row in table(docs, "planning_batch.csv")]
     return fill(" ".join(sentences), 160, break_on_hyphens=False)
-
-
-def pictures(data: Path, acceleration: float, file: Path) -> None:
-    """Draws three plans: the bodies of the arm at both ends, its links at six instants, and the path of its tip."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    import beetle_ik as bik
-    from beetle_ik import _plan_figure, _shapes
-
-    from .clear import MotionBenchArm
-
-    figure = plt.figure(figsize=(12.0, 4.2))
-    grid = figure.add_gridspec(1, len(PICTURED), left=0.01, right=0.97, bottom=0.02, top=0.92, wspace=0.08)
-    for place, (name, scene, index, elevation, azimuth, zoom) in zip(grid, PICTURED, strict=True):
-        arm = MotionBenchArm(data, name)
-        problem = next(each for each in arm.problems() if (each["scene"], each["index"]) == (scene, index))
-        plan = bik.plan_point_to_point(
-            arm.robot,
-            start_q=problem["start"],
-            end_q=problem["goal"],
-            obstacles=arm.scene(problem),
-            limits=bik.Limits(acceleration=acceleration),
-        )
-        drawn = _plan_figure.Scene(figure, place, plan)
-        for share in np.linspace(0.0, 1.0, 6):
-            drawn.draw_arm(share, color="#56B4E9", alpha=0.25 + 0.75 * share)
-        drawn.draw_way()
-        for end in (problem["start"], problem["goal"]):
-            _shapes.draw_bodies(drawn.axes, _shapes.placed_bodies(arm.robot, end))
-        drawn.axes.set_box_aspect((1, 1, 1), zoom=zoom)
-        drawn.axes.set_axis_off()
-        drawn.axes.view_init(elevation, azimuth)
-        drawn.axes.set_title(f"{name}, {scene}: {plan.trajectory.duration:.1f} s", fontsize="medium")
-    figure.savefig(file, dpi=110)
-    plt.close(figure)

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,12 @@ import beetle_ik as bik
 pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
 sys.path.insert(0, str(Path(__file__).parents[2] / "benches"))
 
-from peers import plan_report
+from peers import plan_report, planners
 from peers.clear import ALWAYS_TOUCH, ARMS, CoalScene, MotionBenchArm
+from peers.plan_report import Result
+from peers.plan_worker import Answer
 from peers.sphere_arm import SphereArm
-from peers.sphere_judge import APART, Motion, Obstacle, SphereJudge, dense, rates
+from peers.sphere_judge import APART, Motion, Obstacle, SphereJudge, Verdict, dense, rates, turn
 
 DATA = SHARED / "motionbenchmaker"
 DOCS = Path(__file__).parents[2] / "docs"
@@ -82,7 +85,7 @@ def test_a_plan_is_kept_and_a_straight_line_is_not() -> None:
     line = judge.judge(Motion(lambda t: start + t[:, None] * (goal - start), 1.0, 1e-3), ACCELERATION)
     assert line.clearance < -0.01
     assert line.length == pytest.approx(float(np.linalg.norm(goal - start)))
-    fine = judge.clearances(start + np.linspace(0.0, 1.0, 20_001)[:, None] * (goal - start))
+    fine = judge.clearances(start + np.linspace(0.0, 1.0, 4_001)[:, None] * (goal - start))
     assert line.clearance == pytest.approx(fine.min(), abs=APART)
 
 
@@ -115,6 +118,43 @@ def test_rates_are_those_of_a_parabola_and_see_a_jump_at_the_end() -> None:
     first, second = rates(Motion(lambda t: np.sin(np.pi * t - np.pi / 2)[:, None], 1.0, 1e-3))
     assert first == pytest.approx(np.pi, rel=1e-4)
     assert second == pytest.approx(np.pi**2, rel=1e-4)
+
+
+def test_samples_of_others_are_joined_by_cubics() -> None:
+    class Cubic(planners.Sampled):
+        def __init__(self) -> None:
+            time = np.array([0.0, 0.3, 1.0, 1.1])[:, None]
+            self.motion = self._sampled(time[:, 0], time**3 - time, 3 * time**2 - 1)
+
+    time = np.linspace(0.0, 1.1, 40)
+    np.testing.assert_allclose(Cubic().at(time)[:, 0], time**3 - time, atol=1e-14)
+    assert Cubic().motion.duration == 1.1
+
+
+def test_a_prism_holds_its_cylinder() -> None:
+    thing = {"position": [1.0, 2.0, 3.0], "xyzw": [0.5, 0.5, 0.5, 0.5], "radius": 0.1, "length": 0.4}
+    corners = planners.prism(thing)
+    cylinder = Obstacle(turn(thing["xyzw"]), np.array(thing["position"]), np.array([0.1, 0.2]))
+    middles = 0.5 * (corners + np.roll(corners.reshape(2, 24, 3), 1, axis=1).reshape(48, 3))
+    np.testing.assert_allclose(cylinder.distances(middles), 0.0, atol=1e-15)
+
+
+def test_claims_that_are_not_kept_are_counted() -> None:
+    problem = {"scene": "table", "index": 1}
+    answer = Answer(claimed=True, seconds=0.002, wall=0.003, margin_0=False, duration=2.0, spacing=1e-3)
+    kept = Verdict(clearance=0.001, off_ends=0.0, outside=0.0, length=3.0, speed=1.0, acceleration=1.0)
+    verdicts = [
+        kept,
+        replace(kept, clearance=-0.002),
+        replace(kept, off_ends=0.1, speed=1.5),
+        replace(kept, outside=0.1),
+    ]
+    results = [Result("beetle-ik", "panda", problem, answer, verdict) for verdict in verdicts]
+    results.append(Result("beetle-ik", "panda", problem, replace(answer, claimed=False), None))
+    (line,) = plan_report.summary(results)
+    row = dict(zip(plan_report.COLUMNS, line, strict=True))
+    assert [row[name] for name in ("problems", "claimed", "kept", "claimed, not kept")] == ["5", "4", "1", "3"]
+    assert [row["least clearance_mm"], row["limits exceeded by"], row["median_ms"]] == ["-2", "50 %", "2"]
 
 
 def test_the_page_says_what_the_tables_say() -> None:
