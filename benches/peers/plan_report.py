@@ -12,7 +12,7 @@ import numpy as np
 
 from . import plan_batches, plan_figures, planners
 from .plan_worker import Answer
-from .report import plain_section, write_table
+from .report import plain_section, plain_table, write_table
 from .sphere_judge import Verdict
 
 COLUMNS = [
@@ -28,7 +28,17 @@ PROBLEM_COLUMNS = [
 ROUNDING = 1e-6  # of a limit
 BUDGETS = {planners.BeetleIk.name: "none", planners.Within1Second.name: "1", planners.Within5Seconds.name: "5"}
 NEAR = 1.05  # times the duration that 5 s find
-FIRST = planners.BeetleIk.name
+SHOWN = {
+    "problems": "{problems}",
+    "claimed": "{claimed}",
+    "kept": "{kept}",
+    "least clearance, mm": "{least clearance_mm}",
+    "median, ms": "{median_ms}",
+    "95 %, ms": "{p95_ms}",
+    "slowest, ms": "{slowest_ms}",
+    "length over c1eaf41": "{length over c1eaf41}",
+    "limits exceeded by": "{limits exceeded by}",
+}  # heads of the table on the site, and how a cell is written
 BATCH = (
     "`plan_batch` takes {one core, ms a problem} ms a problem of the {arm} on one core and "
     "{two cores, ms a problem} ms on two: a gain of {gain}, where two empty loops gain {gain of two empty loops}."
@@ -121,7 +131,7 @@ def summary_line(mine: list[Result], old: list[Result]) -> list[str]:
         *map(digits, (np.median(times), np.quantile(times, 0.95), times[-1])),
         *(digits(np.median(values)) if values else "-" for values in ([each.verdict.length for each in kept], ratios)),
         digits(np.median([each.answer.duration for each in kept])) if kept else "-",
-        f"{100 * excess:.2g} %" if excess > ROUNDING else "-",
+        f"{digits(100 * excess)} %" if excess > ROUNDING else "-",
     ]
 
 
@@ -152,16 +162,16 @@ def improvement(results: list[Result]) -> list[list[str]]:
 
 
 def publish(out: Path, docs: Path, data: Path, acceleration: float) -> None:
-    """Brings the site up to date with the results in `out`: tables, paragraph and pictures."""
+    """Brings the site up to date with the results in `out`: tables and pictures."""
     for name in ("planning.csv", "planning_improved.csv", "planning_batch.csv"):
         (docs / name).write_bytes((out / name).read_bytes())
     plan_figures.success(table(out, "planning_problems.csv"), NAMES, docs / "images" / "planning_success.png")
     plan_figures.pictures(data, acceleration, docs / "images" / "planning_scenes.png")
     page = docs / "planning.md"
-    page.write_text(with_paragraph(page.read_text(encoding="utf-8"), paragraph(docs)), encoding="utf-8")
+    page.write_text(with_section(page.read_text(encoding="utf-8"), section(docs)), encoding="utf-8")
 
 
-def with_paragraph(page: str, text: str) -> str:
+def with_section(page: str, text: str) -> str:
     """The page with another text between the two marks."""
     before, rest = page.split(BEGIN)
     return f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}"
@@ -173,26 +183,14 @@ def table(folder: Path, name: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def paragraph(docs: Path) -> str:
-    """What the tables of the site say, in words."""
+def section(docs: Path) -> str:
+    """What the tables of the site say, in a narrow one: a line for each planner, a figure for each arm."""
     rows = {(row["planner"], row["arm"]): row for row in table(docs, "planning.csv")}
     arms = list(dict.fromkeys(arm for _, arm in rows))
-
-    def each(planner: str, say: str) -> str:
-        return " and ".join(say.format(**rows[planner, arm]) for arm in arms)
-
-    sentences = [
-        f"Figures are those of {' and '.join(arms)}. beetle-ik solves {each(FIRST, '{kept} of {problems}')} problems; "
-        f"of the {each(FIRST, '{claimed}')} motions that it calls clear, {each(FIRST, '{kept}')} are.",
-        f"A call takes {each(FIRST, '{median_ms} ms')} in the median, {each(FIRST, '{p95_ms} ms')} at the 95th "
-        f"percentile, {each(FIRST, '{slowest_ms} ms')} at most.",
-        f"With `max_time=0.005` it solves {each(planners.Within5Milliseconds.name, '{kept} of {problems}')}.",
+    lines = [
+        [planner, *(" / ".join(say.format(**rows[planner, arm]) for arm in arms) for say in SHOWN.values())]
+        for planner in dict.fromkeys(planner for planner, _ in rows)
     ]
-    sentences += [
-        f"{other.name} claims {each(other.name, '{claimed}')}, of which {each(other.name, '{kept}')} are kept, and "
-        f"takes {each(other.name, '{median_ms} ms')} in the median."
-        for other in OTHERS
-        if (other.name, arms[0]) in rows
-    ]
-    sentences += [BATCH.format(**row) for row in table(docs, "planning_batch.csv")]
-    return fill(" ".join(sentences), 160, break_on_hyphens=False)
+    batches = " ".join(BATCH.format(**row) for row in table(docs, "planning_batch.csv"))
+    text = "\n".join(plain_table([f"planner; figures of {' / '.join(arms)}", *SHOWN], lines))
+    return "\n\n".join([text, fill(batches, 160, break_on_hyphens=False)] if batches else [text])
