@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from collections.abc import Callable
-from multiprocessing import get_context
 from typing import Any
 
 import beetle_ik as bik
@@ -13,7 +14,7 @@ from .clear import MotionBenchArm
 
 COLUMNS = ["arm", "problems", "one core, ms a problem", "two cores, ms a problem", "gain", "gain of two empty loops"]
 ROUNDS = 5
-TURNS = 5_000_000  # of the empty loop
+LOOP = "import time; begin = time.perf_counter()\nfor _ in range(20_000_000): pass\nprint(time.perf_counter() - begin)"
 
 
 def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration: float) -> list[list[str]]:
@@ -35,20 +36,15 @@ def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration
 
 def gain_of_loops() -> float:
     """How much more two loops without memory do at once than one alone: what two cores of this machine can give."""
-    context = get_context("spawn")
-    with context.Pool(2) as pool:
-        pool.map(loop, [1, 1])  # both processes are there
-        alone = best(lambda: pool.map(loop, [TURNS]))
-        both = best(lambda: pool.map(loop, [TURNS, TURNS], chunksize=1))
+    alone, both = (min(looped(count) for _ in range(ROUNDS)) for count in (1, 2))
     return 2.0 * alone / both
 
 
-def loop(turns: int) -> int:
-    """Counts."""
-    count = 0
-    for _ in range(turns):
-        count += 1
-    return count
+def looped(count: int) -> float:
+    """The time (s) of so many loops at once, each in a process of its own; of the slowest."""
+    command = [sys.executable, "-c", LOOP]
+    processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(count)]
+    return max(float(process.communicate()[0]) for process in processes)
 
 
 def best(call: Callable[[], object]) -> float:
