@@ -27,9 +27,9 @@ def success(rows: list[dict[str, str]], names: list[str], file: Path) -> None:
         for i, name in enumerate(name for name in names if name in known):
             mine = [row for row in rows if (row["planner"], row["arm"]) == (name, arm)]
             times = np.sort([float(row["ms"]) for row in mine if row["kept"] == "True"])
-            share = 100.0 * np.arange(1, len(times) + 1) / len(mine)
+            share = 100.0 * np.arange(len(times) + 1) / len(mine)
             width = 2.4 if i == 0 else 1.4
-            axes.step(np.append(times, 1e4), np.append(share, share[-1:]), where="post", linewidth=width, label=name)
+            axes.step([1e-3, *times, 1e4], [*share, share[-1]], where="post", linewidth=width, label=name)
         axes.set(xscale="log", xlim=(0.05, 1e4), ylim=(0, 102), xlabel="time of a call [ms]", title=arm)
         axes.grid(alpha=0.3)
     panels[0][0].set_ylabel("solved, and kept by the judge [%]")

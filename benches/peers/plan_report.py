@@ -127,7 +127,11 @@ def summary_line(mine: list[Result], old: list[Result]) -> list[str]:
     excess = max(rates, default=0.0) - 1.0
     return [
         *(mine[0].planner, mine[0].arm, str(len(mine)), str(len(verdicts)), str(len(kept))),
-        *(str(len(verdicts) - len(kept)), digits(1e3 * least), str(sum(each.answer.margin_0 for each in mine))),
+        *(
+            str(len(verdicts) - len(kept)),
+            digits(1e3 * least) if verdicts else "-",
+            str(sum(each.answer.margin_0 for each in mine)),
+        ),
         *map(digits, (np.median(times), np.quantile(times, 0.95), times[-1])),
         *(digits(np.median(values)) if values else "-" for values in ([each.verdict.length for each in kept], ratios)),
         digits(np.median([each.answer.duration for each in kept])) if kept else "-",
