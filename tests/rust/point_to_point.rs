@@ -172,6 +172,69 @@ fn a_way_around_a_wall_is_found_and_smooth() {
 }
 
 #[test]
+fn a_larger_budget_finds_no_worse_plan() {
+    let obstacles = vec![Shape::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).unwrap()];
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
+    let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
+    for seed in 0..3 {
+        for objective in [Cost::Time, Cost::JointTravel, Cost::TipTravel] {
+            let plan = |stop: Option<Stop>| {
+                let limits = Some(limits(&robot, None, 10.0));
+                let obstacles = obstacles.clone();
+                let options = PointToPointOptions { limits, obstacles, seed, objective, stop, ..Default::default() };
+                plan_point_to_point(&robot, &side(-0.7), &[side(0.7)], &options, &mut Unattended).unwrap()
+            };
+            let (first, better) = (plan(None), plan(Some(Stop { max_evaluations: 100_000, ..Stop::default() })));
+            assert!(first.status == Status::Solved && better.status == Status::Solved);
+            assert!(better.cost <= first.cost, "{} after {}", better.cost, first.cost);
+            let (costs, last) = (better.history.windows(2), better.history.last().unwrap());
+            assert!(costs.into_iter().all(|pair| pair[1].cost < pair[0].cost) && last.cost == better.cost);
+            assert!(better.evaluations > 100_000 && better.evaluations < 150_000, "{}", better.evaluations);
+        }
+    }
+}
+
+/// A planar arm whose first link would have to pass through a wall.
+fn cut_off(end: Endpoint, stop: Stop) -> Plan {
+    let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
+    let constant = |value: f64| vec![Profile::Constant(value)];
+    let within = limits(&robot, Some(1.0), 10.0).replace(Field::Lower, constant(-2.0)).unwrap();
+    let options = PointToPointOptions {
+        limits: Some(within.replace(Field::Upper, constant(2.0)).unwrap()),
+        obstacles: vec![Shape::cuboid([1.2, 0.0, 0.0], [2.0, 0.02, 1.0], None).unwrap()],
+        stop: Some(stop),
+        ..Default::default()
+    };
+    let start = Endpoint::Configuration(vec![-0.8, 0.0]);
+    plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap()
+}
+
+#[test]
+fn a_plan_without_a_way_says_how_far_the_search_came() {
+    let stop = Stop { max_evaluations: 5000, ..Stop::default() };
+    let plan = cut_off(Endpoint::Configuration(vec![0.8, 0.0]), stop);
+    assert_eq!(plan.status, Status::BudgetSpent);
+    let message = plan.message();
+    let start = "no clear plan for the way from start to end: after ";
+    assert!(message.starts_with(start) && message.contains(" configurations what was reached from both ends stays "));
+    assert!(
+        message.contains(" rad apart; on the straight way link 'link")
+            && message.contains(" m inside obstacle 0 (Box); try ")
+    );
+    assert!(!plan.violations.is_empty() && plan.nearest.is_some());
+}
+
+#[test]
+fn a_plan_to_a_blocked_end_says_what_is_in_the_way() {
+    let plan = cut_off(position(1.5, 0.0), Stop::default());
+    assert_eq!(plan.status, Status::Stalled);
+    let message = plan.message();
+    let start =
+        "no clear plan for end: no configuration was found that is clear of everything; at the clearest one link 'link";
+    assert!(message.starts_with(start) && message.contains(" m inside obstacle 0 (Box); try "), "{message}");
+}
+
+#[test]
 fn plans_reported_free_are_free_at_every_sample() {
     let robots = [
         Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap(),

@@ -183,7 +183,10 @@ mod tests {
                     let q = robot.random_configurations(1, &mut rng).unwrap();
                     let distance = scene.clearance(&q).unwrap();
                     let verdict = check.is_clear(&q, &q);
-                    assert!((distance - margin).abs() < 1e-4 || verdict == (distance > margin), "{distance} of {margin}");
+                    assert!(
+                        (distance - margin).abs() < 1e-4 || verdict == (distance > margin),
+                        "{distance} of {margin}"
+                    );
                     *(if verdict { &mut clear } else { &mut near }) += 1;
                 }
             }

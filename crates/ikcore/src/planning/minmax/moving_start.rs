@@ -46,7 +46,8 @@ pub(super) fn begin(
     let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
     let mut sweep = scene.as_ref().map(Sweep::new);
     let mut is_free = |motion: &Trajectory| {
-        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
+        let check =
+            |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
         sweep.as_mut().is_none_or(check)
     };
     let pairs = search.pairs(PAIRS, monitor)?;

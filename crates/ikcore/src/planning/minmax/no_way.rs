@@ -24,7 +24,8 @@ pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: 
     } else {
         "nothing was reached from either end".into()
     };
-    let in_the_way = straight.map_or(String::new(), |contact| format!("; on the straight way {}", in_words(contact, kept)));
+    let in_the_way =
+        straight.map_or(String::new(), |contact| format!("; on the straight way {}", in_words(contact, kept)));
     format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
 }
 

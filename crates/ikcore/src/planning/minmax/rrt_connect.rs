@@ -138,3 +138,78 @@ fn step_towards(from: &[f64], goal: &[f64], share: f64, next: &mut [f64]) {
         *next = if share < 1.0 { from + share * (goal - from) } else { *goal };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vector::distance;
+    use crate::rng;
+    use crate::robot::Robot;
+    use crate::shape::Shape;
+    use crate::solver::Unattended;
+
+    const MARGIN: f64 = 0.01;
+
+    /// Searches with `budget` from [-0.8, 0] to [0.8, 0]; returns what was found, and how many configurations were examined.
+    fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
+        let obstacles = [obstacle];
+        let limits = MotionLimits::new(&robot, None, "this test").unwrap();
+        let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
+        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
+        let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
+        let mut rng = rng::stream(1, 0);
+        let found = search.connect(&start, &[end.to_vec()], &mut rng, monitor);
+        if let Connection::Found(path) = &found {
+            let length =
+                |path: &JointPolyline| -> f64 { path.0.windows(2).map(|line| distance(&line[0], &line[1])).sum() };
+            let shorter = search.shorten(path.clone(), (&|_, _| true, 60), &mut rng, &mut Unattended);
+            assert!(length(&shorter) <= length(path) + 1e-12);
+            for path in [path, &shorter] {
+                assert_eq!((&path.0[0][..], &path.0[path.0.len() - 1][..]), (&start[..], &end[..]));
+                for line in path.0.windows(2) {
+                    for i in 0..=200 {
+                        let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
+                        let clearance = scene.clearance(&[at(0), at(1)]).unwrap();
+                        // Between two configurations that were examined a body may come a little nearer.
+                        assert!(clearance >= 0.5 * MARGIN, "{clearance} m");
+                    }
+                }
+            }
+        }
+        (found, search.check.examined())
+    }
+
+    #[test]
+    fn a_path_round_an_obstacle_is_clear_and_shortened() {
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
+        assert!(matches!(found, Connection::Found(_)), "{found:?}");
+    }
+
+    #[test]
+    fn the_budget_ends_a_search_without_a_way() {
+        let wall = Shape::cuboid([0.0, 0.0, 0.0], [4.0, 0.02, 1.0], None).unwrap();
+        let (found, examined) = connect(wall, 2000, &mut Unattended);
+        assert_eq!(found, Connection::NotFound);
+        assert!((2000..2200).contains(&examined), "{examined}"); // a line that was begun is examined to its end
+    }
+
+    #[test]
+    fn a_search_without_a_single_clear_step_ends_too() {
+        let everywhere = Shape::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
+        let (found, examined) = connect(everywhere, 2000, &mut Unattended);
+        assert!(found == Connection::NotFound && examined < 2200, "{examined}");
+    }
+
+    #[test]
+    fn a_monitor_interrupts_the_search() {
+        struct Impatient;
+        impl Monitor for Impatient {
+            fn keep_going(&mut self) -> bool {
+                false
+            }
+        }
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
+        assert_eq!(found, Connection::Interrupted);
+    }
+}
