@@ -20,7 +20,7 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
 /// Total number of configurations that all trees may examine: about half a second.
-const BUDGET: usize = 5_000_000;
+const BUDGET: usize = 1_000_000;
 /// With fewer collision-free pairs than this, more are sought ...
 const FEW_PAIRS: usize = 3;
 /// ... from this many random starts.
@@ -67,7 +67,16 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
         false => {
             let starts = sort_by_cost(&mut open, search, options.objective)?;
             let (improves, objective) = (options.stop.is_some(), options.objective);
-            let search = PathSearch { trees: &mut trees, sweep: &mut sweep, search, objective, margin, most, improves };
+            let search = PathSearch {
+                trees: &mut trees,
+                sweep: &mut sweep,
+                search,
+                objective,
+                margin,
+                most,
+                improves,
+                for_tip_travel: 0,
+            };
             search.best(&open, &starts, monitor)?
         }
     };

@@ -1,12 +1,12 @@
 //! A tree of configurations, each joined to its parent by a clear straight line.
 
 /// Around a node that could not grow, samples within this distance alone let it try again (dynamic domain: Yershova et al., ICRA
-/// 2005).
-const DOMAIN: f64 = 4.0;
+/// 2005), relative to the diagonal of the joint ranges.
+const DOMAIN: f64 = 0.3;
 /// Factor of the domain after each success, and its inverse after each failure.
 const ADAPTION: f64 = 1.0 + 1e-4;
-/// The smallest domain.
-const SMALLEST_DOMAIN: f64 = 1.0;
+/// The smallest domain, relative to the first.
+const SMALLEST_DOMAIN: f64 = 0.25;
 
 /// The tree. Distances are Euclidean in rad and m.
 #[derive(Debug)]
@@ -16,12 +16,16 @@ pub(super) struct ConfigurationTree {
     nodes: Vec<f64>,
     parents: Vec<Option<usize>>,
     domains: Vec<f64>,
+    /// The domain after the first failure.
+    first_domain: f64,
 }
 
 impl ConfigurationTree {
-    /// A tree of these roots, all of the same length.
-    pub fn rooted<'q>(joints: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
-        let mut tree = Self { joints, nodes: vec![], parents: vec![], domains: vec![] };
+    /// A tree of these roots between joint limits.
+    pub fn rooted<'q>(ranges: &[(f64, f64)], roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
+        let diagonal = ranges.iter().map(|(lower, upper)| (upper - lower) * (upper - lower)).sum::<f64>().sqrt();
+        let first_domain = DOMAIN * diagonal;
+        let mut tree = Self { joints: ranges.len(), nodes: vec![], parents: vec![], domains: vec![], first_domain };
         roots.into_iter().for_each(|root| _ = tree.add(root, None));
         tree
     }
@@ -62,8 +66,8 @@ impl ConfigurationTree {
         let domain = &mut self.domains[node];
         *domain = match (grew, domain.is_finite()) {
             (true, _) => *domain * ADAPTION,
-            (false, true) => (*domain / ADAPTION).max(SMALLEST_DOMAIN),
-            (false, false) => DOMAIN,
+            (false, true) => (*domain / ADAPTION).max(SMALLEST_DOMAIN * self.first_domain),
+            (false, false) => self.first_domain,
         };
     }
 

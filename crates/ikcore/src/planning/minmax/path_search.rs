@@ -48,6 +48,8 @@ pub(super) struct PathSearch<'s, 'a> {
     pub most: f64,
     /// Whether to go on until the budget is spent.
     pub improves: bool,
+    /// Configurations examined to shorten the travel of the tip.
+    pub for_tip_travel: usize,
 }
 
 /// Whether a search was stopped by the caller.
@@ -134,22 +136,24 @@ impl<'a> PathSearch<'_, 'a> {
     ) -> Result<(Vec<(f64, TimedPath)>, Ended)> {
         let whole = self.trees.budget;
         let mut candidates = vec![];
+        let mut limit = usize::MAX;
         let mut ended = Ended::Done;
         for start in (0..PATHS.div_ceil(starts.len())).flat_map(|_| starts) {
             *stream += 1;
-            match self.path(open, start, (*stream, SHORTCUTS), monitor)? {
-                Connection::Found(path) => {
-                    if candidates.is_empty() {
-                        self.trees.budget = whole.min(self.trees.check.examined() + MORE);
+            // Any objective gets the same paths.
+            self.trees.budget = whole.min(limit.saturating_add(self.for_tip_travel));
+            match self.paths(open, start, (*stream, SHORTCUTS), monitor) {
+                Ok(paths) => {
+                    limit = limit.min(self.trees.check.examined() - self.for_tip_travel + MORE);
+                    for path in paths {
+                        candidates.push(self.timed(path)?);
                     }
-                    let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
-                    candidates.push((self.objective.of(self.search.robot, &timed.motion), timed));
                 }
-                Connection::NotFound => break,
-                Connection::Interrupted => {
+                Err(Connection::Interrupted) => {
                     ended = Ended::Interrupted;
                     break;
                 }
+                Err(_) => break,
             }
         }
         self.trees.budget = whole;
@@ -157,14 +161,15 @@ impl<'a> PathSearch<'_, 'a> {
         Ok((candidates, ended))
     }
 
-    /// A short path from `start` to the end of any pair that shares it.
-    fn path(
+    /// A path from `start` to the end of any pair that shares it, shortened: by the length of its lines, and for the travel of the tip
+    /// by that too.
+    fn paths(
         &mut self,
         open: &[EndPair],
         start: &Point,
         (stream, shortcuts): (u64, usize),
         monitor: &mut dyn Monitor,
-    ) -> Result<Connection> {
+    ) -> Result<Vec<JointPolyline>, Connection> {
         // Any of the ends will do. Their order is that of no objective.
         let mut sharing: Vec<&EndPair> = open.iter().filter(|pair| pair.start == *start).collect();
         sharing.sort_by(|one, other| one.duration.total_cmp(&other.duration));
@@ -172,14 +177,25 @@ impl<'a> PathSearch<'_, 'a> {
         let mut rng = rng::stream(self.search.seed, stream);
         let path = match self.trees.connect(start, &ends, &mut rng, monitor) {
             Connection::Found(path) => path,
-            other => return Ok(other),
+            other => return Err(other),
         };
-        let robot = self.search.robot;
-        // A line is the shortest way of the joints, and the quickest, but not of the tip.
-        let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| {
-            self.objective != Cost::TipTravel || tip_travel_along(robot, new) <= tip_travel_along(robot, old)
-        };
-        Ok(Connection::Found(self.trees.shorten(path, (&is_shorter, shortcuts), &mut rng, monitor)))
+        let mut paths = vec![];
+        if self.objective == Cost::TipTravel {
+            // A line is the shortest way of the joints, and the quickest, but not of the tip.
+            let travel = |points: &[Vec<f64>]| tip_travel_along(self.search.robot, points);
+            let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| travel(new) <= travel(old);
+            let before = self.trees.check.examined();
+            paths.push(self.trees.shorten(path.clone(), (&is_shorter, shortcuts), &mut rng.clone(), monitor));
+            self.for_tip_travel += self.trees.check.examined() - before;
+        }
+        paths.push(self.trees.shorten(path, (&|_, _| true, shortcuts), &mut rng, monitor));
+        Ok(paths)
+    }
+
+    /// A timed path and its cost.
+    fn timed(&mut self, path: JointPolyline) -> Result<(f64, TimedPath)> {
+        let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
+        Ok((self.objective.of(self.search.robot, &timed.motion), timed))
     }
 
     /// Keeps the first of `candidates` that can be certified, if it is better than the best; they are sorted by cost.
@@ -215,10 +231,11 @@ impl<'a> PathSearch<'_, 'a> {
     ) -> Result<()> {
         for start in starts.iter().cycle() {
             stream += 1;
-            let Connection::Found(path) = self.path(open, start, (stream, MORE_SHORTCUTS), monitor)? else { break };
-            let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
-            let cost = self.objective.of(self.search.robot, &timed.motion);
-            self.keep_first(vec![(cost, timed)], best)?;
+            let Ok(paths) = self.paths(open, start, (stream, MORE_SHORTCUTS), monitor) else { break };
+            for path in paths {
+                let candidate = self.timed(path)?;
+                self.keep_first(vec![candidate], best)?;
+            }
             monitor.progress(self.trees.check.examined(), self.trees.budget);
         }
         Ok(())

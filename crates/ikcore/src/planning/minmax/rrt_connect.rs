@@ -24,7 +24,9 @@ pub(super) enum Connection {
 const STRIDE: f64 = 1.0;
 
 /// Comparisons of nodes for each configuration of the budget: about as much work again.
-const COMPARISONS: usize = 500;
+const COMPARISONS: usize = 100;
+/// What drawing a sample costs, in comparisons.
+const SAMPLE: usize = 10;
 
 /// The search: lines, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
@@ -69,8 +71,8 @@ impl<'a> TreeSearch<'a> {
         monitor: &mut dyn Monitor,
     ) -> Connection {
         let n = start.len();
-        let mut growing = ConfigurationTree::rooted(n, [start]);
-        let mut other = ConfigurationTree::rooted(n, ends.iter().map(Vec::as_slice));
+        let mut growing = ConfigurationTree::rooted(&self.ranges, [start]);
+        let mut other = ConfigurationTree::rooted(&self.ranges, ends.iter().map(Vec::as_slice));
         let mut from_start = true;
         let (mut sample, mut next) = (vec![0.0; n], vec![0.0; n]);
         while !self.is_spent() {
@@ -85,7 +87,7 @@ impl<'a> TreeSearch<'a> {
             for (sample, (lower, upper)) in sample.iter_mut().zip(&self.ranges) {
                 *sample = rng.uniform_in(*lower, *upper);
             }
-            self.compared += growing.len();
+            self.compared += growing.len() + SAMPLE;
             let Some((near, distance)) = growing.nearest(&sample) else { break };
             if !growing.is_in_domain(near, distance) {
                 continue;
