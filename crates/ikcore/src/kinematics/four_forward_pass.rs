@@ -15,10 +15,13 @@ use crate::math::vec3::Vec3;
 pub(super) fn four_forward_pass<A: Arithmetic, const N: usize>(
     chain: &Chain,
     qs: &[F64x4],
-    mut visit: impl FnMut(usize, &RunningFrames<A>),
-) -> RunningFrames<A> {
+    mut visit: impl FnMut(usize, &RunningFrames<Four<A>>),
+) -> RunningFrames<Four<A>> {
     let (sines, cosines, slides) = stage_motions::<A, N>(chain, qs);
-    let stage = |i: usize| RunningFrames::<A>::stage(chain, i, F64x4(sines[i]), F64x4(cosines[i]), slides[i]);
+    let stage = |i: usize| {
+        let [sine, cosine, slide] = [Four::of(F64x4(sines[i])), Four::of(F64x4(cosines[i])), Four::of(slides[i])];
+        RunningFrames::<Four<A>>::splat(&chain.stages.frame(i)).moved(sine, cosine, slide)
+    };
     let mut frame = stage(0);
     visit(0, &frame);
     for i in 1..N {
@@ -45,34 +48,40 @@ fn stage_motions<A: Arithmetic, const N: usize>(
     (sines, cosines, slides)
 }
 
-/// Four frames while the pass runs along the chain.
+/// Frames, one per lane, while the pass runs along the chain.
 #[derive(Clone, Copy)]
-pub(super) struct RunningFrames<A> {
-    x: Vec3<Four<A>>,
-    y: Vec3<Four<A>>,
-    pub z: Vec3<Four<A>>,
-    pub origin: Vec3<Four<A>>,
+pub(super) struct RunningFrames<R> {
+    x: Vec3<R>,
+    y: Vec3<R>,
+    pub z: Vec3<R>,
+    pub origin: Vec3<R>,
 }
 
-impl<A: Arithmetic> RunningFrames<A> {
-    /// The same frame four times.
+impl<R: Real> RunningFrames<R> {
+    /// The same frame in all lanes.
     #[inline(always)]
     pub fn splat(frame: &Frame) -> Self {
         let [x, y, z] = &frame.axes;
         Self { x: Vec3::splat(x), y: Vec3::splat(y), z: Vec3::splat(z), origin: Vec3::splat(&frame.origin) }
     }
 
-    /// Stage number `i`, slid along and turned about its own z axis.
+    /// From their stored form.
     #[inline(always)]
-    fn stage(chain: &Chain, i: usize, sine: F64x4, cosine: F64x4, slide: F64x4) -> Self {
-        let Self { x, y, z, origin } = Self::splat(&chain.stages.frame(i));
-        let [sine, cosine, slide] = [Four::of(sine), Four::of(cosine), Four::of(slide)];
+    pub fn of(frames: &Frame<R::Stored>) -> Self {
+        let [x, y, z] = &frames.axes;
+        Self { x: Vec3::of(x), y: Vec3::of(y), z: Vec3::of(z), origin: Vec3::of(&frames.origin) }
+    }
+
+    /// Slid along and turned about their own z axes.
+    #[inline(always)]
+    pub fn moved(self, sine: R, cosine: R, slide: R) -> Self {
+        let Self { x, y, z, origin } = self;
         Self { x: y.mul_add(sine, x * cosine), y: x.mul_add(-sine, y * cosine), z, origin: z.mul_add(slide, origin) }
     }
 
     /// Rotates a vector from these frames into the base: R v.
     #[inline(always)]
-    fn turn(&self, v: Vec3<Four<A>>) -> Vec3<Four<A>> {
+    pub fn turn(&self, v: Vec3<R>) -> Vec3<R> {
         self.z.mul_add(v.z, self.y.mul_add(v.y, self.x * v.x))
     }
 
@@ -88,8 +97,9 @@ impl<A: Arithmetic> RunningFrames<A> {
         }
     }
 
+    /// Their stored form.
     #[inline(always)]
-    pub fn stored(self) -> Frame<F64x4> {
+    pub fn stored(self) -> Frame<R::Stored> {
         Frame { axes: [self.x.stored(), self.y.stored(), self.z.stored()], origin: self.origin.stored() }
     }
 }

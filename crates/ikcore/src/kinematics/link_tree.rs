@@ -91,6 +91,14 @@ impl LinkTree {
         })
     }
 
+    /// All moving elements, in the order of their frames from number 1 on: the number of the frame that each starts from, its constant
+    /// frame there, and its motion.
+    pub fn stages<'a>(&'a self, chain: &'a Chain) -> impl Iterator<Item = (usize, Frame, StageMotion)> + use<'a> {
+        let of_chain = chain.moving_frames().zip(&chain.motions).enumerate();
+        let of_chain = of_chain.map(|(parent, (frame, motion))| (parent, frame, *motion));
+        of_chain.chain(self.branches.iter().map(|stage| (stage.parent, stage.frame, stage.motion)))
+    }
+
     /// Number of the frame that frame number `frame` > 0 moves on.
     fn parent(&self, frame: usize) -> usize {
         match frame.checked_sub(self.moving + 1) {

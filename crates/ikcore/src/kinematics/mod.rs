@@ -8,7 +8,7 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_forward_pass` | the pass of four configurations at once |
+//! | `four_forward_pass`, `eight_frames` | the pass of four configurations at once, and of eight in single precision |
 //! | `kernels` | table of compiled kernels |
 //! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
@@ -16,6 +16,7 @@
 //! | `task_rank` | rank of the Jacobian by task |
 
 pub(crate) mod chain;
+pub(crate) mod eight_frames;
 mod fixed_direction;
 mod forward_pass;
 mod four_forward_pass;

@@ -3,6 +3,7 @@
 //! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and
 //! FMA by [`by_instructions`]. Both are repeatable; they differ in the last bit.
 
+use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 
 /// Operations in which the two compilations of a kernel differ.
@@ -65,6 +66,60 @@ pub trait Arithmetic: Copy {
     fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
+
+    /// a * b + c, lane by lane.
+    #[inline(always)]
+    fn mul_add_x8(a: F32x8, b: F32x8, c: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| a.0[k] * b.0[k] + c.0[k]))
+    }
+
+    /// a * b, lane by lane.
+    #[inline(always)]
+    fn mul_x8(a: F32x8, b: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| a.0[k] * b.0[k]))
+    }
+
+    /// a + b, lane by lane.
+    #[inline(always)]
+    fn add_x8(a: F32x8, b: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| a.0[k] + b.0[k]))
+    }
+
+    /// a - b, lane by lane.
+    #[inline(always)]
+    fn sub_x8(a: F32x8, b: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| a.0[k] - b.0[k]))
+    }
+
+    /// a / b, lane by lane.
+    #[inline(always)]
+    fn div_x8(a: F32x8, b: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| a.0[k] / b.0[k]))
+    }
+
+    /// The square root, lane by lane.
+    #[inline(always)]
+    fn sqrt_x8(a: F32x8) -> F32x8 {
+        F32x8(a.0.map(f32::sqrt))
+    }
+
+    /// `then` in lanes with a < b, else `otherwise` (also for NaN).
+    #[inline(always)]
+    fn choose_below_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    }
+
+    /// `then` in lanes with a = b, else `otherwise` (also for NaN).
+    #[inline(always)]
+    fn choose_equal_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
+        F32x8(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    }
+
+    /// The lanes in which a >= b does not hold (also for NaN), one bit each.
+    #[inline(always)]
+    fn not_at_least_x8(a: F32x8, b: F32x8) -> u32 {
+        (0..8).fold(0, |lanes, k| lanes | (u32::from(!(a.0[k] >= b.0[k])) << k))
+    }
 }
 
 /// Product and sum rounded separately: runs on any machine.
@@ -100,7 +155,7 @@ impl Arithmetic for Fma {
 
     #[inline(always)]
     fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
-        // SAFETY (all eight): code over `Fma` runs only where `has_fma` found the instructions.
+        // SAFETY (all of these): code over `Fma` runs only where `has_fma` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 
@@ -144,6 +199,60 @@ impl Arithmetic for Fma {
             x86::_mm256_blendv_pd(register(otherwise), register(then), equal)
         })
     }
+
+    #[inline(always)]
+    fn mul_add_x8(a: F32x8, b: F32x8, c: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_fmadd_ps(singles(a), singles(b), singles(c)) })
+    }
+
+    #[inline(always)]
+    fn mul_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_mul_ps(singles(a), singles(b)) })
+    }
+
+    #[inline(always)]
+    fn add_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_add_ps(singles(a), singles(b)) })
+    }
+
+    #[inline(always)]
+    fn sub_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_sub_ps(singles(a), singles(b)) })
+    }
+
+    #[inline(always)]
+    fn div_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_div_ps(singles(a), singles(b)) })
+    }
+
+    #[inline(always)]
+    fn sqrt_x8(a: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_sqrt_ps(singles(a)) })
+    }
+
+    #[inline(always)]
+    fn choose_below_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
+        from_singles(unsafe {
+            let smaller = x86::_mm256_cmp_ps::<{ x86::_CMP_LT_OQ }>(singles(a), singles(b));
+            x86::_mm256_blendv_ps(singles(otherwise), singles(then), smaller)
+        })
+    }
+
+    #[inline(always)]
+    fn choose_equal_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
+        from_singles(unsafe {
+            let equal = x86::_mm256_cmp_ps::<{ x86::_CMP_EQ_OQ }>(singles(a), singles(b));
+            x86::_mm256_blendv_ps(singles(otherwise), singles(then), equal)
+        })
+    }
+
+    #[inline(always)]
+    fn not_at_least_x8(a: F32x8, b: F32x8) -> u32 {
+        let below = unsafe {
+            x86::_mm256_movemask_ps(x86::_mm256_cmp_ps::<{ x86::_CMP_NGE_UQ }>(singles(a), singles(b)))
+        };
+        below.cast_unsigned()
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -160,6 +269,20 @@ fn register(lanes: F64x4) -> x86::__m256d {
 #[inline(always)]
 fn from_register(register: x86::__m256d) -> F64x4 {
     // SAFETY: as in `register`.
+    unsafe { std::mem::transmute(register) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn singles(lanes: F32x8) -> x86::__m256 {
+    // SAFETY: both are eight f32 in 32 bytes, and any bits are a value of either.
+    unsafe { std::mem::transmute(lanes) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn from_singles(register: x86::__m256) -> F32x8 {
+    // SAFETY: as in `singles`.
     unsafe { std::mem::transmute(register) }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::arithmetic::Arithmetic;
+use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 use super::{Pose, pose};
 
@@ -38,6 +39,14 @@ impl Frame<F64x4> {
                 self.axes[axis][k].0[lane] = frame.axes[axis][k];
             }
         }
+    }
+}
+
+impl Frame<F32x8> {
+    /// The frame in lane `lane`.
+    pub(crate) fn lane(&self, lane: usize) -> Frame {
+        let number = |x: F32x8| f64::from(x.0[lane]);
+        Frame { axes: self.axes.map(|axis| axis.map(number)), origin: self.origin.map(number) }
     }
 }
 

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
-//! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
+//! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `gram`, `ldl`, `box_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, beside rows |
 //! | `one_joint` | time-optimal motions of one joint between two states |
@@ -17,6 +17,7 @@ pub(crate) mod arithmetic;
 pub mod box_step;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
+pub(crate) mod f32x8;
 pub(crate) mod f64x4;
 mod frame;
 pub(crate) mod gram;

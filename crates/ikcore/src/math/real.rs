@@ -1,4 +1,4 @@
-//! The number type of kernels that are written once for one number and for four.
+//! The number type of kernels that are written once for one number, for four, and for eight of single precision.
 //!
 //! Each lane of the four performs the operations of the one in the same order, so both agree bit for bit.
 
@@ -7,6 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::arithmetic::Arithmetic;
 use super::comparison::{larger, smaller};
+use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 
 /// A real number, or one per lane.
@@ -60,6 +61,10 @@ pub struct One<A>(f64, PhantomData<A>);
 /// Four numbers, one per lane, by arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
 pub struct Four<A>(F64x4, PhantomData<A>);
+
+/// Eight numbers of single precision, one per lane, by arithmetic `A`.
+#[derive(Debug, Clone, Copy)]
+pub struct Eight<A>(F32x8, PhantomData<A>);
 
 impl<A: Arithmetic> Real for One<A> {
     type Stored = f64;
@@ -184,9 +189,79 @@ impl<A: Arithmetic> Real for Four<A> {
     }
 }
 
-/// Implements `$operator` for [`One`] by f64 and for [`Four`] by the arithmetic.
+impl<A: Arithmetic> Real for Eight<A> {
+    type Stored = F32x8;
+
+    const LANES: usize = 8;
+
+    #[inline(always)]
+    fn of(stored: F32x8) -> Self {
+        Self(stored, PhantomData)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> F32x8 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::of(F32x8::splat(value as f32))
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        f64::from(self.0.0[lane])
+    }
+
+    #[inline(always)]
+    fn with_lane(mut self, lane: usize, value: f64) -> Self {
+        self.0.0[lane] = value as f32;
+        self
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::of(A::mul_add_x8(self.0, factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(A::sqrt_x8(self.0))
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_below_x8(self.0, limit.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_equal_x8(self.0, other.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        other.choose_below(self, self, other)
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        self.choose_below(other, self, other)
+    }
+}
+
+impl<A: Arithmetic> Eight<A> {
+    /// The lanes in which self >= limit does not hold (also for NaN), one bit each.
+    #[inline(always)]
+    pub fn not_at_least(self, limit: Self) -> u32 {
+        A::not_at_least_x8(self.0, limit.0)
+    }
+}
+
+/// Implements `$operator` for [`One`] by f64, for [`Four`] and [`Eight`] by the arithmetic.
 macro_rules! operator {
-    ($operator:ident, $method:ident, $of_lanes:ident) => {
+    ($operator:ident, $method:ident, $of_four:ident, $of_eight:ident) => {
         impl<A: Arithmetic> $operator for One<A> {
             type Output = Self;
 
@@ -201,16 +276,25 @@ macro_rules! operator {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self::of(A::$of_lanes(self.0, other.0))
+                Self::of(A::$of_four(self.0, other.0))
+            }
+        }
+
+        impl<A: Arithmetic> $operator for Eight<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::of(A::$of_eight(self.0, other.0))
             }
         }
     };
 }
 
-operator!(Add, add, add_x4);
-operator!(Sub, sub, sub_x4);
-operator!(Mul, mul, mul_x4);
-operator!(Div, div, div_x4);
+operator!(Add, add, add_x4, add_x8);
+operator!(Sub, sub, sub_x4, sub_x8);
+operator!(Mul, mul, mul_x4, mul_x8);
+operator!(Div, div, div_x4, div_x8);
 
 impl<A: Arithmetic> Neg for One<A> {
     type Output = Self;
@@ -222,6 +306,15 @@ impl<A: Arithmetic> Neg for One<A> {
 }
 
 impl<A: Arithmetic> Neg for Four<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-self.0)
+    }
+}
+
+impl<A: Arithmetic> Neg for Eight<A> {
     type Output = Self;
 
     #[inline(always)]

@@ -216,6 +216,12 @@ impl BodyGroups {
         self.groups[group].stages
     }
 
+    /// Centre and radius (m) of a ball that holds a group, in its frame.
+    pub fn ball_in_frame(&self, group: usize) -> ([f64; 3], f64) {
+        let Group { center, radius, .. } = &self.groups[group];
+        (*center, *radius)
+    }
+
     /// Centre and radius (m) of a ball that holds a group, with the moving elements at `frames`.
     pub fn ball(&self, group: usize, frames: &[Frame]) -> (Vector3<f64>, f64) {
         let Group { stages, center, radius, .. } = &self.groups[group];

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::body_groups::BodyGroups;
+use super::eight_bodies::EightBodies;
 use super::placement::Placement;
 use crate::robot::{Carried, Robot};
 
@@ -30,6 +31,8 @@ impl BodyPair {
 pub(super) struct BodyModel {
     pub carried: Vec<Carried>,
     pub groups: BodyGroups,
+    /// The same in single precision.
+    pub eight: EightBodies,
     /// In the order of the robot's pairs.
     pub pairs: Vec<BodyPair>,
     /// The bodies with all joints at zero: where those that no joint moves always are.
@@ -65,7 +68,8 @@ impl BodyModel {
         }
         let mut rest = Placement::of(robot, carried.len());
         rest.update(robot, &carried, &vec![0.0; robot.dof()]);
-        Self { carried, groups, pairs, rest, by_groups }
+        let eight = EightBodies::new(robot, &carried, &groups);
+        Self { carried, groups, eight, pairs, rest, by_groups }
     }
 
     /// The pairs of groups with bodies that must not touch.

@@ -1,10 +1,11 @@
-//! A motion from tick to tick, certified to keep its distances at every instant.
+//! A motion certified to keep its distances at every instant.
 //!
 //! Distances are computed at both ends of an interval of the motion. A pair is clear in between if neither end lets it come near
 //! enough on the way, or if a plane parts both bodies at either end by more than they leave the straight lines between their places.
 //! Such a plane costs almost no clearance, even along a wall. What is not clear so is examined again in both halves.
 
 use super::body_model::BodyPair;
+use super::joint_motion::JointMotion;
 use super::kept_distance::KeptDistance;
 use super::link_displacement::{displacement, sagitta};
 use super::near_rows::MOST_RESERVED;
@@ -20,24 +21,8 @@ const MOST_INTERVALS: usize = 120;
 /// Largest weight of a control point outside of an interval in a uniform cubic B-spline.
 const OUTSIDE: f64 = 1.0 / 6.0;
 
-/// An interval this short (ticks) is not halved again.
-const SHORTEST: f64 = 1e-3;
-
 /// Places for which room is set aside; a deeper bisection takes more.
 const MOST_DEPTHS: usize = 32;
-
-/// A joint motion over whole ticks, from 0 to `ticks`.
-pub(crate) trait TickedMotion {
-    /// When it ends.
-    fn ticks(&self) -> f64;
-    /// Writes the configuration at a tick; between ticks that of the straight line.
-    fn write(&self, tick: f64, q: &mut [f64]);
-    /// Writes by how much each joint gets off the straight line between two ticks at most (rad, m), at the ticks in between.
-    fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]);
-    /// Whether the arm does not pass the configurations of the ticks, but follows the uniform cubic B-spline with these control
-    /// points. Then `write` also knows the ticks just before the motion and after it.
-    fn is_spline(&self) -> bool;
-}
 
 /// Checks motions; owns its scratch.
 #[derive(Debug)]
@@ -71,11 +56,19 @@ struct Interval {
     depth: usize,
 }
 
+/// A pair that is too near, or cannot be told to be clear, and when.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Blocker {
+    pub at: f64,
+    pub pair: BodyPair,
+}
+
 /// What is known of a pair in an interval.
 enum Verdict {
     Clear,
     Open,
-    TooNear,
+    /// When.
+    TooNear(f64),
 }
 
 impl ChordCheck {
@@ -87,22 +80,49 @@ impl ChordCheck {
         Self { places, outside, pending, intervals: 0, change, off_line, aside, halfway }
     }
 
-    /// Whether `motion` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
-    pub(super) fn is_clear(&mut self, scene: &Scene<'_>, motion: &impl TickedMotion, kept: &KeptDistance<'_>) -> bool {
-        self.intervals = 0;
-        self.outside.clear();
-        let end = motion.ticks();
-        place(&mut self.places, 0, scene, (motion, 0.0));
-        place(&mut self.places, 1, scene, (motion, end));
-        let whole = Interval { from: 0.0, to: end, ends: [0, 1], depth: 0 };
-        self.measure(motion, &whole);
+    /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
+    pub(super) fn is_clear(
+        &mut self,
+        scene: &Scene<'_>,
+        motion: &impl JointMotion,
+        end: f64,
+        kept: &KeptDistance<'_>,
+    ) -> bool {
+        let whole = self.begin(scene, motion, [0.0, end]);
         self.collect_pending(scene, &whole, kept);
+        let count = self.pending.len();
+        self.clear_in(scene, motion, kept, whole, count).is_ok()
+    }
+
+    /// Certifies that these pairs keep their distances while `motion` goes from `from` to `to`.
+    pub(super) fn check(
+        &mut self,
+        scene: &Scene<'_>,
+        motion: &impl JointMotion,
+        [from, to]: [f64; 2],
+        pairs: impl Iterator<Item = BodyPair>,
+        kept: &KeptDistance<'_>,
+    ) -> Result<(), Blocker> {
+        let whole = self.begin(scene, motion, [from, to]);
+        self.pending.clear();
+        self.pending.extend(pairs);
         let count = self.pending.len();
         self.clear_in(scene, motion, kept, whole, count)
     }
 
+    /// Places the arm at both ends of a motion.
+    fn begin(&mut self, scene: &Scene<'_>, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Interval {
+        self.intervals = 0;
+        self.outside.clear();
+        place(&mut self.places, 0, scene, (motion, from));
+        place(&mut self.places, 1, scene, (motion, to));
+        let whole = Interval { from, to, ends: [0, 1], depth: 0 };
+        self.measure(motion, &whole);
+        whole
+    }
+
     /// Finds how far the joints move in an interval.
-    fn measure(&mut self, motion: &impl TickedMotion, interval: &Interval) {
+    fn measure(&mut self, motion: &impl JointMotion, interval: &Interval) {
         let Self { places, change, off_line, aside, halfway, .. } = self;
         let [from, to] = interval.ends.map(|end| &places[end].q);
         change.clear();
@@ -174,11 +194,11 @@ impl ChordCheck {
     fn clear_in(
         &mut self,
         scene: &Scene<'_>,
-        motion: &impl TickedMotion,
+        motion: &impl JointMotion,
         kept: &KeptDistance<'_>,
         interval: Interval,
         count: usize,
-    ) -> bool {
+    ) -> Result<(), Blocker> {
         self.intervals += 1;
         if motion.is_spline() && count > 0 {
             place(&mut self.outside, 0, scene, (motion, interval.from - 1.0));
@@ -189,32 +209,22 @@ impl ChordCheck {
             let pair = self.pending[i];
             match self.verdict(scene, pair, &interval, kept) {
                 Verdict::Clear => {}
-                Verdict::TooNear => return false,
+                Verdict::TooNear(at) => return Err(Blocker { at, pair }),
                 Verdict::Open => {
                     self.pending.swap(i, open);
                     open += 1;
                 }
             }
         }
-        // A spline is known by its control points alone.
-        let shortest = if motion.is_spline() { 1.0 } else { SHORTEST };
-        if open == 0 || self.intervals > MOST_INTERVALS || interval.to - interval.from <= shortest {
-            return open == 0;
+        if open == 0 {
+            return Ok(());
         }
         let Interval { from, to, ends: [first, last], depth } = interval;
-        let half = 0.5 * (to - from);
-        // Of more than one tick, halves of whole ticks: the motion is straight between ticks alone.
-        let middle = from
-            + if half >= 1.0 {
-                half.floor()
-            } else if to - from > 1.0 {
-                1.0
-            } else {
-                half
-            };
+        let middle = motion.middle(from, to).filter(|_| self.intervals <= MOST_INTERVALS);
+        let Some(middle) = middle else { return Err(Blocker { at: 0.5 * (from + to), pair: self.pending[0] }) };
         let slot = depth + 2;
         place(&mut self.places, slot, scene, (motion, middle));
-        [(from, middle, [first, slot]), (middle, to, [slot, last])].into_iter().all(|(from, to, ends)| {
+        [(from, middle, [first, slot]), (middle, to, [slot, last])].into_iter().try_for_each(|(from, to, ends)| {
             let half = Interval { from, to, ends, depth: depth + 1 };
             self.measure(motion, &half);
             self.clear_in(scene, motion, kept, half, open)
@@ -228,8 +238,11 @@ impl ChordCheck {
             (scene.change_at(pair, first, &self.halfway), scene.change_at(pair, last, &self.halfway));
         let at_first = scene.distance_at(pair, first, needed + change_first);
         let at_last = scene.distance_at(pair, last, needed + change_last);
-        if at_first < needed_first || at_last < needed {
-            return Verdict::TooNear;
+        if at_first < needed_first {
+            return Verdict::TooNear(interval.from);
+        }
+        if at_last < needed {
+            return Verdict::TooNear(interval.to);
         }
         if at_first >= needed + change_first && at_last >= needed + change_last {
             return Verdict::Clear;
@@ -254,18 +267,34 @@ impl ChordCheck {
         let at = |frames: &FrameBuffer| frames[carried.stages];
         let (_, normal) = shape.nearest_to_body(&carried.placed(&carried.axis_at(&at(nearer)), &at(nearer)));
         let end = shape.farthest_along(&normal)?;
-        let least = |frame: Frame| carried.placed(&carried.axis_at(&frame), &frame).least_along(&normal);
-        let control_points = [first, last].into_iter().chain(self.outside.iter().map(|place| &place.frames));
-        let least = control_points.map(|frames| least(at(frames))).fold(f64::INFINITY, f64::min);
+        let least = |frames: &FrameBuffer| {
+            let frame = at(frames);
+            carried.placed(&carried.axis_at(&frame), &frame).least_along(&normal)
+        };
         let (axis, frame) = (carried.axis_at(&at(first)), at(first));
         let body = carried.placed(&axis, &frame);
         let beside = sagitta(scene.robot(), frames, &body, carried.stages, [&self.change, &self.off_line]);
-        Some(least - beside - end)
+        let ends = [least(first), least(last)];
+        if self.outside.is_empty() {
+            return Some(least_between(ends, beside) - end);
+        }
+        let control_points = self.outside.iter().map(|place| least(&place.frames));
+        Some(control_points.fold(ends[0].min(ends[1]), f64::min) - beside - end)
     }
 }
 
+/// The least value between two ends of something that is off the straight line between them, at share s by at most
+/// 4 s (1 - s) `beside`.
+fn least_between([first, last]: [f64; 2], beside: f64) -> f64 {
+    let rise = (last - first).abs();
+    if rise >= 4.0 * beside {
+        return first.min(last);
+    }
+    first.min(last) - (4.0 * beside - rise).powi(2) / (16.0 * beside)
+}
+
 /// Places the robot at a tick of the motion.
-fn place(places: &mut Vec<Place>, slot: usize, scene: &Scene<'_>, (motion, tick): (&impl TickedMotion, f64)) {
+fn place(places: &mut Vec<Place>, slot: usize, scene: &Scene<'_>, (motion, tick): (&impl JointMotion, f64)) {
     let robot = scene.robot();
     if places.len() <= slot {
         let q = Point::from_elem(0.0, robot.dof());

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::chord_check::{ChordCheck, TickedMotion};
+use super::chord_check::ChordCheck;
 use super::contact::{Contact, NearestContact};
+use super::joint_motion::JointMotion;
 use super::kept_distance::KeptDistance;
 use super::near_rows::NearRows;
 use super::scene::Scene;
@@ -93,14 +94,15 @@ impl<'a> ClearSpace<'a> {
         rows.find(&self.scene, q, up_to);
     }
 
-    /// Whether `motion` keeps these distances for certain, between ticks too; of bodies that no joint moves none is asked.
+    /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too; of bodies that no joint moves none is asked.
     pub(crate) fn is_kept_by(
         &self,
-        motion: &impl TickedMotion,
+        motion: &impl JointMotion,
+        end: f64,
         kept: &KeptDistance<'_>,
         check: &mut ChordCheck,
     ) -> bool {
-        check.is_clear(&self.scene, motion, kept)
+        check.is_clear(&self.scene, motion, end, kept)
     }
 
     /// The sum of (margin - d)^2 (m^2) over all pairs of bodies whose distance d is below the margin, but for those that no joint moves.

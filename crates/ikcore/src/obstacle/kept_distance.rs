@@ -21,6 +21,13 @@ pub(crate) struct KeptDistance<'a> {
     pub leeway: f64,
 }
 
+impl KeptDistance<'static> {
+    /// The same distance (m) from everything, all of it at rest.
+    pub fn constant(margin: f64) -> Self {
+        Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], leeway: 0.0 }
+    }
+}
+
 impl KeptDistance<'_> {
     /// How far an obstacle, or another link, should be at a tick (m).
     pub fn wanted(&self, obstacle: Option<usize>, tick: f64) -> f64 {

@@ -7,13 +7,16 @@
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
+//! | `eight_scene`, `eight_bodies`, `levers` | which pairs are near each other at eight configurations? |
+//! | `line_check` | is a straight line in joint space clear, for searches? |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
 //! | `near_pairs` | the nearest pairs |
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
 //! | `near_rows` | near pairs, linearised at a configuration |
-//! | `chord_check`, `kept_distance` | a motion from tick to tick, certified to keep its distances |
-//! | `sweep` | continuous collision checking of a whole motion, and its smallest clearance |
+//! | `joint_motion` | motions that can be certified |
+//! | `chord_check`, `kept_distance` | pairs of bodies, certified to keep their distances during a motion |
+//! | `sweep` | a whole motion, certified, and its smallest clearance |
 
 mod allowed_contacts;
 mod body_groups;
@@ -21,7 +24,12 @@ mod body_model;
 mod chord_check;
 mod clear_space;
 mod contact;
+mod eight_bodies;
+mod eight_scene;
+mod joint_motion;
 mod kept_distance;
+mod levers;
+mod line_check;
 mod link_displacement;
 mod near_pairs;
 mod near_rows;
@@ -30,13 +38,15 @@ mod scene;
 mod surroundings;
 mod sweep;
 
-pub(crate) use chord_check::{ChordCheck, TickedMotion};
+pub(crate) use chord_check::ChordCheck;
 pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
 pub use contact::{Contact, NearestContact, Neighbor};
+pub use joint_motion::{Edge, JointMotion};
 pub(crate) use kept_distance::KeptDistance;
+pub use line_check::LineCheck;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;
-pub use sweep::{Edge, JointMotion, Sweep, TooNear};
+pub use sweep::{Sweep, TooNear};

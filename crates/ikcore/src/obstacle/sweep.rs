@@ -1,43 +1,21 @@
-//! Continuous collision checking: motions certified to be collision-free at every instant, and their smallest
-//! clearance.
+//! Whole motions, certified to keep a margin at every instant, and their smallest clearance.
 //!
-//! Distances are computed in the middle of an interval of the motion. If a pair is farther apart there than it can
-//! approach within the interval, it is clear in the whole interval; the other pairs are examined again in both halves.
-//! No step width has to be chosen, and no collision can be missed between two samples.
+//! A motion is divided until its bodies move little. Eight configurations of each part, in single precision, list the pairs of bodies
+//! that may come near; few do. Those are certified in double precision. No step width has to be chosen, and no collision can be
+//! missed between two samples.
 
 use super::body_model::BodyPair;
+use super::chord_check::ChordCheck;
 use super::contact::Contact;
+use super::eight_scene::EightScene;
+use super::joint_motion::JointMotion;
+use super::kept_distance::KeptDistance;
 use super::placement::Placement;
 use super::scene::Scene;
 use crate::math::MAX_DOF;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::f32x8::F32x8;
 use crate::objective::Point;
-
-/// A joint motion over an interval of its parameter (time, or the fraction of a straight line).
-pub trait JointMotion {
-    /// Writes the configuration in the middle of \[`from`, `to`\], and by how much each joint differs from it in there
-    /// at most (rad, m).
-    fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]);
-}
-
-/// A straight line in joint space; its parameter runs from 0 to 1.
-#[derive(Debug, Clone, Copy)]
-pub struct Edge<'a> {
-    /// Where it begins (n,).
-    pub from: &'a [f64],
-    /// Where it ends (n,).
-    pub to: &'a [f64],
-}
-
-impl JointMotion for Edge<'_> {
-    fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {
-        let (share, half) = (0.5 * (from + to), 0.5 * (to - from));
-        for j in 0..middle.len() {
-            let along = self.to[j] - self.from[j];
-            middle[j] = self.from[j] + share * along;
-            reach[j] = half * along.abs();
-        }
-    }
-}
 
 /// The point at which a motion comes too near to a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,24 +26,68 @@ pub struct TooNear {
     pub contact: Contact,
 }
 
-/// A pair that exceeds its margin by less than this (m) counts as too near, since a decision would take many
-/// bisections.
-const RESOLUTION: f64 = 1e-5;
+/// No body moves farther than this (m) from one of the eight configurations of a part, by a bound.
+const REACH: f64 = 0.06;
+
+/// Parts are not divided more often.
+const MOST_DIVISIONS: usize = 24;
 
 /// Checks motions in a scene; owns its scratch.
 #[derive(Debug)]
 pub struct Sweep<'a> {
     scene: &'a Scene<'a>,
+    eight: EightScene<'a>,
+    chords: ChordCheck,
+    /// Pairs that may be near in a part, and the eighths of it in which they may.
+    near: Vec<(BodyPair, u32)>,
     pending: Vec<BodyPair>,
     placement: Placement,
     examined: usize,
 }
 
+/// A part of a motion.
+struct Part {
+    /// Configurations at both ends.
+    from: Point,
+    to: Point,
+    /// By how much each joint gets off the straight line.
+    off_line: Point,
+}
+
+impl Part {
+    fn of(motion: &impl JointMotion, [begin, end]: [f64; 2], joints: usize) -> Self {
+        let [mut from, mut to, mut off_line] = [(); 3].map(|()| Point::from_elem(0.0, joints));
+        motion.write(begin, &mut from);
+        motion.write(end, &mut to);
+        motion.write_off_line(begin, end, &mut off_line);
+        Self { from, to, off_line }
+    }
+
+    /// How far each joint is from the middle of the nearest eighth of the straight line at most.
+    fn reach(&self) -> Point {
+        let along = self.from.iter().zip(&self.to).map(|(from, to)| (to - from).abs() / 16.0);
+        along.zip(&self.off_line).map(|(along, off_line)| along + off_line).collect()
+    }
+
+    /// The largest joint value on it.
+    fn largest(&self) -> f64 {
+        let ends = self.from.iter().chain(&self.to).fold(0.0, |largest: f64, q| largest.max(q.abs()));
+        ends + self.off_line.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 impl<'a> Sweep<'a> {
     /// A checker for any number of motions in `scene`.
     pub fn new(scene: &'a Scene<'a>) -> Self {
-        let rest = vec![0.0; scene.robot().dof()];
-        Self { scene, pending: scene.pairs().collect(), placement: scene.place(&rest), examined: 0 }
+        Self {
+            scene,
+            eight: EightScene::new(scene),
+            chords: ChordCheck::new(scene),
+            near: vec![],
+            pending: vec![],
+            placement: Placement::of(scene.robot(), scene.bodies.carried.len()),
+            examined: 0,
+        }
     }
 
     /// Number of configurations examined.
@@ -73,50 +95,74 @@ impl<'a> Sweep<'a> {
         self.examined
     }
 
-    /// Certifies that all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], between samples
-    /// too. An error if one does not, or exceeds the margin by less than a hundredth of a millimetre.
+    /// Certifies that all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], between samples too. An error if
+    /// one does not, or exceeds the margin by too little to tell.
+    ///
+    /// # Errors
+    /// [`TooNear`]: the first such place.
     pub fn check(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
         if let Some((distance, pair)) = self.scene.fixed
             && distance < margin
         {
             return Err(Box::new(TooNear { at: from, contact: self.scene.contact(pair, distance) }));
         }
-        self.check_pending(motion, [from, to], margin, self.pending.len())
+        self.check_part(motion, [from, to], margin, 0)
     }
 
-    fn check_pending(
+    fn check_part(
         &mut self,
         motion: &impl JointMotion,
-        [from, to]: [f64; 2],
+        ends: [f64; 2],
         margin: f64,
-        count: usize,
+        divisions: usize,
     ) -> Result<(), Box<TooNear>> {
-        let reach = self.place(motion, from, to);
-        let mut left = 0;
-        for i in 0..count {
-            let pair = self.pending[i];
-            let change = self.scene.change(pair, &self.placement, &reach);
-            let distance = self.scene.distance(pair, &self.placement, margin + change);
-            if distance < margin + change {
-                if distance < margin || change < RESOLUTION {
-                    let contact = self.scene.contact(pair, distance);
-                    return Err(Box::new(TooNear { at: 0.5 * (from + to), contact }));
-                }
-                self.pending.swap(i, left);
-                left += 1;
+        let part = Part::of(motion, ends, self.scene.robot().dof());
+        let reach = part.reach();
+        if divisions < MOST_DIVISIONS
+            && self.eight.farthest(&reach) > REACH
+            && let Some(middle) = motion.middle(ends[0], ends[1])
+        {
+            self.check_part(motion, [ends[0], middle], margin, divisions + 1)?;
+            return self.check_part(motion, [middle, ends[1]], margin, divisions + 1);
+        }
+        self.near.clear();
+        find_near(self, &part, &reach, margin);
+        let kept = KeptDistance::constant(margin);
+        let at = |eighth: usize| ends[0] + (ends[1] - ends[0]) * eighth as f64 / 8.0;
+        for eighth in (0..8).filter(|eighth| self.near.iter().any(|(_, lanes)| lanes & (1 << eighth) != 0)) {
+            let pairs = self.near.iter().filter(|(_, lanes)| lanes & (1 << eighth) != 0).map(|(pair, _)| *pair);
+            let checked = self.chords.check(self.scene, motion, [at(eighth), at(eighth + 1)], pairs, &kept);
+            if let Err(blocker) = checked {
+                self.place(motion, blocker.at, blocker.at);
+                let distance = self.scene.distance(blocker.pair, &self.placement, f64::INFINITY);
+                let contact = self.scene.contact(blocker.pair, distance);
+                return Err(Box::new(TooNear { at: blocker.at, contact }));
             }
         }
-        if left == 0 {
-            return Ok(());
-        }
-        let middle = 0.5 * (from + to);
-        self.check_pending(motion, [from, middle], margin, left)?;
-        self.check_pending(motion, [middle, to], margin, left)
+        Ok(())
+    }
+
+    /// Lists the pairs that may come nearer than `margin` in a part.
+    #[inline(always)]
+    fn find_near<A: Arithmetic>(&mut self, part: &Part, reach: &[f64], margin: f64) {
+        self.eight.place::<A>(|j| {
+            let (start, along) = (part.from[j], part.to[j] - part.from[j]);
+            F32x8(std::array::from_fn(|lane| (start + (lane as f64 + 0.5) / 8.0 * along) as f32))
+        });
+        self.examined += 8;
+        let rounding = self.eight.rounding(part.largest());
+        let near = &mut self.near;
+        self.eight.each_near::<A>(margin + rounding, reach, |_, pair, lanes| {
+            near.push((pair, lanes));
+            true
+        });
     }
 
     /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a certified lower bound, at
     /// most 0.1 mm or 1 % below the true value. `None` if nothing can touch.
     pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
+        self.pending.clear();
+        self.pending.extend(self.scene.pairs());
         let mut best = match (self.scene.fixed, self.pending.first()) {
             (Some((distance, pair)), _) => Best { seen: distance, proven: distance, at: from, pair },
             (None, Some(first)) => Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: *first },
@@ -162,11 +208,20 @@ impl<'a> Sweep<'a> {
     /// Places everything in the middle of an interval; returns how far each joint is from there at most.
     fn place(&mut self, motion: &impl JointMotion, from: f64, to: f64) -> Point {
         let n = self.scene.robot().dof();
-        let (mut middle, mut reach) = ([0.0; MAX_DOF], Point::from_elem(0.0, n));
-        motion.around(from, to, &mut middle[..n], &mut reach);
+        let mut middle = [0.0; MAX_DOF];
+        motion.write(0.5 * (from + to), &mut middle[..n]);
         self.scene.place_into(&middle[..n], &mut self.placement);
         self.examined += 1;
-        reach
+        let part = Part::of(motion, [from, to], n);
+        // The middle may be off the straight line too.
+        let half = part.from.iter().zip(&part.to).map(|(from, to)| 0.5 * (to - from).abs());
+        half.zip(&part.off_line).map(|(half, off_line)| half + 2.0 * off_line).collect()
+    }
+}
+
+by_instructions! {
+    fn find_near(sweep: &mut Sweep<'_>, part: &Part, reach: &[f64], margin: f64) {
+        sweep.find_near::<A>(part, reach, margin);
     }
 }
 

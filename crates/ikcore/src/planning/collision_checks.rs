@@ -1,5 +1,7 @@
 //! Shared by planners with obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
+use std::ops::RangeInclusive;
+
 use super::planar_arm::PlanarArm;
 use super::planner_options::PointToPointOptions;
 use super::violation::Violation;
@@ -92,31 +94,92 @@ pub(super) fn too_near(contact: &Contact, margin: f64) -> Violation {
 }
 
 /// A trajectory as a motion that can be certified; its parameter is time (s).
-pub(super) struct TimedMotion<'a>(pub &'a Trajectory);
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TimedMotion<'a> {
+    trajectory: &'a Trajectory,
+    /// Whether no velocity jumps.
+    smooth: bool,
+}
+
+/// A velocity that jumps by less (rad/s, m/s) does so by rounding.
+const JUMP: f64 = 1e-9;
+
+impl<'a> TimedMotion<'a> {
+    /// The motion along `trajectory`.
+    pub fn new(trajectory: &'a Trajectory) -> Self {
+        let (knots, polynomials, n) = (trajectory.knots(), trajectory.coefficients(), trajectory.joints().len());
+        let jumps = |i: usize| {
+            let (before, after) = (&polynomials[i], &polynomials[i + n]);
+            let (piece, last) = (i / n, evaluate(before, knots[i / n + 1] - knots[i / n])[1]);
+            piece + 2 < knots.len() && (last - after[1]).abs() > JUMP * (1.0 + last.abs())
+        };
+        let inner = polynomials.len() - n;
+        Self { trajectory, smooth: !(0..inner).any(jumps) }
+    }
+
+    /// The piece in which a time is; the later one at a knot.
+    fn piece_of(&self, t: f64) -> usize {
+        let knots = self.trajectory.knots();
+        knots.partition_point(|knot| *knot <= t).saturating_sub(1).min(knots.len() - 2)
+    }
+
+    /// The pieces of an interval.
+    fn pieces(&self, from: f64, to: f64) -> RangeInclusive<usize> {
+        let (first, last) = (self.piece_of(from), self.piece_of(to));
+        // One that begins where the interval ends does not count.
+        first..=if last > first && self.trajectory.knots()[last] >= to { last - 1 } else { last }
+    }
+}
 
 impl JointMotion for TimedMotion<'_> {
-    fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {
-        let (knots, polynomials) = (self.0.knots(), self.0.coefficients());
-        let n = middle.len();
-        let last = knots.len() - 2;
-        let piece_of = |t: f64| knots.partition_point(|knot| *knot <= t).saturating_sub(1).min(last);
-        let center = 0.5 * (from + to);
-        let home = piece_of(center);
-        for j in 0..n {
-            middle[j] = evaluate(&polynomials[home * n + j], center - knots[home])[0];
+    fn write(&self, at: f64, q: &mut [f64]) {
+        let (piece, n) = (self.piece_of(at), q.len());
+        let (s, polynomials) = (at - self.trajectory.knots()[piece], self.trajectory.coefficients());
+        for (q, polynomial) in q.iter_mut().zip(&polynomials[piece * n..]) {
+            *q = value(polynomial, s);
         }
-        reach.fill(0.0);
-        for piece in piece_of(from)..=piece_of(to) {
+    }
+
+    fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
+        let (knots, polynomials, n) = (self.trajectory.knots(), self.trajectory.coefficients(), off_line.len());
+        let pieces = self.pieces(from, to);
+        if !self.smooth && pieces.end() > pieces.start() {
+            // Divided at its knots, it is smooth.
+            return off_line.fill(f64::INFINITY);
+        }
+        let share = (to - from).powi(2) / 8.0;
+        for piece in pieces {
             let (begin, end) = (knots[piece].max(from), knots[piece + 1].min(to));
-            let half = 0.5 * (end - begin).max(0.0);
-            for j in 0..n {
-                let local = shifted(&polynomials[piece * n + j], 0.5 * (begin + end) - knots[piece]);
-                // Taylor's series about the middle of the piece ends, so that its terms bound it.
-                let swing = local[1..].iter().rev().fold(0.0, |sum, c| (sum + c.abs()) * half);
-                reach[j] = reach[j].max((local[0] - middle[j]).abs() + swing);
+            let (middle, half) = (0.5 * (begin + end) - knots[piece], 0.5 * (end - begin).max(0.0));
+            for (off_line, polynomial) in off_line.iter_mut().zip(&polynomials[piece * n..]) {
+                *off_line = off_line.max(share * largest_acceleration(polynomial, middle, half));
             }
         }
     }
+
+    fn middle(&self, from: f64, to: f64) -> Option<f64> {
+        let (knots, pieces) = (self.trajectory.knots(), self.pieces(from, to));
+        let middle = 0.5 * (from + to);
+        let distance = |knot: &f64| (knot - middle).abs();
+        let inner = knots[pieces.start() + 1..=*pieces.end()].iter().copied();
+        let nearest = inner.min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        Some(nearest.unwrap_or(middle)).filter(|middle| from < *middle && *middle < to)
+    }
+}
+
+/// The value of a polynomial at `s`.
+fn value(polynomial: &Coefficients, s: f64) -> f64 {
+    polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+/// A bound on the second derivative of a polynomial within `half` of `middle`.
+fn largest_acceleration(polynomial: &Coefficients, middle: f64, half: f64) -> f64 {
+    if polynomial[2..].iter().all(|c| *c == 0.0) {
+        return 0.0;
+    }
+    // Taylor's series about the middle ends, so that its terms bound it.
+    let local = shifted(polynomial, middle);
+    (2..POWERS).rev().fold(0.0, |sum, power| sum * half + (power * (power - 1)) as f64 * local[power].abs())
 }
 
 /// The same polynomial in powers of s - `by`, by repeated synthetic division.
@@ -137,26 +200,50 @@ mod tests {
     use crate::shape::Shape;
     use crate::trajectory::polynomial;
 
-    #[test]
-    fn no_joint_leaves_the_range_around_the_middle_of_an_interval() {
+    /// Two polynomials that meet at 0.8 s, with a velocity jump there or without.
+    fn motion(jump: f64) -> Trajectory {
         let mut rng = rng::stream(1, 0);
         let mut draw = || polynomial([(); 5].map(|()| rng.uniform_in(-1.0, 1.0)));
         let (first, second) = (draw(), draw());
-        let meeting = evaluate(&first, 0.8)[0];
-        let second = Coefficients::from(std::array::from_fn(|k| if k == 0 { meeting } else { second[k] }));
-        let motion = Trajectory::new(vec!["a".into()], vec![0.0, 0.8, 2.0], vec![first, second]).unwrap();
-        for (from, to) in [(0.0, 2.0), (0.1, 0.5), (0.7, 0.9), (1.2, 1.3), (0.8, 0.8)] {
-            let (mut middle, mut reach) = ([0.0], [0.0]);
-            TimedMotion(&motion).around(from, to, &mut middle, &mut reach);
+        let [q, qd, _] = evaluate(&first, 0.8);
+        let second = Coefficients::from(std::array::from_fn(|k| [q, qd + jump, second[2], second[3], second[4], 0.0, 0.0][k]));
+        Trajectory::new(vec!["a".into()], vec![0.0, 0.8, 2.0], vec![first, second]).unwrap()
+    }
+
+    #[test]
+    fn no_joint_gets_farther_off_the_line_than_the_bound() {
+        let motion = motion(0.0);
+        let timed = TimedMotion::new(&motion);
+        for (from, to) in [(0.0, 2.0), (0.1, 0.5), (0.7, 0.9), (1.2, 1.3), (0.4, 0.8), (0.8, 1.1)] {
+            let (mut ends, mut off_line) = ([[0.0]; 2], [0.0]);
+            timed.write(from, &mut ends[0]);
+            timed.write(to, &mut ends[1]);
+            timed.write_off_line(from, to, &mut off_line);
             let mut largest: f64 = 0.0;
-            for i in 0..=500 {
-                let (mut q, mut qd, mut qdd) = ([0.0], [0.0], [0.0]);
-                motion.at(from + (to - from) * f64::from(i) / 500.0, &mut q, &mut qd, &mut qdd).unwrap();
-                largest = largest.max((q[0] - middle[0]).abs());
+            for i in 1..500 {
+                let share = f64::from(i) / 500.0;
+                let mut q = [0.0];
+                timed.write(from + share * (to - from), &mut q);
+                let off = (q[0] - ends[0][0] - share * (ends[1][0] - ends[0][0])).abs();
+                assert!(off <= 4.0 * share * (1.0 - share) * off_line[0] + 1e-12, "[{from}, {to}] at {share}: {off}");
+                largest = largest.max(off);
             }
-            assert!(largest <= reach[0] + 1e-12, "[{from}, {to}]: {largest} beyond {}", reach[0]);
-            assert!(to - from > 0.5 || reach[0] <= 1.5 * largest + 1e-12, "[{from}, {to}]: {} is loose", reach[0]);
+            assert!(to - from > 0.5 || off_line[0] <= 2.0 * largest + 1e-12, "[{from}, {to}]: {off_line:?} is loose");
         }
+    }
+
+    #[test]
+    fn a_motion_with_a_jump_is_divided_there() {
+        let motion = motion(0.5);
+        let timed = TimedMotion::new(&motion);
+        let off_line = |from: f64, to: f64| {
+            let mut off_line = [0.0];
+            timed.write_off_line(from, to, &mut off_line);
+            off_line[0]
+        };
+        assert_eq!(off_line(0.7, 0.9), f64::INFINITY);
+        assert!(off_line(0.7, 0.8).is_finite() && off_line(0.8, 0.9).is_finite());
+        assert_eq!((timed.middle(0.0, 2.0), timed.middle(0.8, 1.0), timed.middle(0.8, 0.8)), (Some(0.8), Some(0.9), None));
     }
 
     #[test]

@@ -59,7 +59,7 @@ impl Plan {
         let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
         let Some(space) = space else { return Ok(()) };
         let (scene, margin) = (space.scene(), space.margin());
-        let (motion, whole) = (TimedMotion(&self.trajectory), [0.0, self.trajectory.duration()]);
+        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
         let mut sweep = Sweep::new(scene);
         if let Err(near) = sweep.check(&motion, whole, margin) {
             let violation = too_near(&near.contact, margin);

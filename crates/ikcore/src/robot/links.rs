@@ -9,6 +9,7 @@ use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::kinematics::Columns;
 use crate::kinematics::chain::{LinkFrame, StageMotion};
+use crate::kinematics::eight_frames::EightStages;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Frame, MAX_DOF, Pose};
@@ -189,6 +190,17 @@ impl Robot {
     #[inline]
     pub(crate) fn carriers(&self, frame: usize, below: usize) -> impl Iterator<Item = (usize, &StageMotion)> {
         self.tree().carriers(self.chain(), frame, below)
+    }
+
+    /// All moving elements, in the order of their frames from number 1 on: the number of the frame that each starts from, its constant
+    /// frame there, and its motion.
+    pub(crate) fn moving_elements(&self) -> impl Iterator<Item = (usize, Frame, StageMotion)> {
+        self.tree().stages(self.chain())
+    }
+
+    /// The moving elements, for eight configurations at once.
+    pub(crate) fn eight_stages(&self) -> EightStages {
+        EightStages::new(self.moving_elements())
     }
 
     /// Number of the last frame that carries both of these.

@@ -16,8 +16,8 @@
 //! | `along_segment` | the lowest signed distance along a segment |
 //! | `segment_distance` | distance of a segment to a shape or another segment |
 //! | `bounding_tree` | four-way tree of boxes for thousands of pieces |
-//! | `segment_lanes`, `solid_lanes` | the same, for one number or four in the lanes of a register |
-//! | `body_block` | "nearer than m?" for four capsules at once |
+//! | `segment_lanes`, `solid_lanes` | the same, for one number, or several in the lanes of a register |
+//! | `body_block`, `eight_shape` | "nearer than m?" for four capsules at once, and for one at eight configurations |
 //! | `shape_index` | finds the shapes near a ball, among many |
 //! | `mesh`, `inside_mesh`, `triangle` | triangle meshes, closed or not |
 //! | `mesh_hull` | convex hulls of meshes |
@@ -40,6 +40,7 @@ mod convex;
 mod convex_distance;
 mod convex_hull;
 mod cover;
+mod eight_shape;
 mod ellipsoid;
 mod enclosing_capsule;
 mod extent;
@@ -67,6 +68,7 @@ pub use bounding_ball::BoundingBall;
 pub use checked_shape::Shape;
 pub use convex_hull::Hull;
 pub use cover::Cover;
+pub(crate) use eight_shape::{EightCapsules, EightShape, Vectors, below_square, splat};
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;

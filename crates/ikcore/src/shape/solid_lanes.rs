@@ -1,7 +1,7 @@
 //! Boxes and cylinders in the registers: the nearest point to a point, and a bound for a segment.
 
 use super::segment_lanes::excess;
-use crate::math::Pose;
+use crate::math::{Frame, Pose};
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
 
@@ -24,6 +24,12 @@ struct FrameLanes<R> {
 }
 
 impl<R: Real> FrameLanes<R> {
+    #[inline(always)]
+    fn of(frame: &Frame<R::Stored>) -> Self {
+        let [x, y, z] = &frame.axes;
+        Self { axes: [Vec3::of(x), Vec3::of(y), Vec3::of(z)], origin: Vec3::of(&frame.origin) }
+    }
+
     #[inline(always)]
     fn new(pose: &Pose) -> Self {
         let (m, t) = (pose.rotation.matrix(), &pose.translation.vector);
@@ -50,6 +56,12 @@ impl<R: Real> BoxLanes<R> {
     pub fn new(pose: &Pose, size: &[f64; 3]) -> Self {
         let half = [0.5 * size[0], 0.5 * size[1], 0.5 * size[2]];
         Self { frame: FrameLanes::new(pose), half: Vec3::splat(&half) }
+    }
+
+    /// At `frame`, with these half edges.
+    #[inline(always)]
+    pub fn of(frame: &Frame<R::Stored>, half: &[R::Stored; 3]) -> Self {
+        Self { frame: FrameLanes::of(frame), half: Vec3::of(half) }
     }
 }
 
@@ -84,6 +96,13 @@ impl<R: Real> CylinderLanes<R> {
     pub fn new(center: &[f64; 3], axis: &[f64; 3], radius: f64, length: f64) -> Self {
         let [center, axis] = [Vec3::splat(center), Vec3::splat(axis)];
         Self { center, axis, radius: R::splat(radius), half_length: R::splat(0.5 * length) }
+    }
+
+    /// About `center` along `axis`, with this radius and half this length.
+    #[inline(always)]
+    pub fn of(center: &[R::Stored; 3], axis: &[R::Stored; 3], [radius, half_length]: [R::Stored; 2]) -> Self {
+        let [center, axis] = [Vec3::of(center), Vec3::of(axis)];
+        Self { center, axis, radius: R::of(radius), half_length: R::of(half_length) }
     }
 }
 

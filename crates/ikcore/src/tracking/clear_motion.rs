@@ -200,7 +200,7 @@ impl ClearMotion {
             at_rest: self.near.rows(),
             leeway: ROOM,
         };
-        self.space.is_kept_by(&motion, &kept, &mut self.check)
+        self.space.is_kept_by(&motion, motion.end_tick(), &kept, &mut self.check)
     }
 
     /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it: they bend on the way.

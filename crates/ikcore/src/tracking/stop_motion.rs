@@ -4,7 +4,10 @@ use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
 use crate::motion::{Braking, JointState, StopCurve};
-use crate::obstacle::TickedMotion;
+use crate::obstacle::JointMotion;
+
+/// An interval this short (ticks) is not halved again.
+const SHORTEST: f64 = 1e-3;
 
 /// The motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
 #[derive(Debug)]
@@ -38,17 +41,18 @@ impl<'a> StopMotion<'a> {
         self.ticks
     }
 
+    /// When it ends (ticks).
+    pub fn end_tick(&self) -> f64 {
+        1.0 + self.ticks
+    }
+
     /// Where joint `j` comes to rest.
     pub fn end(&self, j: usize) -> f64 {
         self.command[j] + self.stops.get(j).map_or(0.0, |(stop, _)| stop.end())
     }
 }
 
-impl TickedMotion for StopMotion<'_> {
-    fn ticks(&self) -> f64 {
-        1.0 + self.ticks
-    }
-
+impl JointMotion for StopMotion<'_> {
     fn write(&self, tick: f64, q: &mut [f64]) {
         if tick < 0.0 && self.is_spline() {
             for (q, (from, step)) in q.iter_mut().zip(self.from.iter().zip(self.before)) {
@@ -78,6 +82,15 @@ impl TickedMotion for StopMotion<'_> {
             let range = stop.range() + (self.command[j] - self.from[j]).abs();
             off_line[j] = (acceleration * (to - from).powi(2) / 8.0).min(range);
         }
+    }
+
+    fn middle(&self, from: f64, to: f64) -> Option<f64> {
+        // A spline is known by its control points alone. Of more than one tick, halves of whole ticks: the motion is straight between
+        // ticks alone.
+        let (length, half) = (to - from, 0.5 * (to - from));
+        let shortest = if self.is_spline() { 1.0 } else { SHORTEST };
+        let whole = if half >= 1.0 { half.floor() } else { 1.0 };
+        (length > shortest).then_some(from + if length > 1.0 { whole } else { half })
     }
 
     fn is_spline(&self) -> bool {

@@ -196,7 +196,7 @@ impl ClearPlanner<'_> {
     fn fault(&self, motion: &PathMotion) -> Option<Fault> {
         let trajectory = &motion.trajectory;
         let (whole, kept) = ([0.0, trajectory.duration()], self.space.margin() + SPARE);
-        let checked = Sweep::new(self.space.scene()).check(&TimedMotion(trajectory), whole, kept);
+        let checked = Sweep::new(self.space.scene()).check(&TimedMotion::new(trajectory), whole, kept);
         let leaves_limits = || !self.problem.limits.violations(trajectory).is_empty();
         checked.err().map(Fault::TooNear).or_else(|| leaves_limits().then_some(Fault::OutsideLimits))
     }
@@ -262,7 +262,7 @@ impl ClearPlanner<'_> {
         let mut plan = self.problem.plan(motion, found, self.stopwatch);
         plan.surroundings = Some(self.problem.options.surroundings.clone());
         let trajectory = &plan.trajectory;
-        let Some(near) = Sweep::new(scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()]) else {
+        let Some(near) = Sweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()]) else {
             return Ok(plan);
         };
         let distance = near.contact.distance;

@@ -14,6 +14,7 @@ use crate::planning::collision_checks::{
     RESERVE, TimedMotion, as_lines, configuration_at, nearest_at, refuse_collision, scene, too_near,
 };
 use crate::planning::cost::tip_travel_along;
+use crate::planning::deadline::Deadline;
 use crate::planning::endpoint::{EndName, no_usable_end};
 use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
@@ -60,15 +61,16 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let mut trees = TreeSearch::new(&scene, limits, margin + RESERVE, budget, search.deadline);
+    let mut sweep = Sweep::new(&scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
         true => Certified::Nothing(Status::Stalled),
         false => {
             let starts = sort_by_cost(&mut open, search, options.objective)?;
-            PathSearch { trees: &mut trees, search, options, margin }.best(&open, &starts, monitor)?
+            PathSearch { trees: &mut trees, sweep: &mut sweep, search, options, margin }.best(&open, &starts, monitor)?
         }
     };
-    search.evaluations += trees.sweep.examined();
+    search.evaluations += trees.check.examined();
     let (trajectory, ended) = match certified {
         Certified::Motion(trajectory) => (trajectory, Status::Solved),
         Certified::Nothing(status) => {
@@ -123,6 +125,7 @@ fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -
 /// The search for a certified motion.
 struct PathSearch<'s, 'a> {
     trees: &'s mut TreeSearch<'a>,
+    sweep: &'s mut Sweep<'a>,
     search: &'s PairSearch<'a>,
     options: &'s PointToPointOptions,
     margin: f64,
@@ -133,16 +136,16 @@ impl PathSearch<'_, '_> {
     /// cheapest of the first collision-free straight motion and of several paths around obstacles from `starts`. `open` is
     /// sorted by the cost of the straight motions.
     fn best(self, open: &[EndPair], starts: &[Point], monitor: &mut dyn Monitor) -> Result<Certified> {
-        let Self { trees, search, options, margin } = self;
+        let Self { trees, sweep, search, options, margin } = self;
         let limits = search.limits;
         let mut best: Option<(f64, Trajectory)> = None;
         for (i, pair) in open.iter().enumerate() {
             if search.deadline.is_over() {
                 return Ok(Certified::Nothing(Status::BudgetSpent));
             }
-            if trees.is_clear(&pair.start, &pair.end) {
+            if trees.check.is_clear(&pair.start, &pair.end) {
                 let trajectory = straight(pair, limits)?;
-                if keeps_clear(trees, &trajectory, margin) {
+                if keeps_clear(sweep, &trajectory, margin) {
                     if i == 0 {
                         return Ok(Certified::Motion(trajectory));
                     }
@@ -151,8 +154,8 @@ impl PathSearch<'_, '_> {
                 }
             }
         }
-        let mut keep = |path: &JointPolyline, trees: &mut TreeSearch| -> Result<()> {
-            let trajectory = timed(trees, path, limits, margin)?;
+        let mut keep = |path: &JointPolyline| -> Result<()> {
+            let trajectory = timed(sweep, search.deadline, path, limits, margin)?;
             let cost = options.objective.of(search.robot, &trajectory);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, trajectory));
@@ -181,27 +184,27 @@ impl PathSearch<'_, '_> {
                 // A line is the shortest way of the joints, and the quickest, but not of the tip.
                 let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| travel(new) <= travel(old);
                 let shortened = trees.shorten(path.clone(), &is_shorter, &mut rng.clone(), monitor);
-                keep(&shortened, trees)?;
+                keep(&shortened)?;
             }
-            keep(&trees.shorten(path, &|_, _| true, &mut rng, monitor), trees)?;
+            keep(&trees.shorten(path, &|_, _| true, &mut rng, monitor))?;
         }
         Ok(best.map_or(Certified::Nothing(ended), |(_, trajectory)| Certified::Motion(trajectory)))
     }
 }
 
 /// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
-fn timed(trees: &mut TreeSearch, path: &JointPolyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+fn timed(sweep: &mut Sweep, deadline: Deadline, path: &JointPolyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
     let stopping = path.with_stops(limits)?;
     let mut shares = vec![1.0; path.0.len()];
     for _ in 0..NARROWINGS {
-        if trees.deadline.is_over() {
+        if deadline.is_over() {
             break;
         }
         let Some(blended) = path.with_blends(limits, &shares).transpose()? else { break };
         if blended.duration() >= stopping.duration() {
             break;
         }
-        match trees.sweep.check(&TimedMotion(&blended), [0.0, blended.duration()], margin) {
+        match sweep.check(&TimedMotion::new(&blended), [0.0, blended.duration()], margin) {
             Ok(()) => return Ok(blended),
             Err(near) => {
                 let corner = nearest_corner(path, &blended, near.at)?;
@@ -221,8 +224,8 @@ fn nearest_corner(path: &JointPolyline, motion: &Trajectory, t: f64) -> Result<u
     Ok(nearest.unwrap_or(0))
 }
 
-fn keeps_clear(trees: &mut TreeSearch, trajectory: &Trajectory, margin: f64) -> bool {
-    trees.sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], margin).is_ok()
+fn keeps_clear(sweep: &mut Sweep, trajectory: &Trajectory, margin: f64) -> bool {
+    sweep.check(&TimedMotion::new(trajectory), [0.0, trajectory.duration()], margin).is_ok()
 }
 
 /// Completes the plan with the violations and clearance of its trajectory.
@@ -234,7 +237,7 @@ fn finish(
     options: &PointToPointOptions,
     margin: f64,
 ) -> Result<Plan> {
-    let smallest = Sweep::new(scene).smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]);
+    let smallest = Sweep::new(scene).smallest(&TimedMotion::new(&trajectory), [0.0, trajectory.duration()]);
     let mut violations = search.limits.violations(&trajectory);
     let nearest = smallest.as_ref().map_or(Ok(None), |near| nearest_at(scene, &trajectory, near.at))?;
     let clearance = smallest.map(|near| {

@@ -11,10 +11,12 @@
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`] | a path around obstacles, its timing certified |
 //! | [`moving_start`] | motions that begin at a velocity |
-//! | [`rrt_connect`] | RRT-Connect, and shortcuts |
+//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`shortening`] | shortcuts |
 
 mod among_obstacles;
 mod branch_pairs;
+mod configuration_tree;
 mod end_pair;
 mod least_displacement;
 mod line_timing;
@@ -22,6 +24,7 @@ mod minmax_planner;
 mod moving_start;
 mod pair_search;
 mod rrt_connect;
+mod shortening;
 mod straight_line_plan;
 
 pub(super) use minmax_planner::point_to_point;

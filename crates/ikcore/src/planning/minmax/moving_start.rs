@@ -46,7 +46,7 @@ pub(super) fn begin(
     let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
     let mut sweep = scene.as_ref().map(Sweep::new);
     let mut is_free = |motion: &Trajectory| {
-        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
+        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
         sweep.as_mut().is_none_or(check)
     };
     let pairs = search.pairs(PAIRS, monitor)?;
@@ -59,7 +59,7 @@ pub(super) fn begin(
         let evaluations = search.evaluations;
         let cost = options.objective.of(search.robot, &trajectory);
         let closest =
-            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]));
+            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion::new(&trajectory), [0.0, trajectory.duration()]));
         let nearest = match (&scene, &closest) {
             (Some(scene), Some(near)) => nearest_at(scene, &trajectory, near.at)?,
             _ => None,
@@ -135,7 +135,7 @@ pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: 
     let lines = if collides { as_lines(robot, options)? } else { None };
     let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
     let closest =
-        scene.as_ref().and_then(|scene| Sweep::new(scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
+        scene.as_ref().and_then(|scene| Sweep::new(scene).smallest(&TimedMotion::new(&stop), [0.0, stop.duration()]));
     let (clearance, nearest) = match (rest.clearance, &scene, closest) {
         (Some(clearance), Some(scene), Some(near)) if near.contact.distance < clearance => {
             (Some(near.contact.distance), nearest_at(scene, &stop, near.at)?)

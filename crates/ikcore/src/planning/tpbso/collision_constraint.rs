@@ -87,7 +87,7 @@ impl<'a> CollisionTest<'a> {
     /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
     /// `None` if nothing can touch.
     pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<Clearance> {
-        let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
+        let near = Sweep::new(&self.scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
         Some(Clearance {
             distance,

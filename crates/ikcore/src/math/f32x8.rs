@@ -1,0 +1,31 @@
+//! Eight numbers of single precision in one register, if the machine has such registers.
+
+use std::ops::Neg;
+
+/// Eight numbers, on which [`Arithmetic`](super::arithmetic::Arithmetic) works lane by lane: for searches, whose results are confirmed
+/// in double precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(32))]
+pub struct F32x8(pub [f32; 8]);
+
+impl F32x8 {
+    /// Zeros.
+    pub const ZERO: Self = Self([0.0; 8]);
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn splat(value: f32) -> Self {
+        Self([value; 8])
+    }
+}
+
+impl Neg for F32x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // Written out, as for `F64x4`.
+        let [a, b, c, d, e, f, g, h] = self.0;
+        Self([-a, -b, -c, -d, -e, -f, -g, -h])
+    }
+}

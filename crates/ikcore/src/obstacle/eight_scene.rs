@@ -1,0 +1,191 @@
+//! Which pairs of bodies are near each other at eight configurations, in single precision?
+
+use super::body_model::BodyPair;
+use super::eight_bodies::EightPlacement;
+use super::levers::{CarriedBall, Levers, MovingElements};
+use super::scene::Scene;
+use crate::math::Frame;
+use crate::math::arithmetic::Arithmetic;
+use crate::math::f32x8::F32x8;
+use crate::math::real::{Eight, Real};
+use crate::shape::{EightCapsules, EightShape, below_square};
+
+/// What single precision may take off a distance, for coordinates of 1 m and angles of a few rad (m): a few units in the last place
+/// for each of the operations that lead to it.
+const ROUNDING: f64 = 2e-6;
+
+/// A scene, prepared for eight configurations at once.
+#[derive(Debug)]
+pub(super) struct EightScene<'a> {
+    pub scene: &'a Scene<'a>,
+    obstacles: Vec<EightShape>,
+    /// The groups that a joint moves, and how far.
+    groups: Vec<(usize, Levers)>,
+    /// Numbers of pairs of groups with bodies that must not touch, these groups, and how far joints move them towards each other.
+    pairs: Vec<(usize, [usize; 2], Levers)>,
+    /// Largest coordinates and levers (m).
+    extent: f64,
+    placement: EightPlacement,
+    qs: Vec<F32x8>,
+}
+
+impl<'a> EightScene<'a> {
+    /// Prepares `scene`.
+    pub fn new(scene: &'a Scene<'a>) -> Self {
+        let (robot, bodies) = (scene.robot(), &scene.bodies);
+        let elements = MovingElements::of(robot);
+        let ball = |group: usize| {
+            let (center, radius) = bodies.groups.ball_in_frame(group);
+            CarriedBall { frame: bodies.groups.frame_of(group), center, radius }
+        };
+        let levers = |groups: &[usize], below: usize| {
+            let mut levers = Levers::none(robot.dof());
+            groups.iter().for_each(|group| elements.add(&ball(*group), below, &mut levers));
+            levers
+        };
+        let moving = (0..bodies.groups.count()).filter(|group| bodies.groups.is_moving(*group));
+        let groups: Vec<(usize, Levers)> = moving.map(|group| (group, levers(&[group], 0))).collect();
+        let pairs = bodies.pairs_of_groups().enumerate().filter(|_| scene.others.itself);
+        let pairs = pairs.map(|(number, groups)| {
+            let [one, other] = groups.map(|group| bodies.groups.frame_of(group));
+            (number, groups, levers(&groups, robot.meeting_frame(one, other)))
+        });
+        let pairs = pairs.collect();
+        let levers = groups.iter().map(|(_, levers)| levers.sum()).fold(0.0, f64::max);
+        let obstacles = (0..scene.others.obstacles.len()).map(|obstacle| {
+            let (center, radius) = scene.others.ball(obstacle);
+            if radius.is_finite() { center.norm() + radius } else { 0.0 }
+        });
+        Self {
+            scene,
+            obstacles: scene.others.obstacles.iter().map(EightShape::new).collect(),
+            groups,
+            pairs,
+            extent: levers + obstacles.fold(1.0, f64::max),
+            placement: bodies.eight.placement(),
+            qs: vec![F32x8::ZERO; robot.dof()],
+        }
+    }
+
+    /// What rounding may take off a distance (m), for joint values of up to `largest` (rad, m).
+    pub fn rounding(&self, largest: f64) -> f64 {
+        ROUNDING * self.extent * (1.0 + 0.1 * largest)
+    }
+
+    /// A bound on how far any body moves (m) while the joints move by `reach` (rad, m).
+    #[inline]
+    pub fn farthest(&self, reach: &[f64]) -> f64 {
+        self.groups.iter().map(|(_, levers)| levers.travel(reach)).fold(0.0, f64::max)
+    }
+
+    /// Places everything at the configurations in the lanes of `value(joint)`.
+    #[inline(always)]
+    pub fn place<A: Arithmetic>(&mut self, value: impl Fn(usize) -> F32x8) {
+        for (j, q) in self.qs.iter_mut().enumerate() {
+            *q = value(j);
+        }
+        self.scene.bodies.eight.place::<A>(&self.qs, &mut self.placement);
+    }
+
+    /// Calls `visit` with all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
+    /// configurations, the lanes in which they may, and the placement; until it returns false. Returns what it returned last.
+    #[inline(always)]
+    pub fn each_near<A: Arithmetic>(
+        &mut self,
+        margin: f64,
+        reach: &[f64],
+        mut visit: impl FnMut(&mut Near<'_, '_>, BodyPair, u32) -> bool,
+    ) -> bool {
+        let Self { scene, obstacles, groups, pairs, placement, .. } = self;
+        let (eight, others) = (&scene.bodies.eight, &scene.others);
+        let mut near = Near { scene, obstacles, placement };
+        for (group, levers) in groups.iter() {
+            let enough = Eight::splat(margin + levers.travel(reach));
+            let ball = eight.ball::<A>(*group, near.placement);
+            for (obstacle, shape) in obstacles.iter().enumerate() {
+                if shape.near(&ball, enough) == 0 {
+                    continue;
+                }
+                for &body in scene.bodies.groups.bodies_of(*group) {
+                    let lanes = shape.near(&eight.body::<A>(body, near.placement), enough);
+                    if lanes == 0 || others.allowed.allow(body, obstacle) {
+                        continue;
+                    }
+                    if !visit(&mut near, BodyPair::Obstacle { body, obstacle }, lanes) {
+                        return false;
+                    }
+                }
+            }
+        }
+        for (number, [one, other], levers) in pairs.iter() {
+            let enough = Eight::splat(margin + levers.travel(reach));
+            let [a, b] = [eight.ball::<A>(*one, near.placement), eight.ball::<A>(*other, near.placement)];
+            if near_each_other(&a, &b, enough) == 0 {
+                continue;
+            }
+            for &pair in scene.bodies.pairs_between(*number) {
+                let BodyPair::Bodies { near: one, far: other, .. } = pair else { continue };
+                let (a, b) = (eight.body::<A>(one, near.placement), eight.body::<A>(other, near.placement));
+                let lanes = near_each_other(&a, &b, enough);
+                if lanes != 0 && !visit(&mut near, pair, lanes) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether a pair is nearer than `margin` (m) at any of the configurations.
+    #[inline(always)]
+    pub fn meet<A: Arithmetic>(&mut self, pair: BodyPair, margin: f64) -> bool {
+        let Self { scene, obstacles, placement, .. } = self;
+        Near { scene, obstacles, placement }.meet::<A>(pair, margin)
+    }
+}
+
+/// Everything at eight configurations.
+pub(super) struct Near<'s, 'a> {
+    scene: &'s Scene<'a>,
+    obstacles: &'s [EightShape],
+    placement: &'s mut EightPlacement,
+}
+
+impl Near<'_, '_> {
+    /// Whether a pair is nearer than `margin` (m) at any of the configurations.
+    #[inline(always)]
+    pub fn meet<A: Arithmetic>(&mut self, pair: BodyPair, margin: f64) -> bool {
+        let eight = &self.scene.bodies.eight;
+        let enough = Eight::splat(margin);
+        let lanes = match pair {
+            BodyPair::Obstacle { body, obstacle } => {
+                self.obstacles[obstacle].near(&eight.body::<A>(body, self.placement), enough)
+            }
+            BodyPair::Bodies { near, far, .. } => {
+                let (a, b) = (eight.body::<A>(near, self.placement), eight.body::<A>(far, self.placement));
+                near_each_other(&a, &b, enough)
+            }
+        };
+        lanes != 0 && self.shapes_meet(pair, margin, lanes)
+    }
+
+    /// Whether a pair whose capsules are too near in these lanes really is: bodies that are no capsules are examined one by one.
+    #[inline]
+    fn shapes_meet(&self, pair: BodyPair, margin: f64, lanes: u32) -> bool {
+        let solid = |body: usize| self.scene.bodies.carried[body].solid.is_some();
+        let is_exact = match pair {
+            BodyPair::Obstacle { body, .. } => !solid(body),
+            BodyPair::Bodies { near, far, .. } => !solid(near) && !solid(far),
+        };
+        is_exact
+            || (0..8).filter(|lane| lanes & (1 << lane) != 0).any(|lane| {
+                let frames: Vec<Frame> = self.placement.frames.iter().map(|frame| frame.lane(lane)).collect();
+                self.scene.distance_at(pair, &frames, margin) < margin
+            })
+    }
+}
+
+/// The lanes in which two bodies may be nearer than `margin`, one bit each.
+#[inline(always)]
+fn near_each_other<A: Arithmetic>(one: &EightCapsules<A>, other: &EightCapsules<A>, margin: Eight<A>) -> u32 {
+    below_square(one.squared_distance(other), one.radius + other.radius + margin)
+}

@@ -1,0 +1,43 @@
+//! Motions that can be certified.
+
+/// A joint motion over an interval of its parameter: time, ticks, or the fraction of a straight line.
+pub trait JointMotion {
+    /// Writes the configuration at `at`.
+    fn write(&self, at: f64, q: &mut [f64]);
+
+    /// Writes by how much each joint (rad, m) gets off the straight line between its values at `from` and `to`, which has the same
+    /// parameter: at share s of the interval by at most 4 s (1 - s) times this. The entries are zero before. A spline need keep only
+    /// to its control points.
+    fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]);
+
+    /// Where to divide an interval; `None` if it is not to be divided.
+    fn middle(&self, from: f64, to: f64) -> Option<f64> {
+        let middle = 0.5 * (from + to);
+        (from < middle && middle < to).then_some(middle)
+    }
+
+    /// Whether the arm does not pass the configurations of whole numbers, but follows the uniform cubic B-spline with these control
+    /// points. Then `write` also knows those just outside of the interval.
+    fn is_spline(&self) -> bool {
+        false
+    }
+}
+
+/// A straight line in joint space; its parameter runs from 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Edge<'a> {
+    /// Where it begins (n,).
+    pub from: &'a [f64],
+    /// Where it ends (n,).
+    pub to: &'a [f64],
+}
+
+impl JointMotion for Edge<'_> {
+    fn write(&self, at: f64, q: &mut [f64]) {
+        for (q, (from, to)) in q.iter_mut().zip(self.from.iter().zip(self.to)) {
+            *q = from + at * (to - from);
+        }
+    }
+
+    fn write_off_line(&self, _from: f64, _to: f64, _off_line: &mut [f64]) {}
+}

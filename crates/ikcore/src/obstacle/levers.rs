@@ -1,0 +1,68 @@
+//! How far the joints can move a body, whatever the configuration.
+
+use crate::kinematics::chain::StageMotion;
+use crate::math::Frame;
+use crate::robot::Robot;
+
+/// Bounds (m per rad, m per m) on how far each joint moves the points of a body, relative to a frame that carries it.
+#[derive(Debug, Clone)]
+pub(super) struct Levers(Vec<f64>);
+
+/// A ball in the frame of this number.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CarriedBall {
+    pub frame: usize,
+    pub center: [f64; 3],
+    pub radius: f64,
+}
+
+/// The moving elements of a robot, and how far each slides at most (m).
+pub(super) struct MovingElements {
+    stages: Vec<(usize, Frame, StageMotion)>,
+    slides: Vec<f64>,
+}
+
+impl MovingElements {
+    /// Those of `robot`.
+    pub fn of(robot: &Robot) -> Self {
+        let stages: Vec<_> = robot.moving_elements().collect();
+        let slide = |(_, _, motion): &(usize, Frame, StageMotion)| {
+            let (lower, upper) = robot.joints()[motion.joint].sampling_range();
+            let at = |q: f64| if motion.slide_scale == 0.0 { motion.slide_offset } else { motion.slide_scale * q + motion.slide_offset };
+            at(lower).abs().max(at(upper).abs())
+        };
+        let slides = stages.iter().map(slide).collect();
+        Self { stages, slides }
+    }
+
+    /// Adds to `levers` how far the joints move `ball` relative to frame number `below`, which carries it.
+    pub fn add(&self, ball: &CarriedBall, below: usize, levers: &mut Levers) {
+        let CarriedBall { frame: mut at, center: [x, y, z], radius } = *ball;
+        // The largest distance of the ball's points from the axis of the element, and from its origin.
+        let (mut beside, mut far) = (x.hypot(y) + radius, x.hypot(y).hypot(z) + radius);
+        while at > below {
+            let ((parent, Frame { origin: [x, y, z], .. }, motion), slide) = (&self.stages[at - 1], self.slides[at - 1]);
+            levers.0[motion.joint] += motion.turn_scale.abs() * beside + motion.slide_scale.abs();
+            (beside, far) = (x.hypot(*y) + slide + far, x.hypot(*y).hypot(*z) + slide + far);
+            at = *parent;
+        }
+    }
+}
+
+impl Levers {
+    /// Of something that none of `joints` joints moves.
+    pub fn none(joints: usize) -> Self {
+        Self(vec![0.0; joints])
+    }
+
+    /// How far (m) any point moves at most while the joints move by up to `reach` (rad, m).
+    #[inline]
+    pub fn travel(&self, reach: &[f64]) -> f64 {
+        self.0.iter().zip(reach).map(|(lever, reach)| lever * reach).sum()
+    }
+
+    /// How far (m) if all joints move by 1 (rad, m).
+    pub fn sum(&self) -> f64 {
+        self.0.iter().sum()
+    }
+}
