@@ -2709,6 +2709,9 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     start_qd: ArrayLike | None = None,
+    approach: float | StraightLine | None = None,
+    retreat: float | StraightLine | None = None,
+    free_start: bool = False,
     task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
@@ -2831,6 +2834,25 @@ def time_optimal(
         UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
     """
 
+@final
+class StraightLine:
+    def __init__(
+        self,
+        distance: float,
+        *,
+        direction: ArrayLike | None = None,
+        frame: Literal["tip", "base"] = "tip",
+        touch: Iterable[str] | Mapping[int, Iterable[str]] | None = None,
+    ) -> None: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def direction(self) -> list[float] | None: ...
+    @property
+    def frame(self) -> Literal["tip", "base"]: ...
+    @property
+    def touch(self) -> list[str] | dict[int, list[str]]: ...
+
 class BatchPlan:
     """Plans in the order of the problems. `b[i]` is a `Plan`, or None if problem i has none; `b[10:20]` and `b[b.success]` are
     batches.
@@ -2872,6 +2894,9 @@ def plan_batch(
     *,
     threads: int | None = None,
     progress: _Progress = None,
+    approach: float | StraightLine | None = None,
+    retreat: float | StraightLine | None = None,
+    free_start: bool = False,
     task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
@@ -3023,6 +3048,8 @@ class Plan:
     @property
     def nearest(self) -> Nearest | None:
         """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
+    @property
+    def freed(self) -> tuple[float, float] | None: ...
     @property
     def chosen_end(self) -> int | None:
         """Index of the end that was taken, of those given; None for a plan along a path."""

@@ -248,9 +248,8 @@ impl Arithmetic for Fma {
 
     #[inline(always)]
     fn not_at_least_x8(a: F32x8, b: F32x8) -> u32 {
-        let below = unsafe {
-            x86::_mm256_movemask_ps(x86::_mm256_cmp_ps::<{ x86::_CMP_NGE_UQ }>(singles(a), singles(b)))
-        };
+        let below =
+            unsafe { x86::_mm256_movemask_ps(x86::_mm256_cmp_ps::<{ x86::_CMP_NGE_UQ }>(singles(a), singles(b))) };
         below.cast_unsigned()
     }
 }

@@ -28,7 +28,13 @@ impl MovingElements {
         let stages: Vec<_> = robot.moving_elements().collect();
         let slide = |(_, _, motion): &(usize, Frame, StageMotion)| {
             let (lower, upper) = robot.joints()[motion.joint].sampling_range();
-            let at = |q: f64| if motion.slide_scale == 0.0 { motion.slide_offset } else { motion.slide_scale * q + motion.slide_offset };
+            let at = |q: f64| {
+                if motion.slide_scale == 0.0 {
+                    motion.slide_offset
+                } else {
+                    motion.slide_scale * q + motion.slide_offset
+                }
+            };
             at(lower).abs().max(at(upper).abs())
         };
         let slides = stages.iter().map(slide).collect();
@@ -41,7 +47,8 @@ impl MovingElements {
         // The largest distance of the ball's points from the axis of the element, and from its origin.
         let (mut beside, mut far) = (x.hypot(y) + radius, x.hypot(y).hypot(z) + radius);
         while at > below {
-            let ((parent, Frame { origin: [x, y, z], .. }, motion), slide) = (&self.stages[at - 1], self.slides[at - 1]);
+            let ((parent, Frame { origin: [x, y, z], .. }, motion), slide) =
+                (&self.stages[at - 1], self.slides[at - 1]);
             levers.0[motion.joint] += motion.turn_scale.abs() * beside + motion.slide_scale.abs();
             (beside, far) = (x.hypot(*y) + slide + far, x.hypot(*y).hypot(*z) + slide + far);
             at = *parent;

@@ -206,7 +206,8 @@ mod tests {
         let mut draw = || polynomial([(); 5].map(|()| rng.uniform_in(-1.0, 1.0)));
         let (first, second) = (draw(), draw());
         let [q, qd, _] = evaluate(&first, 0.8);
-        let second = Coefficients::from(std::array::from_fn(|k| [q, qd + jump, second[2], second[3], second[4], 0.0, 0.0][k]));
+        let second =
+            Coefficients::from(std::array::from_fn(|k| [q, qd + jump, second[2], second[3], second[4], 0.0, 0.0][k]));
         Trajectory::new(vec!["a".into()], vec![0.0, 0.8, 2.0], vec![first, second]).unwrap()
     }
 
@@ -243,7 +244,10 @@ mod tests {
         };
         assert_eq!(off_line(0.7, 0.9), f64::INFINITY);
         assert!(off_line(0.7, 0.8).is_finite() && off_line(0.8, 0.9).is_finite());
-        assert_eq!((timed.middle(0.0, 2.0), timed.middle(0.8, 1.0), timed.middle(0.8, 0.8)), (Some(0.8), Some(0.9), None));
+        assert_eq!(
+            (timed.middle(0.0, 2.0), timed.middle(0.8, 1.0), timed.middle(0.8, 0.8)),
+            (Some(0.8), Some(0.9), None)
+        );
     }
 
     #[test]

@@ -28,10 +28,24 @@ pub(crate) struct EightShape {
 #[derive(Debug, Clone)]
 enum Form {
     Sphere,
-    Capsule { start: Vectors, along: Vectors, radius: F32x8 },
-    HalfSpace { normal: Vectors, offset: F32x8 },
-    Box { frame: Frame<F32x8>, half: Vectors },
-    Cylinder { axis: Vectors, radius: F32x8, half_length: F32x8 },
+    Capsule {
+        start: Vectors,
+        along: Vectors,
+        radius: F32x8,
+    },
+    HalfSpace {
+        normal: Vectors,
+        offset: F32x8,
+    },
+    Box {
+        frame: Frame<F32x8>,
+        half: Vectors,
+    },
+    Cylinder {
+        axis: Vectors,
+        radius: F32x8,
+        half_length: F32x8,
+    },
     /// A shape whose distances are found one by one.
     Other(Shape),
 }
@@ -118,7 +132,11 @@ impl EightShape {
             }
             Form::Other(shape) => {
                 let near = near_ball(self, body, enough);
-                if near == 0 { 0 } else { near_one_by_one(shape, start.stored(), along.stored(), enough.stored(), near) }
+                if near == 0 {
+                    0
+                } else {
+                    near_one_by_one(shape, start.stored(), along.stored(), enough.stored(), near)
+                }
             }
         }
     }

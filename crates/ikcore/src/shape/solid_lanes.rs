@@ -1,9 +1,9 @@
 //! Boxes and cylinders in the registers: the nearest point to a point, and a bound for a segment.
 
 use super::segment_lanes::excess;
-use crate::math::{Frame, Pose};
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
+use crate::math::{Frame, Pose};
 
 /// A convex body with a frame of its own.
 pub(super) trait SolidLanes<R: Real> {

@@ -67,7 +67,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
         true => Certified::Nothing(Status::Stalled),
         false => {
             let starts = sort_by_cost(&mut open, search, options.objective)?;
-            PathSearch { trees: &mut trees, sweep: &mut sweep, search, options, margin }.best(&open, &starts, monitor)?
+            PathSearch { trees: &mut trees, sweep: &mut sweep, search, options, margin }
+                .best(&open, &starts, monitor)?
         }
     };
     search.evaluations += trees.check.examined();
@@ -193,7 +194,13 @@ impl PathSearch<'_, '_> {
 }
 
 /// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
-fn timed(sweep: &mut Sweep, deadline: Deadline, path: &JointPolyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+fn timed(
+    sweep: &mut Sweep,
+    deadline: Deadline,
+    path: &JointPolyline,
+    limits: &MotionLimits,
+    margin: f64,
+) -> Result<Trajectory> {
     let stopping = path.with_stops(limits)?;
     let mut shares = vec![1.0; path.0.len()];
     for _ in 0..NARROWINGS {
@@ -270,6 +277,7 @@ fn finish(
         obstruction: None,
         surroundings: None,
         chosen_end: None,
+        freed: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -8,6 +8,7 @@ use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{Sweep, kept_margin};
 use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, nearest_at, scene};
+use crate::planning::joined::{MeasuredMotion, joined};
 use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -46,7 +47,8 @@ pub(super) fn begin(
     let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
     let mut sweep = scene.as_ref().map(Sweep::new);
     let mut is_free = |motion: &Trajectory| {
-        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
+        let check =
+            |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
         sweep.as_mut().is_none_or(check)
     };
     let pairs = search.pairs(PAIRS, monitor)?;
@@ -73,6 +75,7 @@ pub(super) fn begin(
             obstruction: None,
             surroundings: None,
             chosen_end: Some(chosen),
+            freed: None,
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -134,16 +137,6 @@ pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: 
     let collides = can_collide(robot, options);
     let lines = if collides { as_lines(robot, options)? } else { None };
     let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
-    let closest =
-        scene.as_ref().and_then(|scene| Sweep::new(scene).smallest(&TimedMotion::new(&stop), [0.0, stop.duration()]));
-    let (clearance, nearest) = match (rest.clearance, &scene, closest) {
-        (Some(clearance), Some(scene), Some(near)) if near.contact.distance < clearance => {
-            (Some(near.contact.distance), nearest_at(scene, &stop, near.at)?)
-        }
-        (clearance, ..) => (clearance, rest.nearest),
-    };
-    let trajectory = stop.then(&rest.trajectory, 0.0)?;
-    let cost = rest.objective.of(robot, &trajectory);
-    let history = vec![Improvement { evaluations: rest.evaluations, cost }];
-    Ok(Plan { trajectory, cost, history, clearance, nearest, ..rest })
+    let stop = MeasuredMotion::new(stop, scene.as_ref(), f64::NEG_INFINITY)?;
+    joined(robot, Some(stop), rest, None)
 }

@@ -50,8 +50,8 @@ impl TreeSearch<'_> {
         while i < last {
             let is_shorter = |k: usize| shortens(&points[i..=k], &[points[i].clone(), points[k].clone()]);
             let mut ends = (i + 2..=last).rev();
-            let farthest =
-                ends.find(|k| !self.deadline.is_over() && is_shorter(*k) && self.check.is_clear(&points[i], &points[*k]));
+            let farthest = ends
+                .find(|k| !self.deadline.is_over() && is_shorter(*k) && self.check.is_clear(&points[i], &points[*k]));
             i = farthest.unwrap_or(i + 1);
             kept.push(points[i].clone());
         }
