@@ -67,19 +67,21 @@ fn assert_straight(robot: &Robot, plan: &Plan, [from, to]: [f64; 2], displacemen
 
 #[test]
 fn lines_are_straight_within_all_limits() {
-    for (name, fields) in [
-        ("panda", &[(Field::Acceleration, 5.0)][..]),
-        ("panda", &[(Field::Acceleration, 5.0), (Field::Jerk, 50.0)]),
-        ("ur5e", &[(Field::Velocity, 1.0)]),
-        ("iiwa14", &[(Field::Acceleration, 10.0)]),
+    let ur: &[f64] = &[0.0, -1.2, 1.5, -1.9, -1.6, 0.0];
+    for (name, near, fields) in [
+        ("panda", &READY[..], &[(Field::Acceleration, 5.0)][..]),
+        ("panda", &READY, &[(Field::Acceleration, 5.0), (Field::Jerk, 50.0)]),
+        ("ur5e", ur, &[(Field::Velocity, 1.0)]),
+        ("iiwa14", &[0.0, 0.6, 0.0, -1.2, 0.0, 1.2, 0.0], &[(Field::Acceleration, 10.0)]),
     ] {
         let robot = Robot::named(name).unwrap();
         let limits = limited(&robot, fields);
-        let drawn = robot.random_configurations(16, &mut rng::stream(2, 0)).unwrap();
+        let mut rng = rng::stream(2, 0);
         let mut planned = 0;
-        for pair in drawn.chunks(2 * robot.dof()) {
-            let (start, end) = pair.split_at(robot.dof());
-            let tip = robot.tip(end);
+        for _ in 0..8 {
+            let mut drawn = || -> Vec<f64> { near.iter().map(|q| q + rng.uniform_in(-0.5, 0.5)).collect() };
+            let [start, end] = [drawn(), drawn()];
+            let tip = robot.tip(&end);
             let [approach, retreat] = [0.08, 0.05].map(line);
             let options = PointToPointOptions {
                 approach,
@@ -92,7 +94,7 @@ fn lines_are_straight_within_all_limits() {
                 ..Default::default()
             };
             let ends = [Endpoint::Target(Target::Pose(tip))];
-            let start = Endpoint::Configuration(start.to_vec());
+            let start = Endpoint::Configuration(start);
             let plan = match plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended) {
                 Ok(plan) => plan,
                 Err(error) => {
@@ -111,24 +113,24 @@ fn lines_are_straight_within_all_limits() {
             let again = plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended).unwrap();
             assert_eq!((again.trajectory, again.evaluations), (plan.trajectory, plan.evaluations));
         }
-        assert!(planned >= 4, "{name}: {planned} of 8");
+        assert!(planned >= 6, "{name}: {planned} of 8");
     }
 }
 
 #[test]
 fn a_line_keeps_what_the_task_asks_for() {
     let robot = panda();
-    let tip = robot.tip(&[0.9, 0.5, 0.2, -1.3, 0.1, 1.6, 0.3]);
-    let ends = [Endpoint::Target(Target::Pose(tip))];
     let start = Endpoint::Configuration(READY.to_vec());
     let mut tool = Pose::identity();
     tool.translation.vector.z = 0.1;
     for (kind, tool) in [(TaskKind::Pointing { axis: [0.0, 0.0, 1.0] }, None), (TaskKind::Pose, Some(tool))] {
         let task = Task::new(kind, None, None, tool).unwrap();
         let options = PointToPointOptions { task: Some(task), approach: line(0.1), ..options(&robot) };
+        let held = task.robot(&robot).unwrap().unwrap_or_else(|| robot.clone());
+        let tip = held.tip(&[0.9, 0.5, 0.2, -1.3, 0.1, 1.6, 0.3]);
+        let ends = [Endpoint::Target(Target::Pose(tip))];
         let plan = plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
-        let held = task.robot(&robot).unwrap().unwrap_or_else(|| robot.clone());
         let [.., back, end] = rests(&plan)[..] else { panic!("no line") };
         for (t, share) in [(back, -1.0), (end, 0.0)] {
             let reached = held.tip(&at(&plan, t)[0]);
@@ -165,8 +167,7 @@ fn contacts_are_allowed_on_the_line_alone() {
     let said = |line| plan_point_to_point(&robot, &start, &ends, &with(line), &mut Unattended).unwrap_err().to_string();
     let untouched = said(StraightLine { touch: vec![], ..approach.clone() });
     assert!(
-        untouched.starts_with("end cannot be reached: no straight line for approach=0.1200: 0.0")
-            && untouched.contains(" m before it link 'link_"),
+        untouched.starts_with("end cannot be reached: no straight line for approach=0.1200: link 'link_7' is 0.0"),
         "{untouched}"
     );
     let unknown = vec![LineContact { obstacle: None, links: vec!["hand".into()] }];

@@ -115,6 +115,18 @@ pub trait Arithmetic: Copy {
         F32x8(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
+    /// The larger of a and b, lane by lane; b if either is NaN.
+    #[inline(always)]
+    fn larger_x8(a: F32x8, b: F32x8) -> F32x8 {
+        Self::choose_below_x8(b, a, a, b)
+    }
+
+    /// The smaller of a and b, lane by lane; b if either is NaN.
+    #[inline(always)]
+    fn smaller_x8(a: F32x8, b: F32x8) -> F32x8 {
+        Self::choose_below_x8(a, b, a, b)
+    }
+
     /// The lanes in which a >= b does not hold (also for NaN), one bit each.
     #[inline(always)]
     fn not_at_least_x8(a: F32x8, b: F32x8) -> u32 {
@@ -244,6 +256,16 @@ impl Arithmetic for Fma {
             let equal = x86::_mm256_cmp_ps::<{ x86::_CMP_EQ_OQ }>(singles(a), singles(b));
             x86::_mm256_blendv_ps(singles(otherwise), singles(then), equal)
         })
+    }
+
+    #[inline(always)]
+    fn larger_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_max_ps(singles(a), singles(b)) })
+    }
+
+    #[inline(always)]
+    fn smaller_x8(a: F32x8, b: F32x8) -> F32x8 {
+        from_singles(unsafe { x86::_mm256_min_ps(singles(a), singles(b)) })
     }
 
     #[inline(always)]

@@ -242,12 +242,12 @@ impl<A: Arithmetic> Real for Eight<A> {
 
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
-        other.choose_below(self, self, other)
+        Self::of(A::larger_x8(self.0, other.0))
     }
 
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
-        self.choose_below(other, self, other)
+        Self::of(A::smaller_x8(self.0, other.0))
     }
 }
 

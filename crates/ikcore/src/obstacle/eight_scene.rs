@@ -14,6 +14,30 @@ use crate::shape::{EightCapsules, EightShape, below_square};
 /// for each of the operations that lead to it.
 const ROUNDING: f64 = 2e-6;
 
+/// Two groups with bodies that must not touch.
+#[derive(Debug)]
+struct GroupPair {
+    groups: [usize; 2],
+    /// How far joints move them towards each other.
+    levers: Levers,
+    /// Bodies of the first group, and the pairs of each.
+    rows: Vec<(usize, Vec<BodyPair>)>,
+}
+
+impl GroupPair {
+    fn new(groups: [usize; 2], levers: Levers, pairs: &[BodyPair]) -> Self {
+        let mut rows: Vec<(usize, Vec<BodyPair>)> = vec![];
+        for pair in pairs {
+            let BodyPair::Bodies { near, .. } = pair else { continue };
+            match rows.iter_mut().find(|(body, _)| body == near) {
+                Some((_, row)) => row.push(*pair),
+                None => rows.push((*near, vec![*pair])),
+            }
+        }
+        Self { groups, levers, rows }
+    }
+}
+
 /// A scene, prepared for eight configurations at once.
 #[derive(Debug)]
 pub(super) struct EightScene<'a> {
@@ -21,8 +45,7 @@ pub(super) struct EightScene<'a> {
     obstacles: Vec<EightShape>,
     /// The groups that a joint moves, and how far.
     groups: Vec<(usize, Levers)>,
-    /// Numbers of pairs of groups with bodies that must not touch, these groups, and how far joints move them towards each other.
-    pairs: Vec<(usize, [usize; 2], Levers)>,
+    pairs: Vec<GroupPair>,
     /// Largest coordinates and levers (m).
     extent: f64,
     placement: EightPlacement,
@@ -48,7 +71,8 @@ impl<'a> EightScene<'a> {
         let pairs = bodies.pairs_of_groups().enumerate().filter(|_| scene.others.itself);
         let pairs = pairs.map(|(number, groups)| {
             let [one, other] = groups.map(|group| bodies.groups.frame_of(group));
-            (number, groups, levers(&groups, robot.meeting_frame(one, other)))
+            let levers = levers(&groups, robot.meeting_frame(one, other));
+            GroupPair::new(groups, levers, bodies.pairs_between(number))
         });
         let pairs = pairs.collect();
         let levers = groups.iter().map(|(_, levers)| levers.sum()).fold(0.0, f64::max);
@@ -78,24 +102,20 @@ impl<'a> EightScene<'a> {
         self.groups.iter().map(|(_, levers)| levers.travel(reach)).fold(0.0, f64::max)
     }
 
-    /// Places everything at the configurations in the lanes of `value(joint)`.
+    /// Places everything at these shares of the straight line between two configurations.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&mut self, value: impl Fn(usize) -> F32x8) {
-        for (j, q) in self.qs.iter_mut().enumerate() {
-            *q = value(j);
+    pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], shares: [f32; 8]) {
+        let shares = Eight::<A>::of(F32x8(shares));
+        for (q, (from, to)) in self.qs.iter_mut().zip(from.iter().zip(to)) {
+            *q = shares.mul_add(Eight::splat(to - from), Eight::splat(*from)).stored();
         }
         self.scene.bodies.eight.place::<A>(&self.qs, &mut self.placement);
     }
 
-    /// Calls `visit` with all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
-    /// configurations, the lanes in which they may, and the placement; until it returns false. Returns what it returned last.
+    /// Shows `visitor` all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
+    /// configurations, and the lanes in which they may. False if it wants no more.
     #[inline(always)]
-    pub fn each_near<A: Arithmetic>(
-        &mut self,
-        margin: f64,
-        reach: &[f64],
-        mut visit: impl FnMut(&mut Near<'_, '_>, BodyPair, u32) -> bool,
-    ) -> bool {
+    pub fn each_near<A: Arithmetic>(&mut self, margin: f64, reach: &[f64], visitor: &mut impl Visitor) -> bool {
         let Self { scene, obstacles, groups, pairs, placement, .. } = self;
         let (eight, others) = (&scene.bodies.eight, &scene.others);
         let mut near = Near { scene, obstacles, placement };
@@ -111,24 +131,29 @@ impl<'a> EightScene<'a> {
                     if lanes == 0 || others.allowed.allow(body, obstacle) {
                         continue;
                     }
-                    if !visit(&mut near, BodyPair::Obstacle { body, obstacle }, lanes) {
+                    if !visitor.goes_on::<A>(&mut near, BodyPair::Obstacle { body, obstacle }, lanes) {
                         return false;
                     }
                 }
             }
         }
-        for (number, [one, other], levers) in pairs.iter() {
+        for GroupPair { groups: [one, other], levers, rows } in pairs.iter() {
             let enough = Eight::splat(margin + levers.travel(reach));
             let [a, b] = [eight.ball::<A>(*one, near.placement), eight.ball::<A>(*other, near.placement)];
             if near_each_other(&a, &b, enough) == 0 {
                 continue;
             }
-            for &pair in scene.bodies.pairs_between(*number) {
-                let BodyPair::Bodies { near: one, far: other, .. } = pair else { continue };
-                let (a, b) = (eight.body::<A>(one, near.placement), eight.body::<A>(other, near.placement));
-                let lanes = near_each_other(&a, &b, enough);
-                if lanes != 0 && !visit(&mut near, pair, lanes) {
-                    return false;
+            for (body, row) in rows {
+                let own = eight.body::<A>(*body, near.placement);
+                if near_each_other(&own, &b, enough) == 0 {
+                    continue;
+                }
+                for &pair in row {
+                    let BodyPair::Bodies { far, .. } = pair else { continue };
+                    let lanes = near_each_other(&own, &eight.body::<A>(far, near.placement), enough);
+                    if lanes != 0 && !visitor.goes_on::<A>(&mut near, pair, lanes) {
+                        return false;
+                    }
                 }
             }
         }
@@ -141,6 +166,12 @@ impl<'a> EightScene<'a> {
         let Self { scene, obstacles, placement, .. } = self;
         Near { scene, obstacles, placement }.meet::<A>(pair, margin)
     }
+}
+
+/// Is shown near pairs. No closure: that would be compiled without the instructions of the calling kernel.
+pub(super) trait Visitor {
+    /// Takes a pair and the lanes in which it may be near; returns whether it wants more.
+    fn goes_on<A: Arithmetic>(&mut self, near: &mut Near<'_, '_>, pair: BodyPair, lanes: u32) -> bool;
 }
 
 /// Everything at eight configurations.

@@ -4,31 +4,42 @@
 //! The first eight span the whole line. They list the pairs of bodies that may meet anywhere on it; the others test only these.
 
 use super::body_model::BodyPair;
-use super::eight_scene::EightScene;
+use super::eight_scene::{EightScene, Near, Visitor};
 use super::scene::Scene;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
-use crate::math::f32x8::F32x8;
 use crate::objective::Point;
 
-/// No body moves farther from one configuration to the next (m), by a bound that is two to three times what it moves.
-const SPACING: f64 = 0.05;
+/// At first no body moves farther from one configuration to the next (m), by a bound that is two to three times what it moves.
+const SPACING: f64 = 0.08;
+
+/// Bodies move no farther than this share of the bound.
+const SLACK: f64 = 0.6;
+
+/// Number of pairs that are tested first, since they met before.
+const LIKELY: usize = 24;
 
 /// Checks lines in a scene; owns its scratch.
 #[derive(Debug)]
 pub struct LineCheck<'a> {
     eight: EightScene<'a>,
     margin: f64,
+    spacing: f64,
     /// Pairs that may meet on the line.
     pending: Vec<BodyPair>,
-    /// The pair that met last.
-    likely: Option<BodyPair>,
+    /// The pairs that met last, the latest first.
+    likely: Vec<BodyPair>,
     examined: usize,
 }
 
 impl<'a> LineCheck<'a> {
     /// For lines that keep `margin` >= 0 (m) in `scene`, but for rounding.
     pub fn new(scene: &'a Scene<'a>, margin: f64) -> Self {
-        Self { eight: EightScene::new(scene), margin, pending: vec![], likely: None, examined: 0 }
+        Self { eight: EightScene::new(scene), margin, spacing: SPACING, pending: vec![], likely: vec![], examined: 0 }
+    }
+
+    /// Keeps more: `margin` >= 0 (m), at configurations that are half as far apart.
+    pub fn be_stricter(&mut self, margin: f64) {
+        (self.margin, self.spacing) = (margin, 0.5 * self.spacing);
     }
 
     /// Number of configurations examined.
@@ -44,9 +55,9 @@ impl<'a> LineCheck<'a> {
     #[inline(always)]
     fn examine<A: Arithmetic>(&mut self, from: &[f64], to: &[f64]) -> bool {
         let mut reach: Point = from.iter().zip(to).map(|(from, to)| (to - from).abs()).collect();
-        let blocks = (self.eight.farthest(&reach) / (8.0 * SPACING)).ceil().max(1.0) as usize;
-        // Every configuration of the line is this near to one of the first eight, which are in the middle of each eighth.
-        reach.iter_mut().for_each(|reach| *reach *= 1.0 / 16.0);
+        let blocks = (self.eight.farthest(&reach) / (8.0 * self.spacing)).ceil().max(1.0) as usize;
+        // Every configuration of the line is within half an eighth of one of the first eight.
+        reach.iter_mut().for_each(|reach| *reach *= SLACK / 16.0);
         let first = blocks / 2;
         self.place::<A>(from, to, first, blocks);
         if !self.first_block::<A>(&reach) {
@@ -60,7 +71,7 @@ impl<'a> LineCheck<'a> {
             for i in 0..self.pending.len() {
                 let pair = self.pending[i];
                 if self.eight.meet::<A>(pair, self.margin) {
-                    self.likely = Some(pair);
+                    note_hit(&mut self.likely, pair);
                     return false;
                 }
             }
@@ -72,11 +83,7 @@ impl<'a> LineCheck<'a> {
     #[inline(always)]
     fn place<A: Arithmetic>(&mut self, from: &[f64], to: &[f64], block: usize, blocks: usize) {
         let share = |lane: usize| (lane * blocks + block + 1) as f32 / (8 * blocks) as f32;
-        let shares: [f32; 8] = std::array::from_fn(share);
-        self.eight.place::<A>(|j| {
-            let (start, along) = (from[j] as f32, (to[j] - from[j]) as f32);
-            F32x8(std::array::from_fn(|lane| start + shares[lane] * along))
-        });
+        self.eight.place::<A>([from, to], std::array::from_fn(share));
         self.examined += 8;
     }
 
@@ -85,20 +92,40 @@ impl<'a> LineCheck<'a> {
     fn first_block<A: Arithmetic>(&mut self, reach: &[f64]) -> bool {
         let Self { eight, margin, pending, likely, .. } = self;
         pending.clear();
-        if let Some(pair) = *likely
-            && eight.meet::<A>(pair, *margin)
-        {
-            return false;
-        }
-        eight.each_near::<A>(*margin, reach, |near, pair, _| {
-            if near.meet::<A>(pair, *margin) {
-                *likely = Some(pair);
+        for i in 0..likely.len() {
+            if eight.meet::<A>(likely[i], *margin) {
+                likely[..=i].rotate_right(1);
                 return false;
             }
-            pending.push(pair);
-            true
-        })
+        }
+        eight.each_near::<A>(*margin, reach, &mut UntilHit { margin: *margin, pending, likely })
     }
+}
+
+/// Lists near pairs until one meets.
+struct UntilHit<'v> {
+    margin: f64,
+    pending: &'v mut Vec<BodyPair>,
+    likely: &'v mut Vec<BodyPair>,
+}
+
+impl Visitor for UntilHit<'_> {
+    #[inline(always)]
+    fn goes_on<A: Arithmetic>(&mut self, near: &mut Near<'_, '_>, pair: BodyPair, _lanes: u32) -> bool {
+        let meets = near.meet::<A>(pair, self.margin);
+        if meets {
+            note_hit(self.likely, pair);
+        } else {
+            self.pending.push(pair);
+        }
+        !meets
+    }
+}
+
+/// Remembers a pair that is not among the likely ones.
+fn note_hit(likely: &mut Vec<BodyPair>, pair: BodyPair) {
+    likely.truncate(LIKELY - 1);
+    likely.insert(0, pair);
 }
 
 by_instructions! {

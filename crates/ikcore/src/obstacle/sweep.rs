@@ -7,14 +7,13 @@
 use super::body_model::BodyPair;
 use super::chord_check::ChordCheck;
 use super::contact::Contact;
-use super::eight_scene::EightScene;
+use super::eight_scene::{EightScene, Near, Visitor};
 use super::joint_motion::JointMotion;
 use super::kept_distance::KeptDistance;
 use super::placement::Placement;
 use super::scene::Scene;
 use crate::math::MAX_DOF;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
-use crate::math::f32x8::F32x8;
 use crate::objective::Point;
 
 /// The point at which a motion comes too near to a body.
@@ -145,17 +144,11 @@ impl<'a> Sweep<'a> {
     /// Lists the pairs that may come nearer than `margin` in a part.
     #[inline(always)]
     fn find_near<A: Arithmetic>(&mut self, part: &Part, reach: &[f64], margin: f64) {
-        self.eight.place::<A>(|j| {
-            let (start, along) = (part.from[j], part.to[j] - part.from[j]);
-            F32x8(std::array::from_fn(|lane| (start + (lane as f64 + 0.5) / 8.0 * along) as f32))
-        });
+        let share = |lane: usize| (lane as f32 + 0.5) / 8.0;
+        self.eight.place::<A>([&part.from, &part.to], std::array::from_fn(share));
         self.examined += 8;
         let rounding = self.eight.rounding(part.largest());
-        let near = &mut self.near;
-        self.eight.each_near::<A>(margin + rounding, reach, |_, pair, lanes| {
-            near.push((pair, lanes));
-            true
-        });
+        self.eight.each_near::<A>(margin + rounding, reach, &mut All(&mut self.near));
     }
 
     /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a certified lower bound, at
@@ -216,6 +209,17 @@ impl<'a> Sweep<'a> {
         // The middle may be off the straight line too.
         let half = part.from.iter().zip(&part.to).map(|(from, to)| 0.5 * (to - from).abs());
         half.zip(&part.off_line).map(|(half, off_line)| half + 2.0 * off_line).collect()
+    }
+}
+
+/// Lists near pairs.
+struct All<'v>(&'v mut Vec<(BodyPair, u32)>);
+
+impl Visitor for All<'_> {
+    #[inline(always)]
+    fn goes_on<A: Arithmetic>(&mut self, _near: &mut Near<'_, '_>, pair: BodyPair, lanes: u32) -> bool {
+        self.0.push((pair, lanes));
+        true
     }
 }
 

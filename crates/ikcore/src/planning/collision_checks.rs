@@ -11,9 +11,8 @@ use crate::obstacle::{Contact, JointMotion, NearestContact, Scene};
 use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
-/// Distance added to the margin at end configurations and on straight lines (m), so that their timed motion can be
-/// certified too.
-pub(super) const RESERVE: f64 = 5e-5;
+/// Distance added to the margin at end configurations (m), so that motions to them can be certified.
+pub(super) const RESERVE: f64 = 2e-6;
 
 /// Whether `robot` can collide: with an obstacle, or with itself where that is asked for, or by default if its shape is
 /// known.

@@ -4,13 +4,15 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::collision_checks::{TimedMotion, nearest_at};
 use super::cost::Cost;
 use super::motion_limits::MotionLimits;
 use super::planar_arm::Orientations;
 use super::time_optimal::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::obstacle::{NearestContact, Surroundings};
+use crate::obstacle::{NearestContact, Surroundings, Sweep};
+use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
 use crate::trajectory::Trajectory;
@@ -27,9 +29,10 @@ pub struct Plan {
     pub cost: f64,
     /// Improvements of the search, in the order of evaluations.
     pub history: Vec<Improvement>,
-    /// Smallest distance (m) between robot and obstacles on the trajectory; `None` without obstacles.
+    /// A distance (m) that robot and obstacles keep at least on the trajectory, and links from each other; `None` without obstacles.
+    /// [`least_distance`](Self::least_distance) finds the smallest.
     pub clearance: Option<f64>,
-    /// The nearest two bodies, where on the trajectory they are nearest; `None` without obstacles.
+    /// The nearest two bodies, where on the trajectory they are nearest, if that is known.
     pub nearest: Option<NearestContact>,
     /// Why no clear motion was found along a path, if that is so.
     pub obstruction: Option<String>,
@@ -37,7 +40,7 @@ pub struct Plan {
     pub chosen_end: Option<usize>,
     /// How the motion got out of a contact at its start, if it had to.
     pub freed: Option<Freed>,
-    /// What a motion along a path keeps clear of, if anything.
+    /// What the whole motion keeps clear of, if anything.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
@@ -123,6 +126,23 @@ impl Plan {
         });
     }
 
+    /// The smallest distance (m) on the trajectory, and the nearest two bodies where it occurs; `None` without obstacles. `robot` is
+    /// the robot of the plan.
+    ///
+    /// # Errors
+    /// Those of [`Surroundings::clear_space`] for another robot.
+    pub fn least_distance(&self, robot: &Robot) -> Result<Option<(f64, Option<NearestContact>)>> {
+        let Some(clearance) = self.clearance else { return Ok(None) };
+        let known = Ok(Some((clearance, self.nearest.clone())));
+        let (None, Some(surroundings)) = (&self.nearest, &self.surroundings) else { return known };
+        let Some(space) = surroundings.clear_space(robot)? else { return known };
+        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
+        let Some(near) = Sweep::new(space.scene()).smallest(&motion, whole) else { return known };
+        let nearest = nearest_at(space.scene(), &self.trajectory, near.at)?;
+        // What is certified may be more than the search for the smallest distance proves.
+        Ok(Some((near.contact.distance.max(clearance), nearest)))
+    }
+
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         if let Some(obstruction) = &self.obstruction {
@@ -147,12 +167,15 @@ impl Plan {
         }
     }
 
-    /// Of a motion that is certified along its path.
+    /// Of a certified motion.
     fn clearance_in_words(&self) -> String {
         let Some(surroundings) = &self.surroundings else { return String::new() };
         let clear = match self.clearance {
             None => ", with nothing to touch".into(),
-            Some(clearance) => format!(", {} m clear of everything", number(clearance)),
+            Some(clearance) => {
+                let at_least = if self.nearest.is_none() { "at least " } else { "" };
+                format!(", {at_least}{} m clear of everything", number(clearance))
+            }
         };
         match surroundings.first_open_mesh() {
             None => clear,

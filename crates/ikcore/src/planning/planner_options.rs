@@ -103,6 +103,14 @@ pub struct PointToPointOptions {
     pub seed: u64,
 }
 
+impl PointToPointOptions {
+    /// What the motion keeps clear of.
+    pub(super) fn surroundings(&self) -> Surroundings {
+        let obstacles = Some(self.obstacles.clone());
+        Surroundings { obstacles, margin: self.margin, self_collision: self.self_collision }
+    }
+}
+
 /// Options of [`plan_along_path`](super::plan_along_path).
 #[derive(Debug, Clone, Default)]
 pub struct AlongPathOptions {

@@ -1,6 +1,6 @@
 //! Other limits for a finished plan: the same path, passed at other times.
 
-use super::collision_checks::{TimedMotion, nearest_at, too_near};
+use super::collision_checks::{TimedMotion, too_near};
 use super::motion_limits::MotionLimits;
 use super::plan::{Freed, Plan};
 use super::time_optimal::{TimingLimits, time_all};
@@ -69,9 +69,9 @@ impl Plan {
                 format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
             return Err(Error::Infeasible { problem });
         }
-        if smoothed && let Some(near) = sweep.smallest(&motion, whole) {
-            self.nearest = nearest_at(scene, &self.trajectory, near.at)?;
-            self.clearance = Some(near.contact.distance.max(margin));
+        if smoothed {
+            // Found when it is asked for.
+            (self.clearance, self.nearest) = (Some(margin), None);
         }
         Ok(())
     }

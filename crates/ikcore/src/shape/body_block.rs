@@ -182,8 +182,7 @@ fn solid_clear<A: Arithmetic, S: SolidLanes<Four<A>>>(
 ) -> F64x4 {
     let start = solid.to_local(start);
     if spheres {
-        let beyond = solid.beyond(start);
-        return beyond_square(beyond.dot(beyond), enough);
+        return beyond_square(solid.squared_distance(start), enough);
     }
     at_least(segment_bound(solid, start, solid.turned(along), enough), enough)
 }

@@ -160,10 +160,7 @@ fn near_ball<A: Arithmetic>(shape: &EightShape, body: &EightCapsules<A>, enough:
 fn near_solid<A: Arithmetic, S: SolidLanes<Eight<A>>>(solid: &S, body: &EightCapsules<A>, enough: Eight<A>) -> u32 {
     let start = solid.to_local(body.start);
     match body.along {
-        None => {
-            let beyond = solid.beyond(start);
-            below_square(beyond.dot(beyond), enough)
-        }
+        None => below_square(solid.squared_distance(start), enough),
         Some(along) => segment_bound(solid, start, solid.turned(along), enough).not_at_least(enough),
     }
 }

@@ -15,6 +15,13 @@ pub(super) trait SolidLanes<R: Real> {
 
     /// The vector from the body's nearest point to a point, both in its frame; zero inside.
     fn beyond(&self, point: Vec3<R>) -> Vec3<R>;
+
+    /// The squared distance (m^2) from a point in its frame; zero inside.
+    #[inline(always)]
+    fn squared_distance(&self, point: Vec3<R>) -> R {
+        let beyond = self.beyond(point);
+        beyond.dot(beyond)
+    }
 }
 
 /// Axes and origin, the same in all lanes.
@@ -80,6 +87,15 @@ impl<R: Real> SolidLanes<R> for BoxLanes<R> {
     fn beyond(&self, point: Vec3<R>) -> Vec3<R> {
         let h = self.half;
         Vec3 { x: excess(point.x, h.x), y: excess(point.y, h.y), z: excess(point.z, h.z) }
+    }
+
+    #[inline(always)]
+    fn squared_distance(&self, p: Vec3<R>) -> R {
+        let (h, zero) = (self.half, R::splat(0.0));
+        let x = (p.x.larger(-p.x) - h.x).larger(zero);
+        let y = (p.y.larger(-p.y) - h.y).larger(zero);
+        let z = (p.z.larger(-p.z) - h.z).larger(zero);
+        x * x + y * y + z * z
     }
 }
 

@@ -1,5 +1,8 @@
 //! `Plan`.
 
+use std::sync::OnceLock;
+
+use ikcore::obstacle::NearestContact;
 use ikcore::planning::Plan;
 use ikcore::stored::to_bytes;
 use numpy::PyArrayDyn;
@@ -46,6 +49,8 @@ pub struct PyPlan {
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
+    /// The smallest distance on the trajectory, once it was asked for.
+    least_distance: OnceLock<Option<(f64, Option<NearestContact>)>>,
 }
 
 traversed!(PyPlan: obstacles, robot, limits);
@@ -79,14 +84,15 @@ impl PyPlan {
     /// Smallest distance between robot and obstacles along the trajectory (m), without the contacts that an approach or a retreat
     /// allows; NaN without obstacles.
     #[getter]
-    fn clearance(&self) -> f64 {
-        self.core.clearance.unwrap_or(f64::NAN)
+    fn clearance(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.least_distance(py)?.as_ref().map_or(f64::NAN, |(clearance, _)| *clearance))
     }
 
     /// The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles.
     #[getter]
-    fn nearest(&self) -> Option<PyNearest> {
-        self.core.nearest.clone().map(PyNearest::from)
+    fn nearest(&self, py: Python<'_>) -> PyResult<Option<PyNearest>> {
+        let nearest = self.least_distance(py)?.as_ref().and_then(|(_, nearest)| nearest.clone());
+        Ok(nearest.map(PyNearest::from))
     }
 
     /// Largest distance of the tip from the path (m), at its points and between them; NaN for a point-to-point plan.
@@ -181,7 +187,18 @@ impl PyPlan {
             obstacles,
             robot: robot.clone().unbind(),
             limits,
+            least_distance: OnceLock::new(),
             core,
         })
+    }
+
+    /// Finds the smallest distance when it is first asked for.
+    fn least_distance(&self, py: Python<'_>) -> PyResult<&Option<(f64, Option<NearestContact>)>> {
+        if let Some(known) = self.least_distance.get() {
+            return Ok(known);
+        }
+        let arm = self.robot.get().core.clone();
+        let found = long_call(py, || self.core.least_distance(&arm))?;
+        Ok(self.least_distance.get_or_init(|| found))
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::objective::{Bounds, Linearization, Point};
 use crate::obstacle::ClearSpace;
-use crate::planning::collision_checks::RESERVE;
 use crate::planning::timed::{PathProblem, project};
 
 /// A step that moves a joint farther (rad, m) is halved before it is checked.
@@ -15,6 +14,9 @@ const HALVINGS: usize = 3;
 /// (rad, m).
 const STRAY: f64 = 0.3;
 const NEAR: f64 = 0.02;
+
+/// Distance that postures keep beyond the margin (m), since the arm is not certified between them.
+const RESERVE: f64 = 5e-5;
 
 /// Postures stay this far from their limits where a motion has left them, relative to the range.
 const INSET: f64 = 1e-3;

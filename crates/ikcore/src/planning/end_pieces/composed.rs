@@ -9,18 +9,23 @@ use super::piece_space::PieceSpace;
 use super::straight_line::StraightLine;
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
-use crate::planning::collision_checks::{RESERVE, configuration_at, refuse_collision};
+use crate::obstacle::{Sweep, kept_margin};
+use crate::planning::collision_checks::{RESERVE, TimedMotion, configuration_at, nearest_at, refuse_collision};
 use crate::planning::endpoint::{EndName, no_usable_end};
-use crate::planning::joined::{MeasuredMotion, joined};
+use crate::planning::joined::joined;
 use crate::planning::plan::Freed;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions, minmax};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stop, Stopwatch};
+use crate::trajectory::Trajectory;
 
 /// Straight lines to the ends that are planned to, shared between all ends.
 const LINES: usize = 24;
 /// At least so many for each end.
 const LINES_OF_EACH: usize = 2;
+
+/// Lines that take longer than the quickest by this factor are left out.
+const SLOWEST: f64 = 2.0;
 
 const METHOD: &str = "method=\"minmax\"";
 
@@ -37,43 +42,36 @@ pub(in crate::planning) fn composed(
     minmax::require_pace(robot, &limits)?;
     let space = PieceSpace::new(robot, options)?;
     let mut pieces = Pieces { robot, options, limits: &limits, space: space.as_ref(), evaluations: 0 };
-    let freed = if options.free_start { pieces.freed(start)? } else { None };
-    let freed_start = freed.as_ref().map(|(_, q)| Endpoint::Configuration(q.clone()));
-    let start = freed_start.as_ref().unwrap_or(start);
+    let way_out = if options.free_start { pieces.way_out(start)? } else { None };
+    let freed = way_out.as_ref().map(|(out, _)| end_of(out)).transpose()?;
+    let start = freed.as_ref().unwrap_or(start);
     let retreat = options.retreat.as_ref().map(|line| pieces.retreat(line, start, monitor)).transpose()?;
-    let retreated = retreat.as_ref().map(|(_, q)| Endpoint::Configuration(q.clone()));
+    let retreated = retreat.as_ref().map(end_of).transpose()?;
     let start = retreated.as_ref().unwrap_or(start);
-    let mut approaches = match &options.approach {
+    let approaches = match &options.approach {
         None => None,
         Some(line) => Some(pieces.approaches(line, start, ends, monitor)?),
     };
-    let meeting: Option<Vec<Endpoint>> = approaches
-        .as_ref()
-        .map(|each| each.iter().map(|(_, _, meets)| Endpoint::Configuration(meets.clone())).collect());
-    let evaluations = pieces.evaluations;
-    let rest = PointToPointOptions {
-        approach: None,
-        retreat: None,
-        free_start: false,
-        task: if meeting.is_some() { None } else { options.task },
-        stop: options.stop.map(|stop| {
-            let left = |time: Duration| time.saturating_sub(stopwatch.elapsed());
-            Stop { max_time: stop.max_time.map(left), ..stop }
-        }),
-        ..options.clone()
-    };
-    let mut plan = minmax::point_to_point(robot, start, meeting.as_deref().unwrap_or(ends), &rest, monitor)?;
-    plan.evaluations += evaluations;
+    let meeting = |(_, line): &(usize, Trajectory)| configuration_at(line, 0.0).map(Endpoint::Configuration);
+    let meetings = approaches.as_ref().map(|each| each.iter().map(meeting).collect::<Result<Vec<_>>>()).transpose()?;
+    let rest = pieces.rest(stopwatch);
+    let mut plan = minmax::point_to_point(robot, start, meetings.as_deref().unwrap_or(ends), &rest, monitor)?;
+    plan.evaluations += pieces.evaluations;
     let mut last = None;
-    if let (Some(approaches), Some(taken)) = (&mut approaches, plan.chosen_end) {
-        let (chosen, motion, _) = approaches.swap_remove(taken);
+    if let (Some(mut approaches), Some(taken)) = (approaches, plan.chosen_end) {
+        let (chosen, motion) = approaches.swap_remove(taken);
         plan.chosen_end = Some(chosen);
         last = Some(motion);
     }
-    let plan = joined(robot, retreat.map(|(motion, _)| motion), plan, last)?;
-    let freed_from = freed.as_ref().map(|(out, _)| out.freed);
-    let plan = joined(robot, freed.map(|(out, _)| out.motion), plan, None)?;
-    Ok(Plan { freed: freed_from, elapsed: stopwatch.elapsed(), ..plan })
+    pieces.note_clearance(&mut plan, way_out.as_ref(), [retreat.as_ref(), last.as_ref()])?;
+    let plan = joined(robot, retreat.as_ref(), plan, last.as_ref())?;
+    let plan = joined(robot, way_out.as_ref().map(|(out, _)| out), plan, None)?;
+    Ok(Plan { freed: way_out.map(|(_, freed)| freed), elapsed: stopwatch.elapsed(), ..plan })
+}
+
+/// Where a motion ends.
+fn end_of(motion: &Trajectory) -> Result<Endpoint> {
+    configuration_at(motion, motion.duration()).map(Endpoint::Configuration)
 }
 
 /// What all pieces share.
@@ -85,32 +83,79 @@ struct Pieces<'a> {
     evaluations: usize,
 }
 
-/// A way out of a contact.
-struct WayOut {
-    motion: MeasuredMotion,
-    freed: Freed,
-}
-
 impl<'a> Pieces<'a> {
-    /// The way out of a contact at the start, and where it ends; `None` if the start is clear or not given.
-    fn freed(&self, start: &Endpoint) -> Result<Option<(WayOut, Vec<f64>)>> {
+    /// The way out of a contact at the start; `None` if the start is clear or not given.
+    fn way_out(&self, start: &Endpoint) -> Result<Option<(Trajectory, Freed)>> {
         let Endpoint::Configuration(q) = start else { return Ok(None) };
         let Some(space) = self.space.map_or(Ok(None), PieceSpace::clear)? else { return Ok(None) };
         if space.holds(q) {
             return Ok(None);
         }
-        let margin = space.margin() - RESERVE;
         let clearance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
         let Some(out) = way_out(&space, self.limits, q)? else {
             // Names the two bodies.
-            refuse_collision("start", space.scene(), q, margin)?;
+            refuse_collision("start", space.scene(), q, space.margin() - RESERVE)?;
             return Ok(None);
         };
         let freed = Freed { clearance, until: out.duration() };
-        let last = configuration_at(&out, out.duration())?;
-        let lines = out.knots().len() - 1;
-        let motion = MeasuredMotion::new(out, Some(space.scene()), clearance - lines as f64 * LEEWAY)?;
-        Ok(Some((WayOut { motion, freed }, last)))
+        Ok(Some((out, freed)))
+    }
+
+    /// The options of the motion between the pieces.
+    fn rest(&self, stopwatch: Stopwatch) -> PointToPointOptions {
+        let left = |time: Duration| time.saturating_sub(stopwatch.elapsed());
+        PointToPointOptions {
+            approach: None,
+            retreat: None,
+            free_start: false,
+            // The lines end at configurations.
+            task: self.options.task.filter(|_| self.options.approach.is_none()),
+            stop: self.options.stop.map(|stop| Stop { max_time: stop.max_time.map(left), ..stop }),
+            ..self.options.clone()
+        }
+    }
+
+    /// Notes the smallest distance of a plan and its pieces. All keep the margin, but for contacts that are allowed on one of them
+    /// alone: then it is found at once, because the surroundings of the whole motion do not tell it.
+    fn note_clearance(
+        &self,
+        plan: &mut Plan,
+        way_out: Option<&(Trajectory, Freed)>,
+        lines: [Option<&Trajectory>; 2],
+    ) -> Result<()> {
+        let Some(space) = self.space else { return Ok(()) };
+        let margin = kept_margin(self.options.margin)?;
+        let asked = [&self.options.retreat, &self.options.approach];
+        let touches = asked.iter().any(|line| line.as_ref().is_some_and(|line| !line.touch.is_empty()));
+        if plan.surroundings.is_some() && plan.nearest.is_none() && way_out.is_none() && !touches {
+            plan.clearance = plan.clearance.map(|clearance| clearance.min(margin));
+            return Ok(());
+        }
+        let mut least = plan.least_distance(self.robot)?;
+        let mut offer = |motion: &Trajectory, space: &PieceSpace, kept: f64| -> Result<()> {
+            let Some(clear) = space.clear()? else { return Ok(()) };
+            let whole = [0.0, motion.duration()];
+            let Some(near) = Sweep::new(clear.scene()).smallest(&TimedMotion::new(motion), whole) else {
+                return Ok(());
+            };
+            let distance = near.contact.distance.max(kept);
+            if least.as_ref().is_none_or(|(least, _)| distance < *least) {
+                least = Some((distance, nearest_at(clear.scene(), motion, near.at)?));
+            }
+            Ok(())
+        };
+        for (line, motion) in asked.into_iter().zip(lines) {
+            if let (Some(line), Some(motion)) = (line, motion) {
+                offer(motion, &space.among(line.obstacles(&self.options.obstacles)), margin)?;
+            }
+        }
+        if let Some((out, freed)) = way_out {
+            let lines = out.knots().len() - 1;
+            offer(out, space, freed.clearance - lines as f64 * LEEWAY)?;
+        }
+        (plan.clearance, plan.nearest) = least.map_or((None, None), |(least, nearest)| (Some(least), nearest));
+        plan.surroundings = None;
+        Ok(())
     }
 
     /// What a straight line keeps clear of.
@@ -143,42 +188,41 @@ impl<'a> Pieces<'a> {
     }
 
     /// A straight line from the start, and where it ends.
-    fn retreat(
-        &mut self,
-        line: &StraightLine,
-        start: &Endpoint,
-        monitor: &mut dyn Monitor,
-    ) -> Result<(MeasuredMotion, Vec<f64>)> {
+    fn retreat(&mut self, line: &StraightLine, start: &Endpoint, monitor: &mut dyn Monitor) -> Result<Trajectory> {
         let along_line = self.along_line(line);
         let mut search = self.search(line, Side::Retreat, along_line.as_ref(), None)?;
-        let found = search.candidates(EndName::Start, start, 1, monitor)?;
+        let found = search.lines(EndName::Start, start, 1, monitor)?;
         let evaluations = search.evaluations;
         self.evaluations += evaluations;
-        let candidate = found.into_iter().next().ok_or(Error::Interrupted)?;
-        Ok((candidate.motion, candidate.meets))
+        found.into_iter().next().ok_or(Error::Interrupted)
     }
 
-    /// Straight lines to the ends: the index of the end, the motion, and where it begins.
+    /// Straight lines to the ends, each with the index of its end.
     fn approaches(
         &mut self,
         line: &StraightLine,
         start: &Endpoint,
         ends: &[Endpoint],
         monitor: &mut dyn Monitor,
-    ) -> Result<Vec<(usize, MeasuredMotion, Vec<f64>)>> {
+    ) -> Result<Vec<(usize, Trajectory)>> {
         let near = if let Endpoint::Configuration(q) = start { Some(q.clone()) } else { None };
         let along_line = self.along_line(line);
         let mut search = self.search(line, Side::Approach, along_line.as_ref(), near)?;
         let count = LINES.div_ceil(ends.len()).max(LINES_OF_EACH);
         let (mut found, mut problems) = (vec![], vec![]);
         for (i, end) in ends.iter().enumerate() {
-            match search.candidates(EndName::of(i, ends.len()), end, count, monitor) {
-                Ok(lines) => found.extend(lines.into_iter().map(|line| (i, line.motion, line.meets))),
+            match search.lines(EndName::of(i, ends.len()), end, count, monitor) {
+                Ok(lines) => found.extend(lines.into_iter().map(|line| (i, line))),
                 Err(problem) => problems.push(problem),
             }
         }
         let evaluations = search.evaluations;
         self.evaluations += evaluations;
-        if found.is_empty() { Err(no_usable_end(ends.len(), problems)) } else { Ok(found) }
+        if found.is_empty() {
+            return Err(no_usable_end(ends.len(), problems));
+        }
+        let quickest = found.iter().map(|(_, line)| line.duration()).fold(f64::INFINITY, f64::min);
+        found.retain(|(_, line)| line.duration() <= SLOWEST * quickest);
+        Ok(found)
     }
 }

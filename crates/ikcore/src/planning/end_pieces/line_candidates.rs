@@ -9,7 +9,6 @@ use crate::limits::Limits;
 use crate::obstacle::{ClearSpace, Contact, NearestContact, Sweep};
 use crate::planning::collision_checks::{RESERVE, TimedMotion, configuration_at};
 use crate::planning::endpoint::EndName;
-use crate::planning::joined::MeasuredMotion;
 use crate::planning::{Endpoint, PointToPointOptions};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
@@ -47,14 +46,6 @@ impl Side {
     }
 }
 
-/// A clear motion along the line, and where it meets the rest of the motion.
-pub(super) struct LineCandidate {
-    /// From the start away, or to the end.
-    pub motion: MeasuredMotion,
-    /// Its other end (n,).
-    pub meets: Vec<f64>,
-}
-
 /// Finds straight lines at the ends of a motion.
 pub(super) struct LineSearch<'a> {
     pub options: &'a PointToPointOptions,
@@ -73,17 +64,17 @@ pub(super) struct LineSearch<'a> {
 }
 
 impl LineSearch<'_> {
-    /// Up to `count` candidates of one end of the motion.
+    /// Up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
     ///
     /// # Errors
     /// [`Error::Unreachable`] if there is none: why the best one is none; errors of the surroundings.
-    pub(super) fn candidates(
+    pub(super) fn lines(
         &mut self,
         name: EndName,
         end: &Endpoint,
         count: usize,
         monitor: &mut dyn Monitor,
-    ) -> Result<Vec<LineCandidate>> {
+    ) -> Result<Vec<Trajectory>> {
         let mut found = vec![];
         let mut hindrance: Option<(f64, Hindrance)> = None;
         for q in self.configurations(name, end, monitor)? {
@@ -136,7 +127,7 @@ impl LineSearch<'_> {
     }
 
     /// The motion along the line from or to `q`, or how far it gets (m), and why no farther.
-    fn from(&self, q: &[f64]) -> Result<Result<LineCandidate, (f64, Hindrance)>> {
+    fn from(&self, q: &[f64]) -> Result<Result<Trajectory, (f64, Hindrance)>> {
         let (frame, place) = (self.tip.robot().tip(q), self.side.place());
         // Always found from the end of the motion away, and reversed for an approach.
         let away = match self.side {
@@ -153,7 +144,8 @@ impl LineSearch<'_> {
         let checked = space.map(|space| Sweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
-            let why = format!("{} m {place} {}", number(reached), in_words(&near.contact, margin));
+            let contact = in_words(&near.contact, margin);
+            let why = if reached > 0.0 { format!("{} m {place} {contact}", number(reached)) } else { contact };
             return Ok(Err((reached, why)));
         }
         let meets = configuration_at(&outward, outward.duration())?;
@@ -165,8 +157,7 @@ impl LineSearch<'_> {
             let why = format!("at its other end {contact}: give a longer line");
             return Ok(Err((reached, why)));
         }
-        let motion = if self.side == Side::Approach { reversed(&outward)? } else { outward };
-        Ok(Ok(LineCandidate { motion: MeasuredMotion::new(motion, space.map(ClearSpace::scene), margin)?, meets }))
+        Ok(Ok(if self.side == Side::Approach { reversed(&outward)? } else { outward }))
     }
 }
 

@@ -125,7 +125,9 @@ impl<'a> StraightTip<'a> {
             let longest = before.iter().zip(&here).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if !solved || longest > LONGEST {
                 let at = number(share * norm(&along));
-                return Err(format!("{at} m {place} the arm is at its joint limits or at the edge of its reach"));
+                return Err(format!(
+                    "{at} m {place} the arm is singular, at its joint limits or at the edge of its reach"
+                ));
             }
             rows.extend_from_slice(&here);
         }

@@ -134,6 +134,17 @@ impl JointPolyline {
         None
     }
 
+    /// Where the blend of inner point `i` begins and ends, if it takes this share of the shorter adjacent line.
+    pub(super) fn blend_ends(&self, limits: &MotionLimits, i: usize, share: f64) -> [Vec<f64>; 2] {
+        let lines = [[i, i - 1], [i, i + 1]].map(|[corner, other]| [&self.0[corner], &self.0[other]]);
+        let durations = [line_duration(&self.0[i - 1..=i], limits), line_duration(&self.0[i..=i + 1], limits)];
+        let blend = share * durations[0].min(durations[1]);
+        std::array::from_fn(|side| {
+            let ([corner, other], part) = (lines[side], 0.5 * blend / durations[side]);
+            corner.iter().zip(other).map(|(corner, other)| corner + part * (other - corner)).collect()
+        })
+    }
+
     /// Velocity of joint `j` on a line; zero if there is none.
     fn velocity(&self, line: Option<usize>, j: usize, durations: &[f64]) -> f64 {
         line.map_or(0.0, |line| (self.0[line + 1][j] - self.0[line][j]) / durations[line])

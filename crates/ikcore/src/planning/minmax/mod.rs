@@ -9,13 +9,15 @@
 //! | [`least_displacement`] | moves both ends along their self-motion to minimise the largest displacement |
 //! | [`straight_line_plan`] | the best of the straight lines between pairs |
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
-//! | [`among_obstacles`] | a path around obstacles, its timing certified |
+//! | [`among_obstacles`], [`path_search`] | the best certified motion around obstacles |
+//! | [`certified_timing`] | timings of a path that keep the margin for certain |
 //! | [`moving_start`] | motions that begin at a velocity |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
 //! | [`shortening`] | shortcuts |
 
 mod among_obstacles;
 mod branch_pairs;
+mod certified_timing;
 mod configuration_tree;
 mod end_pair;
 mod least_displacement;
@@ -23,6 +25,7 @@ mod line_timing;
 mod minmax_planner;
 mod moving_start;
 mod pair_search;
+mod path_search;
 mod rrt_connect;
 mod shortening;
 mod straight_line_plan;

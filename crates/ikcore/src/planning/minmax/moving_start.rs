@@ -8,7 +8,7 @@ use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{Sweep, kept_margin};
 use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, nearest_at, scene};
-use crate::planning::joined::{MeasuredMotion, joined};
+use crate::planning::joined::joined;
 use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -134,9 +134,9 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 
 /// A plan from rest, preceded by the stop that leads to it.
 pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
-    let collides = can_collide(robot, options);
-    let lines = if collides { as_lines(robot, options)? } else { None };
-    let scene = collides.then(|| scene(robot, lines.as_ref(), options)).transpose()?;
-    let stop = MeasuredMotion::new(stop, scene.as_ref(), f64::NEG_INFINITY)?;
-    joined(robot, Some(stop), rest, None)
+    // The stop keeps the margin.
+    let margin = kept_margin(options.margin)?;
+    let clearance = rest.clearance.map(|clearance| clearance.min(margin));
+    let plan = joined(robot, Some(&stop), rest, None)?;
+    Ok(Plan { clearance, nearest: None, ..plan })
 }

@@ -8,21 +8,18 @@ use crate::solver::Monitor;
 /// Whether a new stretch of points is shorter than an old one with the same ends.
 pub(super) type Shortens<'f> = &'f dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool;
 
-/// Number of random shortcuts tried.
-const SHORTCUTS: usize = 60;
-
 impl TreeSearch<'_> {
-    /// Shortens a path: leaves out unnecessary points, then tries random shortcuts. Takes only what `shortens` an old stretch of
+    /// Shortens a path: leaves out unnecessary points, then tries so many random shortcuts. Takes only what `shortens` an old stretch of
     /// points by a new one with the same ends.
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
-        shortens: Shortens<'_>,
+        (shortens, shortcuts): (Shortens<'_>, usize),
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> JointPolyline {
         let mut points = self.with_longest_lines(path.0, shortens);
-        for _ in 0..SHORTCUTS {
+        for _ in 0..shortcuts {
             if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
                 break;
             }

@@ -1,0 +1,231 @@
+//! The search for the best certified motion between pairs of clear configurations.
+
+use super::certified_timing::{TimedPath, Timing};
+use super::end_pair::EndPair;
+use super::line_timing::JointPolyline;
+use super::pair_search::PairSearch;
+use super::rrt_connect::{Connection, TreeSearch};
+use super::straight_line_plan::straight;
+use crate::error::Result;
+use crate::objective::Point;
+use crate::obstacle::Sweep;
+use crate::planning::cost::tip_travel_along;
+use crate::planning::{Cost, Improvement};
+use crate::rng;
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+
+/// Number of paths of which the cheapest is taken, the same number from each start ...
+const PATHS: usize = 3;
+/// ... as long as those after the first one cost no more configurations.
+const MORE: usize = 2000;
+/// Number of shortcuts tried on the first paths, and on later ones.
+const SHORTCUTS: usize = 20;
+const MORE_SHORTCUTS: usize = 60;
+/// How often all paths are searched again, with more distance, because none could be certified.
+const ROUNDS: u32 = 4;
+
+/// Distance that paths keep beyond the margin (m), since they are examined at closely spaced configurations alone, and corners are cut.
+pub(super) const RESERVE: f64 = 1e-3;
+
+/// The certified motion, or why there is none.
+pub(super) enum Certified {
+    /// The best motion, and the improvements that led to it.
+    Motion(Trajectory, Vec<Improvement>),
+    /// How the search ended.
+    Nothing(Status),
+}
+
+/// The search.
+pub(super) struct PathSearch<'s, 'a> {
+    pub trees: &'s mut TreeSearch<'a>,
+    pub sweep: &'s mut Sweep<'a>,
+    pub search: &'s PairSearch<'a>,
+    pub objective: Cost,
+    /// Distance to keep (m).
+    pub margin: f64,
+    /// The most that paths can keep beyond it (m), since the ends keep no more.
+    pub most: f64,
+    /// Whether to go on until the budget is spent.
+    pub improves: bool,
+}
+
+/// Whether a search was stopped by the caller.
+#[derive(PartialEq, Eq)]
+enum Ended {
+    Interrupted,
+    Done,
+}
+
+/// The best certified motion so far.
+#[derive(Default)]
+struct Best {
+    found: Option<(f64, Trajectory)>,
+    history: Vec<Improvement>,
+}
+
+impl Best {
+    fn is_at_most(&self, cost: f64) -> bool {
+        self.found.as_ref().is_some_and(|(least, _)| *least <= cost)
+    }
+
+    fn certified(self, status: Status) -> Certified {
+        self.found.map_or(Certified::Nothing(status), |(_, motion)| Certified::Motion(motion, self.history))
+    }
+}
+
+impl<'a> PathSearch<'_, 'a> {
+    /// Returns the cheapest motion found: straight between the first pair of `open`, if that is clear; else the cheapest of the first
+    /// clear straight motion and of several paths around obstacles from `starts`. `open` is sorted by the cost of the straight
+    /// motions.
+    pub(super) fn best(mut self, open: &[EndPair], starts: &[Point], monitor: &mut dyn Monitor) -> Result<Certified> {
+        let mut best = Best::default();
+        if self.first_straight(open, &mut best)? == Some(0) {
+            return Ok(best.certified(Status::Solved));
+        }
+        let mut stream = 0;
+        for round in 0..ROUNDS {
+            let (candidates, ended) = self.candidates(open, starts, &mut stream, monitor)?;
+            let any = !candidates.is_empty();
+            self.keep_first(candidates, &mut best)?;
+            let status = match ended {
+                Ended::Interrupted => Some(Status::Interrupted),
+                Ended::Done if best.found.is_some() => Some(Status::Solved),
+                Ended::Done if !any => Some(Status::BudgetSpent),
+                Ended::Done => None,
+            };
+            if let Some(status) = status {
+                if status == Status::Solved && self.improves {
+                    self.improve(open, starts, &mut best, stream, monitor)?;
+                }
+                return Ok(best.certified(status));
+            }
+            let more = RESERVE * f64::from(2_u32.pow(round + 1));
+            self.trees.check.be_stricter(self.margin + more.min(self.most));
+        }
+        Ok(best.certified(Status::Stalled))
+    }
+
+    /// Keeps the first straight motion that is clear; returns the number of its pair.
+    fn first_straight(&mut self, open: &[EndPair], best: &mut Best) -> Result<Option<usize>> {
+        for (i, pair) in open.iter().enumerate() {
+            if self.search.deadline.is_over() {
+                break;
+            }
+            if self.trees.check.is_clear(&pair.start, &pair.end) {
+                let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
+                let motion = straight(pair, self.search.limits)?;
+                if let Some(motion) = self.timing().certified(TimedPath::straight(line, motion))? {
+                    self.keep(motion, best);
+                    return Ok(Some(i));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Several timed paths, the cheapest first. `stream` counts the streams of random numbers.
+    fn candidates(
+        &mut self,
+        open: &[EndPair],
+        starts: &[Point],
+        stream: &mut u64,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Vec<(f64, TimedPath)>, Ended)> {
+        let whole = self.trees.budget;
+        let mut candidates = vec![];
+        let mut ended = Ended::Done;
+        for start in (0..PATHS.div_ceil(starts.len())).flat_map(|_| starts) {
+            *stream += 1;
+            match self.path(open, start, (*stream, SHORTCUTS), monitor)? {
+                Connection::Found(path) => {
+                    if candidates.is_empty() {
+                        self.trees.budget = whole.min(self.trees.check.examined() + MORE);
+                    }
+                    let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
+                    candidates.push((self.objective.of(self.search.robot, &timed.motion), timed));
+                }
+                Connection::NotFound => break,
+                Connection::Interrupted => {
+                    ended = Ended::Interrupted;
+                    break;
+                }
+            }
+        }
+        self.trees.budget = whole;
+        candidates.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Ok((candidates, ended))
+    }
+
+    /// A short path from `start` to the end of any pair that shares it.
+    fn path(
+        &mut self,
+        open: &[EndPair],
+        start: &Point,
+        (stream, shortcuts): (u64, usize),
+        monitor: &mut dyn Monitor,
+    ) -> Result<Connection> {
+        // Any of the ends will do. Their order is that of no objective.
+        let mut sharing: Vec<&EndPair> = open.iter().filter(|pair| pair.start == *start).collect();
+        sharing.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        let ends: Vec<Vec<f64>> = sharing.into_iter().map(|pair| pair.end.to_vec()).collect();
+        let mut rng = rng::stream(self.search.seed, stream);
+        let path = match self.trees.connect(start, &ends, &mut rng, monitor) {
+            Connection::Found(path) => path,
+            other => return Ok(other),
+        };
+        let robot = self.search.robot;
+        // A line is the shortest way of the joints, and the quickest, but not of the tip.
+        let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| {
+            self.objective != Cost::TipTravel || tip_travel_along(robot, new) <= tip_travel_along(robot, old)
+        };
+        Ok(Connection::Found(self.trees.shorten(path, (&is_shorter, shortcuts), &mut rng, monitor)))
+    }
+
+    /// Keeps the first of `candidates` that can be certified, if it is better than the best; they are sorted by cost.
+    fn keep_first(&mut self, candidates: Vec<(f64, TimedPath)>, best: &mut Best) -> Result<()> {
+        for (cost, timed) in candidates {
+            if best.is_at_most(cost) {
+                break;
+            }
+            if let Some(motion) = self.timing().certified(timed)? {
+                self.keep(motion, best);
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, motion: Trajectory, best: &mut Best) {
+        let cost = self.objective.of(self.search.robot, &motion);
+        if !best.is_at_most(cost) {
+            best.history.push(Improvement { evaluations: self.search.evaluations + self.trees.check.examined(), cost });
+            best.found = Some((cost, motion));
+        }
+    }
+
+    /// Searches on until the budget is spent.
+    fn improve(
+        &mut self,
+        open: &[EndPair],
+        starts: &[Point],
+        best: &mut Best,
+        mut stream: u64,
+        monitor: &mut dyn Monitor,
+    ) -> Result<()> {
+        for start in starts.iter().cycle() {
+            stream += 1;
+            let Connection::Found(path) = self.path(open, start, (stream, MORE_SHORTCUTS), monitor)? else { break };
+            let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
+            let cost = self.objective.of(self.search.robot, &timed.motion);
+            self.keep_first(vec![(cost, timed)], best)?;
+            monitor.progress(self.trees.check.examined(), self.trees.budget);
+        }
+        Ok(())
+    }
+
+    fn timing(&mut self) -> Timing<'_, 'a> {
+        let Self { search, sweep, margin, .. } = self;
+        Timing { limits: search.limits, sweep, margin: *margin, deadline: search.deadline }
+    }
+}
