@@ -13,6 +13,7 @@ import beetle_ik as bik
 
 LIMITS = bik.Limits(acceleration=5.0)
 READY = np.array([0.0, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8])
+TURN = np.eye(7)[0]
 # Two fingers on each side of the tip, which grip a part.
 FINGERS = [("link_7", (0.0, y, 0.15), (0.0, y, 0.31), 0.01) for y in (-0.03, 0.03)]
 PANDA = bik.Robot.named("panda")
@@ -90,7 +91,7 @@ def test_a_retreat_lifts_the_part() -> None:
 
 def test_a_thing_in_the_hand_is_kept_clear() -> None:
     shelf = [bik.obstacles.Box((0.45, 0.0, 0.75), (0.5, 0.8, 0.02)), TABLE]
-    start, end = READY + [-0.7, 0, 0, 0, 0, 0, 0], READY + [0.7, 0, 0, 0, 0, 0, 0]
+    start, end = READY - 0.7 * TURN, READY + 0.7 * TURN
     bare = to(PANDA.with_capsules(radius=0.05), start_q=start, end_q=end, obstacles=shelf)
     assert bare.success
     rod = bik.obstacles.Capsule((0.0, 0.0, 0.05), (0.0, 0.0, 0.3), 0.02)
@@ -109,7 +110,7 @@ BARE = PANDA.with_capsules(radius=0.05)
 
 
 def test_a_start_in_contact_moves_out_first() -> None:
-    end = READY + [0.9, 0, 0, 0, 0, 0, 0]
+    end = READY + 0.9 * TURN
     begun = bik.obstacles.clearance(BARE, READY, [DEEP])
     assert begun < 0.0
     with pytest.raises(bik.InvalidInputError, match=r"^start: link '.*; free_start=True moves out first$"):
@@ -158,7 +159,7 @@ def test_lines_come_back(line: bik.StraightLine, again: Callable[[bik.StraightLi
     other = again(line)
     assert other == line
     assert hash(other) == hash(line)
-    assert eval(repr(line), {"StraightLine": bik.StraightLine}) == line  # noqa: S307
+    assert eval(repr(line), {"StraightLine": bik.StraightLine}) == line
 
 
 TOUCH = "touch must be a list of link names, or a dict from the index of an obstacle to such a list, got "

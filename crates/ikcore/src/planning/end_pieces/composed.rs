@@ -87,7 +87,8 @@ impl<'a> Pieces<'a> {
     /// The way out of a contact at the start; `None` if the start is clear or not given.
     fn way_out(&self, start: &Endpoint) -> Result<Option<(Trajectory, Freed)>> {
         let Endpoint::Configuration(q) = start else { return Ok(None) };
-        let Some(space) = self.space.map_or(Ok(None), PieceSpace::clear)? else { return Ok(None) };
+        let around = self.around_start();
+        let Some(space) = around.as_ref().map_or(Ok(None), PieceSpace::clear)? else { return Ok(None) };
         if space.holds(q) {
             return Ok(None);
         }
@@ -99,6 +100,14 @@ impl<'a> Pieces<'a> {
         };
         let freed = Freed { clearance, until: out.duration() };
         Ok(Some((out, freed)))
+    }
+
+    /// What the way out of a contact keeps clear of: contacts that the retreat allows are none.
+    fn around_start(&self) -> Option<PieceSpace> {
+        match &self.options.retreat {
+            Some(line) => self.along_line(line),
+            None => self.space.cloned(),
+        }
     }
 
     /// The options of the motion between the pieces.
@@ -149,9 +158,9 @@ impl<'a> Pieces<'a> {
                 offer(motion, &space.among(line.obstacles(&self.options.obstacles)), margin)?;
             }
         }
-        if let Some((out, freed)) = way_out {
+        if let (Some((out, freed)), Some(space)) = (way_out, self.around_start()) {
             let lines = out.knots().len() - 1;
-            offer(out, space, freed.clearance - lines as f64 * LEEWAY)?;
+            offer(out, &space, freed.clearance - lines as f64 * LEEWAY)?;
         }
         (plan.clearance, plan.nearest) = least.map_or((None, None), |(least, nearest)| (Some(least), nearest));
         plan.surroundings = None;

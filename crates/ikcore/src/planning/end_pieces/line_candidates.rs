@@ -90,7 +90,7 @@ impl LineSearch<'_> {
             }
         }
         if found.is_empty() {
-            let why = hindrance.map_or_else(|| "interrupted".into(), |(_, why)| why);
+            let Some((_, why)) = hindrance else { return Err(Error::Interrupted) };
             let (what, argument, distance) = (name.of_target(), self.side.argument(), number(self.line.distance));
             let problem = format!("no straight line for {argument}={distance}: {why}");
             return Err(Error::Unreachable { what, problem });

@@ -8,6 +8,7 @@ use crate::robot::Robot;
 use crate::shape::Shape;
 
 /// A robot and its surroundings, as the planner of the motion in between sees them.
+#[derive(Clone)]
 pub(super) struct PieceSpace {
     /// The robot, with lines for links if it has no bodies.
     pub robot: Robot,
