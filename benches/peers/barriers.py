@@ -225,6 +225,7 @@ class Placo(Barriers):
         self._solver.mask_fbase(True)
         self._solver.enable_joint_limits(True)
         apart = self._solver.add_avoid_self_collisions_constraint()
+        apart.configure("apart", "hard")  # soft by default
         apart.self_collisions_margin, apart.self_collisions_trigger = KEPT, SEEN
         self._frame = self._solver.add_frame_task(ARMS[arm.name], np.eye(4))
         self._frame.configure("pose", "soft", 1.0, 1.0)

@@ -37,9 +37,9 @@ class MotionBenchArm:
         self.robot = robot.with_collision_pairs(pairs)
 
     def problems(self) -> list[dict[str, Any]]:
-        """The problems whose goal is valid."""
+        """The problems whose goal is valid, each with the name of its scene."""
         scenes = json.loads((self.data / f"{self.name}.json").read_text(encoding="utf-8"))["scenes"]
-        return [problem for each in scenes.values() for problem in each if problem["goal_valid"]]
+        return [problem | {"scene": name} for name, each in scenes.items() for problem in each if problem["goal_valid"]]
 
     def scene(self, problem: dict[str, Any]) -> bik.Scene:
         """The obstacles of a problem."""

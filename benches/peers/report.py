@@ -139,7 +139,11 @@ def tracking_lines(followed: list[Followed]) -> list[list[str]]:
 
 
 def plain_section(title: str, columns: list[str], lines: list[list[str]]) -> str:
-    return "\n".join([f"## {title}", "", *_header(columns), *map(_line, lines), ""])
+    return "\n".join([f"## {title}", "", *plain_table(columns, lines), ""])
+
+
+def plain_table(columns: list[str], lines: list[list[str]]) -> list[str]:
+    return [*_header(columns), *map(_line, lines)]
 
 
 def _header(columns: list[str]) -> list[str]:

@@ -29,7 +29,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
     ("motion", &["limits", "trajectory", "objective"]),
-    ("obstacle", &["robot", "objective", "shape"]),
+    ("obstacle", &["kinematics", "robot", "objective", "shape"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
     ("solver", &["objective"]),

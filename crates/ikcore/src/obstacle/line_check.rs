@@ -133,3 +133,95 @@ by_instructions! {
         check.examine::<A>(from, to)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::arithmetic::NoFma;
+    use crate::rng::{self, LazyRng};
+    use crate::robot::Robot;
+    use crate::shape::Shape;
+
+    /// One shape of each kind, near the arm but for its first links.
+    fn shapes(rng: &mut LazyRng) -> Vec<Shape> {
+        let mut place = || -> [f64; 3] {
+            let at = [rng.uniform_in(0.4, 0.9), rng.uniform_in(-0.6, 0.6), rng.uniform_in(0.1, 1.0)];
+            if rng.uniform() < 0.5 { at } else { at.map(|x| -x) }
+        };
+        let cloud: Vec<[f64; 3]> = (0..40).map(|_| place()).collect();
+        let turn = Some(*nalgebra::Rotation3::new(nalgebra::Vector3::new(0.3, -0.8, 0.5)).matrix());
+        let shapes = [
+            Shape::sphere(place(), 0.1),
+            Shape::capsule(place(), place(), 0.05),
+            Shape::cuboid(place(), [0.1, 0.3, 0.2], turn),
+            Shape::cylinder(place(), place(), 0.06, 0.4),
+            Shape::half_space([0.0, 0.0, 1.0], -0.1),
+            Shape::ellipsoid(place(), [0.1, 0.2, 0.15], turn),
+            Shape::point_cloud(cloud, 0.01),
+        ];
+        shapes.into_iter().map(Result::unwrap).collect()
+    }
+
+    fn robots() -> Vec<Robot> {
+        let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+        let tool = Shape::cuboid([0.0, 0.0, 0.1], [0.1, 0.04, 0.2], None).unwrap();
+        let holding = panda.with_attached("panda_link8", &tool, &[], None).unwrap();
+        vec![panda, holding]
+    }
+
+    #[test]
+    fn one_configuration_is_clear_when_its_distances_say_so() {
+        let mut rng = rng::stream(1, 0);
+        let (mut clear, mut near) = (0, 0);
+        for robot in robots() {
+            for _ in 0..40 {
+                let obstacles = shapes(&mut rng);
+                let scene = Scene::new(&robot, &obstacles).unwrap();
+                let margin = rng.uniform_in(0.0, 0.03);
+                let mut check = LineCheck::new(&scene, margin);
+                for _ in 0..40 {
+                    let q = robot.random_configurations(1, &mut rng).unwrap();
+                    let distance = scene.clearance(&q).unwrap();
+                    let verdict = check.is_clear(&q, &q);
+                    assert!(
+                        (distance - margin).abs() < 1e-4 || verdict == (distance > margin),
+                        "{distance} of {margin}"
+                    );
+                    *(if verdict { &mut clear } else { &mut near }) += 1;
+                }
+            }
+        }
+        assert!(clear > 300 && near > 300, "{clear} {near}");
+    }
+
+    #[test]
+    fn lines_are_refused_for_what_is_near_them_on_any_machine() {
+        let mut rng = rng::stream(2, 0);
+        let (mut clear, mut refused) = (0, 0);
+        for robot in robots() {
+            for _ in 0..30 {
+                let obstacles = shapes(&mut rng);
+                let scene = Scene::new(&robot, &obstacles).unwrap();
+                let mut check = LineCheck::new(&scene, 0.01);
+                for _ in 0..20 {
+                    let from = robot.random_configurations(1, &mut rng).unwrap();
+                    if !scene.is_clear(&from, 0.01) {
+                        continue;
+                    }
+                    let to: Vec<f64> = from.iter().map(|q| q + rng.uniform_in(-0.6, 0.6)).collect();
+                    let verdict = check.is_clear(&from, &to);
+                    let at = |i: usize| -> Vec<f64> {
+                        from.iter().zip(&to).map(|(from, to)| from + i as f64 / 300.0 * (to - from)).collect()
+                    };
+                    let least = (0..=300).map(|i| scene.clearance(&at(i)).unwrap()).fold(f64::INFINITY, f64::min);
+                    // Between two of its configurations a body may come nearer by half of what it moves.
+                    let missed = if verdict { 0.01 - 0.5 * SPACING } else { f64::NEG_INFINITY };
+                    assert!(least > missed && (verdict || least < 0.0101), "{verdict}: {least}");
+                    assert_eq!(check.examine::<NoFma>(&from, &to), verdict, "{least}");
+                    *(if verdict { &mut clear } else { &mut refused }) += 1;
+                }
+            }
+        }
+        assert!(clear > 100 && refused > 100, "{clear} {refused}");
+    }
+}

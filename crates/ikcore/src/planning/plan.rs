@@ -34,7 +34,7 @@ pub struct Plan {
     pub clearance: Option<f64>,
     /// The nearest two bodies, where on the trajectory they are nearest, if that is known.
     pub nearest: Option<NearestContact>,
-    /// Why no clear motion was found along a path, if that is so.
+    /// Why no clear motion was found, if that is so.
     pub obstruction: Option<String>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
@@ -93,8 +93,8 @@ pub struct Improvement {
     pub cost: f64,
 }
 
-/// What to try where the path leads into collision.
-const ADVICE_AMONG_OBSTACLES: &str =
+/// What to try where a path leads into collision.
+const ADVICE_ALONG_PATH: &str =
     "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
 
 /// Number of violations that a message lists.
@@ -146,7 +146,8 @@ impl Plan {
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         if let Some(obstruction) = &self.obstruction {
-            return format!("no clear plan for {obstruction}; {ADVICE_AMONG_OBSTACLES}");
+            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH } else { self.advice() };
+            return format!("no clear plan for {obstruction}; {advice}");
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {

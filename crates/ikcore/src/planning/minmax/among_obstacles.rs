@@ -2,6 +2,7 @@
 //! certified timing of that path.
 
 use super::end_pair::EndPair;
+use super::no_way;
 use super::pair_search::PairSearch;
 use super::path_search::{self, Certified, PathSearch};
 use super::rrt_connect::TreeSearch;
@@ -79,12 +80,15 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             let trajectory = straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?;
-            with_least_distance(
-                Plan { status, ..bare(search, trajectory, options.objective) },
-                &mut sweep,
-                &scene,
-                margin,
-            )?
+            let plan = Plan { status, ..bare(search, trajectory, options.objective) };
+            let plan = with_least_distance(plan, &mut sweep, &scene, margin)?;
+            let obstruction = if open.is_empty() {
+                no_way::blocked_ends(&scene, &pairs, margin + RESERVE)
+            } else {
+                let straight = plan.nearest.as_ref().map(|nearest| &nearest.contact);
+                no_way::gap(trees.gap, trees.check.examined(), straight, margin)
+            };
+            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), ..plan }
         }
     };
     if lines.is_none() {

@@ -11,6 +11,7 @@
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`], [`path_search`] | the best certified motion around obstacles |
 //! | [`certified_timing`] | timings of a path that keep the margin for certain |
+//! | [`no_way`] | why there is no clear motion |
 //! | [`moving_start`] | motions that begin at a velocity |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
 //! | [`shortening`] | shortcuts |
@@ -24,6 +25,7 @@ mod least_displacement;
 mod line_timing;
 mod minmax_planner;
 mod moving_start;
+mod no_way;
 mod pair_search;
 mod path_search;
 mod rrt_connect;

@@ -35,6 +35,8 @@ pub(super) struct TreeSearch<'a> {
     pub budget: usize,
     /// Time that the search may take.
     pub deadline: Deadline,
+    /// The least that ever lay between the trees (rad, m).
+    pub gap: f64,
     /// Nodes compared with a goal to find the nearest.
     compared: usize,
 }
@@ -49,7 +51,7 @@ impl<'a> TreeSearch<'a> {
     ) -> Self {
         let joints = scene.robot().joints().iter().enumerate();
         let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
-        Self { check: LineCheck::new(scene, margin), ranges, budget, deadline, compared: 0 }
+        Self { check: LineCheck::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
     }
 
     /// Whether a budget is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on them.
@@ -117,12 +119,15 @@ impl<'a> TreeSearch<'a> {
         while distance > STRIDE {
             step_towards(tree.node(at), goal, STRIDE / distance, &mut next);
             if self.is_spent() || !self.check.is_clear(tree.node(at), &next) {
+                self.gap = self.gap.min(distance);
                 return None;
             }
             at = tree.add(&next, Some(at));
             distance -= STRIDE;
         }
-        self.check.is_clear(tree.node(at), goal).then_some(at)
+        let met = self.check.is_clear(tree.node(at), goal);
+        self.gap = self.gap.min(if met { 0.0 } else { distance });
+        met.then_some(at)
     }
 }
 
