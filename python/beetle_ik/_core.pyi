@@ -2709,6 +2709,9 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     start_qd: ArrayLike | None = None,
+    approach: float | StraightLine | None = None,
+    retreat: float | StraightLine | None = None,
+    free_start: bool = False,
     task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
@@ -2729,6 +2732,11 @@ def plan_point_to_point(
         start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+        approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`. The
+            orientation is constant on it, and the tip stays within 0.1 mm of it. It begins and ends at rest.
+        retreat: the same after the start, against the z axis.
+        free_start: whether a start that is nearer to something than the margin moves out first, `Plan.freed`, by a piece on which
+            no two bodies come nearer than they are at the start.
         task: which part of the poses counts, one of `tasks`, as for `solve`; None: all of it.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
@@ -2831,6 +2839,41 @@ def time_optimal(
         UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
     """
 
+@final
+class StraightLine:
+    """A straight line of the tip with constant orientation at an end of a motion, as `approach=` or `retreat=` of
+    `plan_point_to_point`.
+
+    Args:
+        distance: length (m).
+        direction: (3,), direction of the motion, of any nonzero length; None: along the tip's z axis towards the end, against
+            it from the start.
+        frame: frame of the direction, "tip" or "base".
+        touch: contacts that are allowed on this line alone, such as those of a hand that closes on a part: names of links that may
+            touch any obstacle, or a dict from the index of an obstacle to the names of links that may touch it.
+    """
+
+    def __new__(
+        cls,
+        distance: float,
+        *,
+        direction: ArrayLike | None = None,
+        frame: Literal["tip", "base"] = "tip",
+        touch: Iterable[str] | Mapping[int, Iterable[str]] | None = None,
+    ) -> StraightLine: ...
+    @property
+    def distance(self) -> float:
+        """Length (m)."""
+    @property
+    def direction(self) -> list[float] | None:
+        """Direction of the motion (3,); None: along the tip's z axis."""
+    @property
+    def frame(self) -> Literal["tip", "base"]:
+        """Frame of the direction, "tip" or "base"."""
+    @property
+    def touch(self) -> list[str] | dict[int, list[str]]:
+        """Contacts that are allowed on this line alone: names of links, or a dict from the index of an obstacle to names of links."""
+
 class BatchPlan:
     """Plans in the order of the problems. `b[i]` is a `Plan`, or None if problem i has none; `b[10:20]` and `b[b.success]` are
     batches.
@@ -2872,6 +2915,9 @@ def plan_batch(
     *,
     threads: int | None = None,
     progress: _Progress = None,
+    approach: float | StraightLine | None = None,
+    retreat: float | StraightLine | None = None,
+    free_start: bool = False,
     task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
@@ -2892,8 +2938,8 @@ def plan_batch(
             problem's own arguments override those given for all.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         progress: True shows a progress bar; a callable is called with (done, total).
-        task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for `plan_point_to_point`, for all
-            problems.
+        approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+            `plan_point_to_point`, for all problems.
 
     Returns:
         A `BatchPlan`. If planning one problem raises an error, such as for an end that cannot be reached or is in collision, the
@@ -3019,10 +3065,17 @@ class Plan:
         """
     @property
     def clearance(self) -> float:
-        """Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles."""
+        """Smallest distance between robot and obstacles along the trajectory (m), without the contacts that an approach or a retreat
+        allows; NaN without obstacles.
+        """
     @property
     def nearest(self) -> Nearest | None:
         """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
+    @property
+    def freed(self) -> tuple[float, float] | None:
+        """How the motion got out of a contact at its start, with `free_start=True`: the smallest distance at the start (m), below the
+        margin, and the time (s) from which on the margin is kept; None if the start was clear.
+        """
     @property
     def chosen_end(self) -> int | None:
         """Index of the end that was taken, of those given; None for a plan along a path."""

@@ -44,3 +44,14 @@ def test_an_end_of_four_numbers_is_refused() -> None:
     done = plan("iiwa14", "--start", "0.4,0.2,0.8,1", "--end", "0.4,0.2,0.8")
     assert done.exit_code == 2
     assert done.stderr.strip() == "Error: --start: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, got 4 numbers"
+
+
+def test_a_plan_ends_with_a_straight_line() -> None:
+    ends = ["--start-q=0,0.3,0,-1.5,0,1.8,0.8", "--end=0.5,0.2,0.4,3.1416,0,0", "--approach", "0.1", "--free-start"]
+    direct = json.loads(plan("panda", *ends[:2], "--json").stdout)
+    done = json.loads(plan("panda", *ends, "--json").stdout)
+    assert done["success"]
+    assert done["cost"] > direct["cost"]
+    refused = plan("panda", *ends[:2], "--approach=-0.1")
+    assert refused.exit_code == 2
+    assert "distance of approach must be positive and finite, got -0.1" in refused.stderr

@@ -112,6 +112,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Scene.save": {"file": "saved.json"},
     "Sinusoid": {"mean": 1.0, "amplitude": 0.1, "angular_frequency": 1.0},
     "TrackResult.": {".": TRACK},
+    "StraightLine": {"distance": 0.1},
     "Tracker": {"robot": ARM, **TICKS},
     "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": START},
     "Tracker.step": {".": bik.Tracker(ARM, **TICKS), "target": (0.3, 0.3, 1.0)},

@@ -199,7 +199,7 @@ SHORT: dict[str, str] = {
             "paths.hypotrochoid", "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box",
             "obstacles.Capsule", "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid",
             "obstacles.HalfSpace", "obstacles.Moving", "obstacles.Sphere",
-            "filters.LowPass", "filters.OneEuro",
+            "filters.LowPass", "filters.OneEuro", "StraightLine",
         ],
         CONSTANT,
     ),

@@ -80,7 +80,9 @@ def with_problem(**problem: Any) -> list[dict[str, Any]]:
     return [PROBLEMS[0], problem]
 
 
-OPTIONS = "task, limits, method, objective, obstacles, margin, self_collision, stop, seed"
+OPTIONS = (
+    "approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed"
+)
 NAMES = f"start, end, start_q, end_q, start_qd, {OPTIONS}"
 WRONG: list[Case] = [
     (

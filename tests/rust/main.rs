@@ -15,6 +15,7 @@ mod clear;
 mod closed_form;
 mod contract;
 mod ease;
+mod end_pieces;
 mod ends;
 mod first_branch;
 mod ik;

@@ -340,7 +340,7 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
-        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere); free_start=True moves out first"
     );
     assert_eq!(
         refused(&thin, &there, &here, with(vec![ball.clone()], &thin)),

@@ -14,6 +14,8 @@
 //! | `cost` | [`Cost`]: duration, joint travel or tip travel |
 //! | `motion_limits` | constant limits of each joint, and their violations by a trajectory |
 //! | `minmax` | between two ends: the nearest configurations, joined directly or around obstacles |
+//! | `end_pieces` | straight lines at both ends of it, and the way out of a contact at the start |
+//! | `joined` | a plan, and motions before and after it |
 //! | `timed` | along a path: redundancy and fastest timing in one search |
 //! | `clear_path` | the same among obstacles |
 //! | `time_optimal` | the fastest timing of a joint path |
@@ -30,7 +32,9 @@ mod collision_checks;
 mod cost;
 mod deadline;
 mod deviation;
+mod end_pieces;
 mod endpoint;
+mod joined;
 mod minmax;
 mod motion_limits;
 mod plan;
@@ -47,9 +51,10 @@ mod violation;
 
 pub use along_path::plan_along_path;
 pub use cost::Cost;
+pub use end_pieces::{LineContact, LineFrame, StraightLine};
 pub use endpoint::Endpoint;
 pub(crate) use motion_limits::MotionLimits;
-pub use plan::{Improvement, Peak, Plan};
+pub use plan::{Freed, Improvement, Peak, Plan};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
 pub use planner_options::{AlongPathMethod, AlongPathOptions, PointToPointMethod, PointToPointOptions};
 pub(crate) use point_to_point::check_point_to_point;

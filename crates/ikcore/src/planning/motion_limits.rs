@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits};
+use crate::limits::{Field, Limits, Profile};
 use crate::math::sampling_range;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
@@ -117,6 +117,15 @@ impl MotionLimits {
     /// None in practice: the limits were checked.
     pub(crate) fn applied_to(&self, robot: &Robot) -> Result<Robot> {
         robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
+    }
+
+    /// The limits of `robot` with these position limits.
+    ///
+    /// # Errors
+    /// None in practice: the limits were checked.
+    pub(crate) fn position_limits(&self, robot: &Robot) -> Result<Limits> {
+        let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
+        Limits::of(robot).replace(Field::Lower, constant(&self.lower))?.replace(Field::Upper, constant(&self.upper))
     }
 
     /// Checks that every joint has a velocity limit, which `method` needs.

@@ -38,7 +38,9 @@ pub struct Plan {
     pub obstruction: Option<String>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
-    /// What the motion keeps clear of, if anything.
+    /// How the motion got out of a contact at its start, if it had to.
+    pub freed: Option<Freed>,
+    /// What the whole motion keeps clear of, if anything.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
@@ -60,6 +62,15 @@ pub struct Plan {
     pub evaluations: usize,
     /// Time taken.
     pub elapsed: Duration,
+}
+
+/// The way out of a contact at the start of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Freed {
+    /// The smallest distance at the start (m), below the margin; negative by the depth of an overlap.
+    pub clearance: f64,
+    /// The time from which on the margin is kept (s).
+    pub until: f64,
 }
 
 /// The largest acceleration of a plan that no limit bounds.
@@ -140,7 +151,12 @@ impl Plan {
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
-            Status::Solved => format!("planned with {cost}{}{}", self.clearance_in_words(), self.peak_in_words()),
+            Status::Solved => format!(
+                "planned with {cost}{}{}{}",
+                self.clearance_in_words(),
+                self.freed_in_words(),
+                self.peak_in_words()
+            ),
             Status::Interrupted if self.violations.is_empty() => {
                 format!("stopped with {cost}: {}", self.status.advice())
             }
@@ -166,6 +182,13 @@ impl Plan {
             None => clear,
             Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
         }
+    }
+
+    fn freed_in_words(&self) -> String {
+        self.freed.map_or_else(String::new, |Freed { clearance, until }| {
+            let (clearance, until) = (number(clearance), number(until));
+            format!("; it begins with a clearance of {clearance} m and keeps the margin after {until} s")
+        })
     }
 
     fn peak_in_words(&self) -> String {

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::cost::Cost;
+use super::end_pieces::StraightLine;
 use super::motion_limits::MotionLimits;
 use super::tpbso::Tpbso;
 use crate::error::{Error, Result};
@@ -76,6 +77,12 @@ impl FromStr for AlongPathMethod {
 pub struct PointToPointOptions {
     /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
     pub start_velocity: Option<Vec<f64>>,
+    /// A straight line of the tip before the end.
+    pub approach: Option<StraightLine>,
+    /// A straight line of the tip after the start.
+    pub retreat: Option<StraightLine>,
+    /// Whether a start that is nearer to something than the margin moves out first.
+    pub free_start: bool,
     /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
     /// The planner.
@@ -128,6 +135,13 @@ pub struct AlongPathOptions {
     pub stop: Option<Stop>,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
+}
+
+impl PointToPointOptions {
+    /// Whether the motion has pieces besides the way from start to end.
+    pub(super) fn has_pieces(&self) -> bool {
+        self.approach.is_some() || self.retreat.is_some() || self.free_start
+    }
 }
 
 impl AlongPathOptions {

@@ -1,5 +1,6 @@
 //! Planning from point to point.
 
+use super::end_pieces::composed;
 use super::endpoint::{EndName, Endpoint};
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
@@ -28,12 +29,14 @@ pub fn plan_point_to_point(
 ) -> Result<Plan> {
     check_point_to_point(robot, start, ends, options)?;
     let mut plan = match &options.method {
+        PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, options, monitor),
         PointToPointMethod::MinMax => minmax::point_to_point(robot, start, ends, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
             let end = only_end(ends, options)?;
             tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)
         }
-    }?;
+    }
+    .map_err(|error| with_way_out(error, options))?;
     plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?);
     Ok(plan)
 }
@@ -54,10 +57,40 @@ pub(crate) fn check_point_to_point(
     if ends.is_empty() {
         return Err(Error::Contradiction { problem: "no end was given: give at least one".into() });
     }
+    for (line, what) in [(&options.approach, "approach"), (&options.retreat, "retreat")] {
+        if let Some(line) = line {
+            line.validate(what)?;
+            line.check_obstacles(what, options.obstacles.len())?;
+        }
+    }
+    if options.start_velocity.is_some() && (options.retreat.is_some() || options.free_start) {
+        let problem = "start_qd cannot be kept by a motion that begins with retreat or free_start, from rest";
+        return Err(Error::Contradiction { problem: problem.into() });
+    }
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
     }
     kept_margin(options.margin).map(|_| ())
+}
+
+/// Names the remedy for a start in contact, or says that it did not help.
+fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
+    match error {
+        Error::InCollision { what, link, other, depth, remedy }
+            if what == EndName::Start.of_target()
+                && remedy.is_empty()
+                && options.start_velocity.is_none()
+                && options.method == PointToPointMethod::MinMax =>
+        {
+            let remedy = if options.free_start {
+                "; free_start=True found no way out on which nothing comes nearer"
+            } else {
+                "; free_start=True moves out first"
+            };
+            Error::InCollision { what, link, other, depth, remedy: remedy.into() }
+        }
+        other => other,
+    }
 }
 
 /// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
@@ -67,6 +100,7 @@ fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&
     };
     match ends {
         _ if options.start_velocity.is_some() => refused("start_qd is kept", "begins at rest"),
+        _ if options.has_pieces() => refused("approach, retreat and free_start are kept", "has no such pieces"),
         _ if options.task.is_some() => refused("task is kept", "reaches whole targets"),
         [end] => Ok(end),
         _ => refused("several ends are taken", "plans to one"),

@@ -2,7 +2,7 @@
 
 use super::collision_checks::{TimedMotion, too_near};
 use super::motion_limits::MotionLimits;
-use super::plan::Plan;
+use super::plan::{Freed, Plan};
 use super::time_optimal::{TimingLimits, time_all};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
@@ -48,7 +48,9 @@ impl Plan {
             return Err(Error::Infeasible { problem });
         }
         let cost = self.objective.of(robot, &trajectory);
-        let mut retimed = Self { trajectory, cost, elapsed: stopwatch.elapsed(), ..self.clone() };
+        let slower = trajectory.duration() / self.trajectory.duration();
+        let freed = self.freed.map(|freed| Freed { until: freed.until * slower, ..freed });
+        let mut retimed = Self { trajectory, cost, freed, elapsed: stopwatch.elapsed(), ..self.clone() };
         retimed.certify(robot, limits.limit_jerk())?;
         retimed.name_peak(&limits);
         Ok(retimed)
@@ -76,7 +78,7 @@ impl Plan {
 }
 
 /// The motion, faster or slower by one factor, as fast as the limits on velocity, acceleration and jerk allow.
-fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Trajectory> {
+pub(super) fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Trajectory> {
     if limits.limit_jerk() {
         refuse_jumps(motion, limits)?;
     }

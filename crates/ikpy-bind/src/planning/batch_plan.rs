@@ -175,8 +175,8 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 ///         problem's own arguments override those given for all.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
-///     task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for `plan_point_to_point`, for all
-///         problems.
+///     approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+///         `plan_point_to_point`, for all problems.
 ///
 /// Returns:
 ///     A `BatchPlan`. If planning one problem raises an error, such as for an end that cannot be reached or is in collision, the
@@ -186,10 +186,11 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 ///     InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
 ///         the argument), before anything is planned.
 #[pyfunction]
-#[pyo3(signature = (robot, problems, *, threads=None, progress=None, task=None, limits=None, method=None, objective=None,
-                    obstacles=None, margin=None, self_collision=None, stop=None, seed=None),
-       text_signature = "(robot, problems, *, threads=None, progress=None, task=None, limits=None, method='minmax', \
-                         objective='time', obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+#[pyo3(signature = (robot, problems, *, threads=None, progress=None, approach=None, retreat=None, free_start=None, task=None,
+                    limits=None, method=None, objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None),
+       text_signature = "(robot, problems, *, threads=None, progress=None, approach=None, retreat=None, \
+                         free_start=False, task=None, limits=None, method='minmax', objective='time', obstacles=None, \
+                         margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_batch<'py>(
     py: Python<'py>,
@@ -197,6 +198,9 @@ pub fn plan_batch<'py>(
     problems: &Bound<'py, PyAny>,
     threads: Option<i128>,
     progress: Option<&Bound<'py, PyAny>>,
+    approach: Option<Bound<'py, PyAny>>,
+    retreat: Option<Bound<'py, PyAny>>,
+    free_start: Option<Bound<'py, PyAny>>,
     task: Option<Bound<'py, PyAny>>,
     limits: Option<Bound<'py, PyAny>>,
     method: Option<Bound<'py, PyAny>>,
@@ -209,6 +213,9 @@ pub fn plan_batch<'py>(
 ) -> PyResult<PyBatchPlan> {
     let common = PlanArguments {
         start_qd: None,
+        approach,
+        retreat,
+        free_start,
         task,
         limits,
         method,

@@ -6,6 +6,7 @@ mod endpoints;
 mod plan;
 mod plan_arguments;
 mod point_to_point;
+mod straight_line;
 mod time_optimal;
 mod tpbso;
 mod violation;
@@ -13,6 +14,7 @@ mod violation;
 use pyo3::prelude::*;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<straight_line::PyStraightLine>()?;
     module.add_class::<tpbso::PyTpbso>()?;
     module.add_class::<violation::PyViolation>()?;
     module.add_class::<plan::PyPlan>()?;

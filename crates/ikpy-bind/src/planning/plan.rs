@@ -81,7 +81,8 @@ impl PyPlan {
         self.core.cost
     }
 
-    /// Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles.
+    /// Smallest distance between robot and obstacles along the trajectory (m), without the contacts that an approach or a retreat
+    /// allows; NaN without obstacles.
     #[getter]
     fn clearance(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.least_distance(py)?.as_ref().map_or(f64::NAN, |(clearance, _)| *clearance))
@@ -104,6 +105,13 @@ impl PyPlan {
     #[getter]
     fn chosen_end(&self) -> Option<usize> {
         self.core.chosen_end
+    }
+
+    /// How the motion got out of a contact at its start, with `free_start=True`: the smallest distance at the start (m), below the
+    /// margin, and the time (s) from which on the margin is kept; None if the start was clear.
+    #[getter]
+    fn freed(&self) -> Option<(f64, f64)> {
+        self.core.freed.map(|freed| (freed.clearance, freed.until))
     }
 
     /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.

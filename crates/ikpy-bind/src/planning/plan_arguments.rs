@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::endpoints::{read_ends, read_start};
+use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
 use crate::error::{invalid, raise};
@@ -41,6 +42,9 @@ impl EndArguments<'_> {
 #[derive(Default, Clone)]
 pub struct PlanArguments<'py> {
     pub start_qd: Argument<'py>,
+    pub approach: Argument<'py>,
+    pub retreat: Argument<'py>,
+    pub free_start: Argument<'py>,
     pub task: Argument<'py>,
     pub limits: Argument<'py>,
     pub method: Argument<'py>,
@@ -90,6 +94,9 @@ impl PlanArguments<'_> {
         let stop = self.stop.as_ref().map(|stop| cast::<PyStop>("stop", stop)).transpose()?;
         let core = PointToPointOptions {
             start_velocity: self.start_qd.as_ref().map(|qd| vector("start_qd", qd)).transpose()?,
+            approach: read_line("approach", self.approach.as_ref())?,
+            retreat: read_line("retreat", self.retreat.as_ref())?,
+            free_start: extracted("free_start", self.free_start.as_ref())?.unwrap_or(false),
             task: read_task(self.task.as_ref())?,
             method: read_method(self.method.as_ref())?,
             objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
@@ -149,7 +156,10 @@ macro_rules! named {
 }
 
 named!(EndArguments: start, end, start_q, end_q);
-named!(PlanArguments: start_qd, task, limits, method, objective, obstacles, margin, self_collision, stop, seed);
+named!(
+    PlanArguments: start_qd, approach, retreat, free_start, task, limits, method, objective, obstacles, margin,
+    self_collision, stop, seed
+);
 
 /// Extracts a number or a truth value, with the error that pyo3 raises for an argument of a function.
 fn extracted<T: for<'py> FromPyObjectOwned<'py>>(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<T>> {

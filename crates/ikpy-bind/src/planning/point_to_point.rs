@@ -18,6 +18,11 @@ use crate::robot::PyRobot;
 ///     start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
 ///     start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
 ///         rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+///     approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`. The
+///         orientation is constant on it, and the tip stays within 0.1 mm of it. It begins and ends at rest.
+///     retreat: the same after the start, against the z axis.
+///     free_start: whether a start that is nearer to something than the margin moves out first, `Plan.freed`, by a piece on which
+///         no two bodies come nearer than they are at the start.
 ///     task: which part of the poses counts, one of `tasks`, as for `solve`; None: all of it.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
@@ -40,11 +45,12 @@ use crate::robot::PyRobot;
 ///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, task=None, limits=None, method=None,
-                    objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None, progress=None),
-       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, task=None, limits=None, \
-                         method='minmax', objective='time', obstacles=None, margin=None, self_collision=None, stop=None, \
-                         seed=0, progress=None)")]
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, approach=None, retreat=None,
+                    free_start=None, task=None, limits=None, method=None, objective=None, obstacles=None, margin=None,
+                    self_collision=None, stop=None, seed=None, progress=None),
+       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, approach=None, \
+                         retreat=None, free_start=False, task=None, limits=None, method='minmax', objective='time', \
+                         obstacles=None, margin=None, self_collision=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point<'py>(
     py: Python<'py>,
@@ -54,6 +60,9 @@ pub fn plan_point_to_point<'py>(
     start_q: Option<Bound<'py, PyAny>>,
     end_q: Option<Bound<'py, PyAny>>,
     start_qd: Option<Bound<'py, PyAny>>,
+    approach: Option<Bound<'py, PyAny>>,
+    retreat: Option<Bound<'py, PyAny>>,
+    free_start: Option<Bound<'py, PyAny>>,
     task: Option<Bound<'py, PyAny>>,
     limits: Option<Bound<'py, PyAny>>,
     method: Option<Bound<'py, PyAny>>,
@@ -67,8 +76,21 @@ pub fn plan_point_to_point<'py>(
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
     let (start, ends) = EndArguments { start, end, start_q, end_q }.read()?;
-    let asked =
-        PlanArguments { start_qd, task, limits, method, objective, obstacles, margin, self_collision, stop, seed };
+    let asked = PlanArguments {
+        start_qd,
+        approach,
+        retreat,
+        free_start,
+        task,
+        limits,
+        method,
+        objective,
+        obstacles,
+        margin,
+        self_collision,
+        stop,
+        seed,
+    };
     let options = asked.read(py, robot.get())?;
     let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
     let plan = watched(py, progress, call)?;

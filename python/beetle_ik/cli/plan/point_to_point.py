@@ -65,6 +65,13 @@ def point_to_point(
         ),
     ] = Method.MINMAX,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
+    approach: Annotated[
+        float | None, typer.Option(metavar="M", help="Length in m of a straight line of the tip before the end.")
+    ] = None,
+    retreat: Annotated[
+        float | None, typer.Option(metavar="M", help="Length in m of a straight line of the tip after the start.")
+    ] = None,
+    free_start: Annotated[bool, typer.Option("--free-start", help="Move out of a contact at the start first.")] = False,
     scene: SceneFile = None,
     margin: Margin = None,
     link_radius: LinkRadius = None,
@@ -91,6 +98,9 @@ def point_to_point(
             arm,
             **ends,
             objective=objective.value,
+            approach=approach,
+            retreat=retreat,
+            free_start=free_start,
             obstacles=obstacles,
             margin=margin,
             seed=seed,

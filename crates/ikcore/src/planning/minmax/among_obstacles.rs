@@ -165,6 +165,7 @@ fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
         obstruction: None,
         surroundings: None,
         chosen_end: None,
+        freed: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

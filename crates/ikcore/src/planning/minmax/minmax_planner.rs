@@ -44,7 +44,7 @@ pub(crate) fn point_to_point(
 }
 
 /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
-fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
+pub(crate) fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
     let unlimited =
         |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {

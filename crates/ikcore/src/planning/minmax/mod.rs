@@ -32,4 +32,4 @@ mod rrt_connect;
 mod shortening;
 mod straight_line_plan;
 
-pub(super) use minmax_planner::point_to_point;
+pub(super) use minmax_planner::{point_to_point, require_pace};

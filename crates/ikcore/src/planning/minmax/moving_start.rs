@@ -8,6 +8,7 @@ use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{Sweep, kept_margin};
 use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, nearest_at, scene};
+use crate::planning::joined::joined;
 use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -74,6 +75,7 @@ pub(super) fn begin(
             obstruction: None,
             surroundings: None,
             chosen_end: Some(chosen),
+            freed: None,
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -135,8 +137,6 @@ pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: 
     // The stop keeps the margin.
     let margin = kept_margin(options.margin)?;
     let clearance = rest.clearance.map(|clearance| clearance.min(margin));
-    let trajectory = stop.then(&rest.trajectory, 0.0)?;
-    let cost = rest.objective.of(robot, &trajectory);
-    let history = vec![Improvement { evaluations: rest.evaluations, cost }];
-    Ok(Plan { trajectory, cost, history, clearance, nearest: None, ..rest })
+    let plan = joined(robot, Some(&stop), rest, None)?;
+    Ok(Plan { clearance, nearest: None, ..plan })
 }

@@ -4,7 +4,7 @@ use super::end_pair::EndPair;
 use super::least_displacement::{self, Freedom};
 use crate::error::{Error, Result};
 use crate::ik::{Solution, SolveOptions, solve};
-use crate::limits::{Field, Limits, Profile};
+use crate::limits::Limits;
 use crate::objective::Point;
 use crate::planning::deadline::Deadline;
 use crate::planning::endpoint::{EndName, no_usable_end};
@@ -44,10 +44,7 @@ impl<'a> PairSearch<'a> {
         options: &PointToPointOptions,
         deadline: Deadline,
     ) -> Result<Self> {
-        let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
-        let position_limits = Limits::of(robot)
-            .replace(Field::Lower, constant(&limits.lower))?
-            .replace(Field::Upper, constant(&limits.upper))?;
+        let position_limits = limits.position_limits(robot)?;
         let (task, seed) = (options.task, options.seed);
         let freedom = Freedom::new(robot, limits, task)?;
         let search = Self {

@@ -38,6 +38,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
         obstruction: None,
         surroundings: None,
         chosen_end: Some(chosen),
+        freed: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],

@@ -64,6 +64,7 @@ impl PathProblem<'_> {
             obstruction: None,
             surroundings: None,
             chosen_end: None,
+            freed: None,
             accuracy: Some(deviation.distance.value),
             reference: Some(tip_path.positions().to_vec()),
             redundancy: vec![],

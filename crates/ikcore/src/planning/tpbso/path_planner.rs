@@ -47,6 +47,7 @@ pub(crate) fn along_path(
         obstruction: None,
         surroundings: None,
         chosen_end: None,
+        freed: None,
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),

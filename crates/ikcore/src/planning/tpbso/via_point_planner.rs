@@ -57,6 +57,7 @@ pub(crate) fn point_to_point(
         obstruction: None,
         surroundings: None,
         chosen_end: Some(0),
+        freed: None,
         accuracy: None,
         reference: None,
         redundancy: vec![],
