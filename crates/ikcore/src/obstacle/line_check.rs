@@ -165,7 +165,7 @@ mod tests {
     fn robots() -> Vec<Robot> {
         let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
         let tool = Shape::cuboid([0.0, 0.0, 0.1], [0.1, 0.04, 0.2], None).unwrap();
-        let holding = panda.with_attached("panda_link8", &tool, &[], None).unwrap();
+        let holding = panda.with_attached("flange", &tool, &[], None).unwrap();
         vec![panda, holding]
     }
 

@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::segment_lanes::{to_point, to_segment};
 use super::solid_lanes::{BoxLanes, CylinderLanes, SolidLanes, segment_bound};
 use crate::math::Frame;
-use crate::math::arithmetic::Arithmetic;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::vec3::Vec3;
@@ -26,6 +26,7 @@ pub(crate) struct EightShape {
 }
 
 #[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "the innermost loop reads it")]
 enum Form {
     Sphere,
     Capsule {
@@ -65,12 +66,20 @@ impl<A: Arithmetic> EightCapsules<A> {
     /// Squared distance (m^2) between the axes.
     #[inline(always)]
     pub fn squared_distance(&self, other: &Self) -> Eight<A> {
-        match (self.along, other.along) {
-            (None, None) => (self.start - other.start).dot(self.start - other.start),
-            (Some(along), None) => to_point(self.start, along, other.start).squared,
-            (None, Some(along)) => to_point(other.start, along, self.start).squared,
-            (Some(along), Some(others)) => to_segment(self.start, along, other.start, others).squared,
+        if self.along.is_none() && other.along.is_none() {
+            return (self.start - other.start).dot(self.start - other.start);
         }
+        let zero = Vec3 { x: Eight::splat(0.0), y: Eight::splat(0.0), z: Eight::splat(0.0) };
+        let [one, other] = [self, other].map(|body| [body.start.stored(), body.along.unwrap_or(zero).stored()]);
+        Eight::of(squared_distance(&one, &other))
+    }
+}
+
+by_instructions! {
+    /// Squared distance (m^2) between segments, each given by its start and the way to its end.
+    fn squared_distance(one: &[Vectors; 2], other: &[Vectors; 2]) -> F32x8 {
+        let ([a, u], [b, v]) = (one, other);
+        to_segment::<Eight<A>>(Vec3::of(a), Vec3::of(u), Vec3::of(b), Vec3::of(v)).squared.stored()
     }
 }
 
@@ -109,60 +118,78 @@ impl EightShape {
     /// The lanes in which the capsule may be nearer than `margin` >= 0 (m), one bit each.
     #[inline(always)]
     pub fn near<A: Arithmetic>(&self, body: &EightCapsules<A>, margin: Eight<A>) -> u32 {
-        let (start, enough) = (body.start, body.radius + margin);
-        let zero = Eight::splat(0.0);
-        let along = body.along.unwrap_or(Vec3 { x: zero, y: zero, z: zero });
+        let (center, enough) = (body.start, body.radius + margin);
+        if let Some(along) = body.along {
+            return near_capsule(self, &center.stored(), &along.stored(), enough.stored());
+        }
         match &self.form {
-            Form::Sphere => near_ball(self, body, enough),
-            Form::Capsule { start: own, along: axis, radius } => {
-                let nearest = match body.along {
-                    None => to_point(Vec3::of(own), Vec3::of(axis), start),
-                    Some(along) => to_segment(start, along, Vec3::of(own), Vec3::of(axis)),
-                };
+            Form::Sphere => near_ball(self, center, enough),
+            Form::Capsule { start, along, radius } => {
+                let nearest = to_point(Vec3::of(start), Vec3::of(along), center);
+                below_square(nearest.squared, enough + Eight::of(*radius))
+            }
+            Form::HalfSpace { normal, offset } => {
+                (center.dot(Vec3::of(normal)) - Eight::of(*offset)).not_at_least(enough)
+            }
+            Form::Box { frame, half } => near_solid(&BoxLanes::of(frame, half), center, enough),
+            Form::Cylinder { axis, radius, half_length } => {
+                near_solid(&CylinderLanes::of(&self.center, axis, [*radius, *half_length]), center, enough)
+            }
+            Form::Other(shape) => {
+                let near = near_ball(self, center, enough);
+                let along = [F32x8::ZERO; 3];
+                if near == 0 { 0 } else { near_one_by_one(shape, &center.stored(), &along, enough.stored(), near) }
+            }
+        }
+    }
+}
+
+by_instructions! {
+    /// Of capsules that are no spheres. A function of its own: inlined into every kernel it takes minutes to compile.
+    fn near_capsule(shape: &EightShape, start: &Vectors, along: &Vectors, enough: F32x8) -> u32 {
+        let (a, u, enough) = (Vec3::<Eight<A>>::of(start), Vec3::<Eight<A>>::of(along), Eight::<A>::of(enough));
+        match &shape.form {
+            Form::Sphere => {
+                let nearest = to_point(a, u, Vec3::of(&shape.center));
+                below_square(nearest.squared, enough + Eight::of(shape.radius))
+            }
+            Form::Capsule { start, along, radius } => {
+                let nearest = to_segment(a, u, Vec3::of(start), Vec3::of(along));
                 below_square(nearest.squared, enough + Eight::of(*radius))
             }
             Form::HalfSpace { normal, offset } => {
                 let normal = Vec3::of(normal);
-                let [first, last] = [start.dot(normal), (start + along).dot(normal)];
+                let [first, last] = [a.dot(normal), (a + u).dot(normal)];
                 (first.smaller(last) - Eight::of(*offset)).not_at_least(enough)
             }
-            Form::Box { frame, half } => near_solid(&BoxLanes::of(frame, half), body, enough),
+            Form::Box { frame, half } => {
+                let solid = BoxLanes::of(frame, half);
+                segment_bound(&solid, solid.to_local(a), solid.turned(u), enough).not_at_least(enough)
+            }
             Form::Cylinder { axis, radius, half_length } => {
-                near_solid(&CylinderLanes::of(&self.center, axis, [*radius, *half_length]), body, enough)
+                let solid = CylinderLanes::of(&shape.center, axis, [*radius, *half_length]);
+                segment_bound(&solid, solid.to_local(a), solid.turned(u), enough).not_at_least(enough)
             }
-            Form::Other(shape) => {
-                let near = near_ball(self, body, enough);
-                if near == 0 {
-                    0
-                } else {
-                    near_one_by_one(shape, start.stored(), along.stored(), enough.stored(), near)
-                }
+            Form::Other(other) => {
+                let nearest = to_point(a, u, Vec3::of(&shape.center));
+                let near = below_square(nearest.squared, enough + Eight::of(shape.radius));
+                if near == 0 { 0 } else { near_one_by_one(other, start, along, enough.stored(), near) }
             }
         }
     }
 }
 
-/// Of the ball around a shape.
+/// The lanes in which a point is nearer to the ball around a shape.
 #[inline(always)]
-fn near_ball<A: Arithmetic>(shape: &EightShape, body: &EightCapsules<A>, enough: Eight<A>) -> u32 {
-    let center = Vec3::of(&shape.center);
-    let squared = match body.along {
-        None => {
-            let offset = body.start - center;
-            offset.dot(offset)
-        }
-        Some(along) => to_point(body.start, along, center).squared,
-    };
-    below_square(squared, enough + Eight::of(shape.radius))
+fn near_ball<A: Arithmetic>(shape: &EightShape, point: Vec3<Eight<A>>, enough: Eight<A>) -> u32 {
+    let offset = point - Vec3::of(&shape.center);
+    below_square(offset.dot(offset), enough + Eight::of(shape.radius))
 }
 
+/// The lanes in which a point is nearer to a solid.
 #[inline(always)]
-fn near_solid<A: Arithmetic, S: SolidLanes<Eight<A>>>(solid: &S, body: &EightCapsules<A>, enough: Eight<A>) -> u32 {
-    let start = solid.to_local(body.start);
-    match body.along {
-        None => below_square(solid.squared_distance(start), enough),
-        Some(along) => segment_bound(solid, start, solid.turned(along), enough).not_at_least(enough),
-    }
+fn near_solid<A: Arithmetic, S: SolidLanes<Eight<A>>>(solid: &S, point: Vec3<Eight<A>>, enough: Eight<A>) -> u32 {
+    below_square(solid.squared_distance(solid.to_local(point)), enough)
 }
 
 /// The lanes in which the square root of `squared` is not at least `enough`.
@@ -173,7 +200,7 @@ pub(crate) fn below_square<A: Arithmetic>(squared: Eight<A>, enough: Eight<A>) -
 
 /// Of these lanes those in which the segment is nearer than `enough`.
 #[inline(never)]
-fn near_one_by_one(shape: &Shape, start: Vectors, along: Vectors, enough: F32x8, lanes: u32) -> u32 {
+fn near_one_by_one(shape: &Shape, start: &Vectors, along: &Vectors, enough: F32x8, lanes: u32) -> u32 {
     let near = |lane: usize| {
         let start = Vector3::from(start.map(|x| f64::from(x.0[lane])));
         let end = start + Vector3::from(along.map(|x| f64::from(x.0[lane])));

@@ -6,11 +6,13 @@ use crate::wording::number;
 
 /// Why none of `pairs` has two clear ends: everything keeps `kept` (m) at those that do.
 pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> String {
-    let start = |pair: &EndPair| pair.start.to_vec();
-    let end = |pair: &EndPair| pair.end.to_vec();
-    let any = |side: &dyn Fn(&EndPair) -> Vec<f64>| pairs.iter().any(|pair| scene.is_clear(&side(pair), kept));
-    let (name, side): (_, &dyn Fn(&EndPair) -> Vec<f64>) = if any(&start) { ("end", &end) } else { ("start", &start) };
-    let nearest = |pair: &EndPair| scene.nearest(&side(pair)).ok().flatten();
+    let is_clear = |q: &[f64]| scene.is_clear(q, kept);
+    let start_is_blocked = !pairs.iter().any(|pair| is_clear(&pair.start));
+    let name = if start_is_blocked { "start" } else { "end" };
+    let nearest = |pair: &EndPair| {
+        let q = if start_is_blocked { &pair.start } else { &pair.end };
+        scene.nearest(q).ok().flatten()
+    };
     let clearest = pairs.iter().filter_map(nearest).max_by(|one, other| one.distance.total_cmp(&other.distance));
     let found = clearest.map_or(String::new(), |contact| format!("; at the clearest one {}", in_words(&contact, kept)));
     format!("{name}: no configuration was found that is clear of everything{found}")
