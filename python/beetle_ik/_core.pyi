@@ -2873,7 +2873,9 @@ class StraightLine:
     @property
     def touch(self) -> list[str] | dict[int, list[str]]:
         """Contacts that are allowed on this line alone: names of links, or a dict from the index of an obstacle to names of links."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class BatchPlan:
     """Plans in the order of the problems. `b[i]` is a `Plan`, or None if problem i has none; `b[10:20]` and `b[b.success]` are
     batches.
