@@ -16,7 +16,7 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
 /// Number of paths of which the cheapest is taken, the same number from each start ...
-const PATHS: usize = 3;
+const PATHS: usize = 2;
 /// ... as long as those after the first one cost no more configurations.
 const MORE: usize = 2000;
 /// Number of shortcuts tried on the first paths, and on later ones.
