@@ -75,7 +75,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
                 margin,
                 most,
                 improves,
-                for_tip_travel: 0,
+                ends_are_free: open.len() > 1,
             };
             search.best(&open, &starts, monitor)?
         }

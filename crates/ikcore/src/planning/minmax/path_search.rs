@@ -15,10 +15,18 @@ use crate::rng;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
-/// Number of paths of which the cheapest is taken, the same number from each start ...
-const PATHS: usize = 2;
-/// ... as long as those after the first one cost no more configurations.
-const MORE: usize = 2000;
+/// How much is searched before the first motion is taken.
+struct Effort {
+    /// Number of paths of which the cheapest is taken, the same number from each start ...
+    paths: usize,
+    /// ... as long as those after the first one cost no more configurations.
+    more: usize,
+}
+
+/// Between two given configurations.
+const QUICK: Effort = Effort { paths: 2, more: 2000 };
+/// Where the ends leave a choice: to find them takes longer anyway.
+const THOROUGH: Effort = Effort { paths: 4, more: 20_000 };
 /// Number of shortcuts tried on the first paths, and on later ones.
 const SHORTCUTS: usize = 20;
 const MORE_SHORTCUTS: usize = 60;
@@ -48,8 +56,8 @@ pub(super) struct PathSearch<'s, 'a> {
     pub most: f64,
     /// Whether to go on until the budget is spent.
     pub improves: bool,
-    /// Configurations examined to shorten the travel of the tip.
-    pub for_tip_travel: usize,
+    /// Whether the ends leave a choice. Then any objective gets the same paths, so that none finds a better one for another.
+    pub ends_are_free: bool,
 }
 
 /// Whether a search was stopped by the caller.
@@ -89,7 +97,7 @@ impl<'a> PathSearch<'_, 'a> {
         for round in 0..ROUNDS {
             let (candidates, ended) = self.candidates(open, starts, &mut stream, monitor)?;
             let any = !candidates.is_empty();
-            self.keep_first(candidates, &mut best)?;
+            self.keep_best(candidates, &mut best)?;
             let status = match ended {
                 Ended::Interrupted => Some(Status::Interrupted),
                 Ended::Done if best.found.is_some() => Some(Status::Solved),
@@ -134,17 +142,17 @@ impl<'a> PathSearch<'_, 'a> {
         stream: &mut u64,
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<(f64, TimedPath)>, Ended)> {
+        let Effort { paths: count, more } = if self.ends_are_free { THOROUGH } else { QUICK };
         let whole = self.trees.budget;
         let mut candidates = vec![];
-        let mut limit = usize::MAX;
         let mut ended = Ended::Done;
-        for start in (0..PATHS.div_ceil(starts.len())).flat_map(|_| starts) {
+        for start in (0..count.div_ceil(starts.len())).flat_map(|_| starts) {
             *stream += 1;
-            // Any objective gets the same paths.
-            self.trees.budget = whole.min(limit.saturating_add(self.for_tip_travel));
             match self.paths(open, start, (*stream, SHORTCUTS), monitor) {
                 Ok(paths) => {
-                    limit = limit.min(self.trees.check.examined() - self.for_tip_travel + MORE);
+                    if candidates.is_empty() {
+                        self.trees.budget = whole.min(self.trees.check.examined() + more);
+                    }
                     for path in paths {
                         candidates.push(self.timed(path)?);
                     }
@@ -161,8 +169,8 @@ impl<'a> PathSearch<'_, 'a> {
         Ok((candidates, ended))
     }
 
-    /// A path from `start` to the end of any pair that shares it, shortened: by the length of its lines, and for the travel of the tip
-    /// by that too.
+    /// A path from `start` to the end of any pair that shares it, shortened: by the length of its lines, and where it matters by the
+    /// travel of the tip too.
     fn paths(
         &mut self,
         open: &[EndPair],
@@ -179,16 +187,14 @@ impl<'a> PathSearch<'_, 'a> {
             Connection::Found(path) => path,
             other => return Err(other),
         };
-        let mut paths = vec![];
-        if self.objective == Cost::TipTravel {
+        let mut same = rng.clone();
+        let mut paths = vec![self.trees.shorten(path.clone(), (&|_, _| true, shortcuts), &mut rng, monitor)];
+        if self.ends_are_free || self.objective == Cost::TipTravel {
             // A line is the shortest way of the joints, and the quickest, but not of the tip.
             let travel = |points: &[Vec<f64>]| tip_travel_along(self.search.robot, points);
             let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| travel(new) <= travel(old);
-            let before = self.trees.check.examined();
-            paths.push(self.trees.shorten(path.clone(), (&is_shorter, shortcuts), &mut rng.clone(), monitor));
-            self.for_tip_travel += self.trees.check.examined() - before;
+            paths.push(self.trees.shorten(path, (&is_shorter, shortcuts), &mut same, monitor));
         }
-        paths.push(self.trees.shorten(path, (&|_, _| true, shortcuts), &mut rng, monitor));
         Ok(paths)
     }
 
@@ -198,15 +204,14 @@ impl<'a> PathSearch<'_, 'a> {
         Ok((self.objective.of(self.search.robot, &timed.motion), timed))
     }
 
-    /// Keeps the first of `candidates` that can be certified, if it is better than the best; they are sorted by cost.
-    fn keep_first(&mut self, candidates: Vec<(f64, TimedPath)>, best: &mut Best) -> Result<()> {
+    /// Keeps the best of `candidates` that can be certified; they are sorted by cost, which a certified motion may exceed.
+    fn keep_best(&mut self, candidates: Vec<(f64, TimedPath)>, best: &mut Best) -> Result<()> {
         for (cost, timed) in candidates {
             if best.is_at_most(cost) {
                 break;
             }
             if let Some(motion) = self.timing().certified(timed)? {
                 self.keep(motion, best);
-                break;
             }
         }
         Ok(())
@@ -234,7 +239,7 @@ impl<'a> PathSearch<'_, 'a> {
             let Ok(paths) = self.paths(open, start, (stream, MORE_SHORTCUTS), monitor) else { break };
             for path in paths {
                 let candidate = self.timed(path)?;
-                self.keep_first(vec![candidate], best)?;
+                self.keep_best(vec![candidate], best)?;
             }
             monitor.progress(self.trees.check.examined(), self.trees.budget);
         }
