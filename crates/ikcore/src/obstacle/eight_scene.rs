@@ -46,6 +46,8 @@ pub(super) struct EightScene<'a> {
     /// The groups that a joint moves, and how far.
     groups: Vec<(usize, Levers)>,
     pairs: Vec<GroupPair>,
+    /// The joint values for which the levers hold.
+    ranges: Vec<(f64, f64)>,
     /// Largest coordinates and levers (m).
     extent: f64,
     placement: EightPlacement,
@@ -85,10 +87,17 @@ impl<'a> EightScene<'a> {
             obstacles: scene.others.obstacles.iter().map(EightShape::new).collect(),
             groups,
             pairs,
+            ranges: (0..robot.dof()).map(|j| elements.range(robot, j)).collect(),
             extent: levers + obstacles.fold(1.0, f64::max),
             placement: bodies.eight.placement(),
             qs: vec![F32x8::ZERO; robot.dof()],
         }
+    }
+
+    /// Whether the bounds on how far bodies move hold for joint values within `off_line` (rad, m) of those of `q`.
+    pub fn covers(&self, q: &[f64], off_line: &[f64]) -> bool {
+        let mut joints = self.ranges.iter().zip(q.iter().zip(off_line));
+        joints.all(|((lower, upper), (q, off_line))| *lower <= q - off_line && q + off_line <= *upper)
     }
 
     /// What rounding may take off a distance (m), for joint values of up to `largest` (rad, m).

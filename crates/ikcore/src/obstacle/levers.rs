@@ -1,4 +1,4 @@
-//! How far the joints can move a body, whatever the configuration.
+//! How far the joints can move a body, whatever the configuration in their ranges.
 
 use crate::kinematics::chain::StageMotion;
 use crate::math::Frame;
@@ -16,7 +16,7 @@ pub(super) struct CarriedBall {
     pub radius: f64,
 }
 
-/// The moving elements of a robot, and how far each slides at most (m).
+/// The moving elements of a robot, and how far each slides at most (m) while its joint is in its sampling range.
 pub(super) struct MovingElements {
     stages: Vec<(usize, Frame, StageMotion)>,
     slides: Vec<f64>,
@@ -39,6 +39,12 @@ impl MovingElements {
         };
         let slides = stages.iter().map(slide).collect();
         Self { stages, slides }
+    }
+
+    /// The values of joint `j` for which the bounds hold: all, unless it slides.
+    pub fn range(&self, robot: &Robot, j: usize) -> (f64, f64) {
+        let slides = self.stages.iter().any(|(_, _, motion)| motion.joint == j && motion.slide_scale != 0.0);
+        if slides { robot.joints()[j].sampling_range() } else { (f64::NEG_INFINITY, f64::INFINITY) }
     }
 
     /// Adds to `levers` how far the joints move `ball` relative to frame number `below`, which carries it.

@@ -28,6 +28,9 @@ pub struct TooNear {
 /// No body moves farther than this (m) from one of the eight configurations of a part, by a bound.
 const REACH: f64 = 0.06;
 
+/// All eighths of a part.
+const ALL: u32 = 0xff;
+
 /// Parts are not divided more often.
 const MOST_DIVISIONS: usize = 24;
 
@@ -125,7 +128,11 @@ impl<'a> Sweep<'a> {
             return self.check_part(motion, [middle, ends[1]], margin, divisions + 1);
         }
         self.near.clear();
-        find_near(self, &part, &reach, margin);
+        if self.eight.covers(&part.from, &part.off_line) && self.eight.covers(&part.to, &part.off_line) {
+            find_near(self, &part, &reach, margin);
+        } else {
+            self.near.extend(self.scene.pairs().map(|pair| (pair, ALL)));
+        }
         let kept = KeptDistance::constant(margin);
         let at = |eighth: usize| ends[0] + (ends[1] - ends[0]) * eighth as f64 / 8.0;
         for eighth in (0..8).filter(|eighth| self.near.iter().any(|(_, lanes)| lanes & (1 << eighth) != 0)) {
@@ -250,5 +257,30 @@ impl Best {
     /// By how much the answer may lie below the truth (m).
     fn slack(&self) -> f64 {
         1e-4_f64.max(0.01 * self.seen.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::obstacle::Edge;
+    use crate::robot::Robot;
+    use crate::shape::Shape;
+
+    const GANTRY: &str = r#"<robot name="gantry"><link name="base"/><link name="arm"/><link name="rod"/>
+        <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+        <joint name="slide" type="prismatic"><parent link="arm"/><child link="rod"/><axis xyz="1 0 0"/>
+        <limit lower="0" upper="1" velocity="1" effort="1"/></joint><link name="tip"/><joint name="end" type="fixed">
+        <parent link="rod"/><child link="tip"/><origin xyz="0.5 0 0"/></joint></robot>"#;
+
+    #[test]
+    fn a_rod_far_outside_its_range_is_certified_no_less() {
+        let robot = Robot::from_urdf(GANTRY, None, None).unwrap().with_capsules_along_links(0.005).unwrap();
+        // The rod, 50 m away, passes the ball between two of eight configurations of a turn that moves it by 0.5 m.
+        let obstacles = [Shape::sphere([50.2, 0.0, 0.0], 0.005).unwrap()];
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let (from, to) = ([-0.0051, 50.0], [0.0049, 50.0]);
+        assert!(scene.clearance(&from).unwrap() > 0.1 && scene.clearance(&to).unwrap() > 0.1);
+        assert!(Sweep::new(&scene).check(&Edge { from: &from, to: &to }, [0.0, 1.0], 0.001).is_err());
     }
 }

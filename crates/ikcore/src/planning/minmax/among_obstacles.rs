@@ -149,7 +149,7 @@ fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
         let mut ends = open.iter().flat_map(|pair| [&pair.start, &pair.end]);
         ends.all(|q| scene.is_clear(q, margin + more))
     };
-    // The check of a line loses more to rounding than the smallest of these.
+    // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
     RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
 }
 
