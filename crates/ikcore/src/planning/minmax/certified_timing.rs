@@ -39,18 +39,8 @@ impl TimedPath {
         Self { shares: vec![1.0; path.0.len()], path, motion }
     }
 
-    /// Times a path. A blend cuts its corner: it is as wide as the line between its ends is clear.
-    pub(super) fn new(path: JointPolyline, limits: &MotionLimits, check: &mut LineCheck) -> Result<Self> {
-        let mut shares = vec![1.0; path.0.len()];
-        for i in 1..path.0.len() - 1 {
-            while shares[i] > LEAST_SHARE {
-                let [from, to] = path.blend_ends(limits, i, shares[i]);
-                if check.is_clear(&from, &to) {
-                    break;
-                }
-                shares[i] *= 0.5;
-            }
-        }
+    /// Times a path. `shares[i]` is the share of the shorter adjacent line that the blend of point i takes.
+    pub(super) fn new(path: JointPolyline, shares: Vec<f64>, limits: &MotionLimits) -> Result<Self> {
         let stopping = path.with_stops(limits)?;
         let motion = match path.with_blends(limits, &shares).transpose()? {
             Some(blended) if blended.duration() < stopping.duration() => blended,
@@ -58,6 +48,20 @@ impl TimedPath {
         };
         Ok(Self { path, shares, motion })
     }
+}
+
+/// The share of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
+/// between its ends is clear.
+pub(super) fn clear_share(path: &JointPolyline, i: usize, limits: &MotionLimits, check: &mut LineCheck) -> f64 {
+    let mut share = 1.0;
+    while share > LEAST_SHARE {
+        let [from, to] = path.blend_ends(limits, i, share);
+        if check.is_clear(&from, &to) {
+            break;
+        }
+        share *= 0.5;
+    }
+    share
 }
 
 impl Timing<'_, '_> {

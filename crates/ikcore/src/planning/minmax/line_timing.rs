@@ -52,6 +52,20 @@ impl MotionLimits {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct JointPolyline(pub Vec<Vec<f64>>);
 
+/// How long a motion with blends takes on the lines, were there no blends, and in the blends (s).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BlendTimes {
+    lines: Vec<f64>,
+    blends: Vec<f64>,
+}
+
+impl BlendTimes {
+    /// Duration of the motion (s): the first and the last blend take half of their time from their line.
+    pub(super) fn total(&self) -> f64 {
+        self.lines.iter().sum::<f64>() + 0.5 * (self.blends[0] + self.blends[self.blends.len() - 1])
+    }
+}
+
 impl JointPolyline {
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
     pub(super) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
@@ -97,6 +111,15 @@ impl JointPolyline {
     /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
     pub(super) fn with_blends(&self, limits: &MotionLimits, shares: &[f64]) -> Option<Result<Trajectory>> {
+        let times = self.blend_times(limits, shares)?;
+        let motion = self.blended(limits, &times);
+        // A blend that is just too short exceeds a jerk limit by twice as much.
+        let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
+        Some(if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion })
+    }
+
+    /// The times of the motion with blends.
+    pub(super) fn blend_times(&self, limits: &MotionLimits, shares: &[f64]) -> Option<BlendTimes> {
         let mut lines: Vec<f64> = self.0.windows(2).map(|line| line_duration(line, limits)).collect();
         if lines.iter().any(|duration| !duration.is_finite() || *duration <= 0.0) {
             return None;
@@ -125,10 +148,7 @@ impl JointPolyline {
                 }
             }
             if settled {
-                let motion = self.blended(limits, &lines, &blends);
-                // A blend that is just too short exceeds a jerk limit by twice as much.
-                let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
-                return Some(if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion });
+                return Some(BlendTimes { lines, blends });
             }
         }
         None
@@ -150,7 +170,7 @@ impl JointPolyline {
         line.map_or(0.0, |line| (self.0[line + 1][j] - self.0[line][j]) / durations[line])
     }
 
-    fn blended(&self, limits: &MotionLimits, lines: &[f64], blends: &[f64]) -> Result<Trajectory> {
+    fn blended(&self, limits: &MotionLimits, BlendTimes { lines, blends }: &BlendTimes) -> Result<Trajectory> {
         let n = limits.dof();
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;

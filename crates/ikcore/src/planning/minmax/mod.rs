@@ -15,12 +15,14 @@
 //! | [`moving_start`] | motions that begin at a velocity |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
 //! | [`shortening`] | shortcuts |
+//! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
 
 mod among_obstacles;
 mod branch_pairs;
 mod certified_timing;
 mod configuration_tree;
 mod end_pair;
+mod improvement;
 mod least_displacement;
 mod line_timing;
 mod minmax_planner;
@@ -28,6 +30,7 @@ mod moving_start;
 mod no_way;
 mod pair_search;
 mod path_search;
+mod refinement;
 mod rrt_connect;
 mod shortening;
 mod straight_line_plan;

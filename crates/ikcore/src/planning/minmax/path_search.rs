@@ -4,14 +4,15 @@ use super::certified_timing::{TimedPath, Timing};
 use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
 use super::pair_search::PairSearch;
-use super::rrt_connect::{Connection, TreeSearch};
+use super::refinement::{BlendedPath, Measure};
+use super::rrt_connect::{Connection, Route, TreeSearch};
 use super::straight_line_plan::straight;
 use crate::error::Result;
 use crate::objective::Point;
 use crate::obstacle::Sweep;
 use crate::planning::cost::tip_travel_along;
 use crate::planning::{Cost, Improvement};
-use crate::rng;
+use crate::rng::{self, LazyRng};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
@@ -27,9 +28,9 @@ struct Effort {
 const QUICK: Effort = Effort { paths: 2, more: 2000 };
 /// Where the ends leave a choice: to find them takes longer anyway.
 const THOROUGH: Effort = Effort { paths: 4, more: 20_000 };
-/// Number of shortcuts tried on the first paths, and on later ones.
-const SHORTCUTS: usize = 20;
-const MORE_SHORTCUTS: usize = 60;
+/// Number of shortcuts tried on each path, and of other changes on the first paths.
+pub(super) const SHORTCUTS: usize = 20;
+const CHANGES: usize = 60;
 /// How often all paths are searched again, with more distance, because none could be certified.
 const ROUNDS: u32 = 4;
 
@@ -69,7 +70,7 @@ enum Ended {
 
 /// The best certified motion so far.
 #[derive(Default)]
-struct Best {
+pub(super) struct Best {
     found: Option<(f64, Trajectory)>,
     history: Vec<Improvement>,
 }
@@ -106,7 +107,7 @@ impl<'a> PathSearch<'_, 'a> {
             };
             if let Some(status) = status {
                 if status == Status::Solved && self.improves {
-                    self.improve(open, starts, &mut best, stream, monitor)?;
+                    self.improve(open, starts, (&mut best, stream), monitor)?;
                 }
                 return Ok(best.certified(status));
             }
@@ -148,12 +149,15 @@ impl<'a> PathSearch<'_, 'a> {
         let mut ended = Ended::Done;
         for start in (0..count.div_ceil(starts.len())).flat_map(|_| starts) {
             *stream += 1;
-            match self.paths(open, start, (*stream, SHORTCUTS), monitor) {
+            let mut rng = rng::stream(self.search.seed, *stream);
+            match self.paths(open, (start, f64::INFINITY), &mut rng, monitor) {
                 Ok(paths) => {
                     if candidates.is_empty() {
                         self.trees.budget = whole.min(self.trees.check.examined() + more);
                     }
-                    for path in paths {
+                    let measure = self.measure();
+                    for mut path in paths {
+                        self.trees.refine(&mut path, (&measure, CHANGES), &mut rng, monitor);
                         candidates.push(self.timed(path)?);
                     }
                 }
@@ -170,37 +174,48 @@ impl<'a> PathSearch<'_, 'a> {
     }
 
     /// A path from `start` to the end of any pair that shares it, shortened: by the length of its lines, and where it matters by the
-    /// travel of the tip too.
-    fn paths(
+    /// travel of the tip too. Places through which every motion costs more than `most` are left out.
+    pub(super) fn paths(
         &mut self,
         open: &[EndPair],
-        start: &Point,
-        (stream, shortcuts): (u64, usize),
+        (start, most): (&Point, f64),
+        rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
-    ) -> Result<Vec<JointPolyline>, Connection> {
+    ) -> Result<Vec<BlendedPath>, Connection> {
         // Any of the ends will do. Their order is that of no objective.
         let mut sharing: Vec<&EndPair> = open.iter().filter(|pair| pair.start == *start).collect();
         sharing.sort_by(|one, other| one.duration.total_cmp(&other.duration));
         let ends: Vec<Vec<f64>> = sharing.into_iter().map(|pair| pair.end.to_vec()).collect();
-        let mut rng = rng::stream(self.search.seed, stream);
-        let path = match self.trees.connect(start, &ends, &mut rng, monitor) {
+        let measure = self.measure();
+        let least = |q: &[f64]| {
+            let to_end = ends.iter().map(|end| measure.least(q, end)).fold(f64::INFINITY, f64::min);
+            measure.least(start, q) + to_end
+        };
+        let route = Route { start, ends: &ends, is_promising: &|q| least(q) <= most };
+        let path = match self.trees.connect(&route, rng, monitor) {
             Connection::Found(path) => path,
             other => return Err(other),
         };
         let mut same = rng.clone();
-        let mut paths = vec![self.trees.shorten(path.clone(), (&|_, _| true, shortcuts), &mut rng, monitor)];
+        let mut paths = vec![self.trees.shorten(path.clone(), (&|_, _| true, SHORTCUTS), rng, monitor)];
         if self.ends_are_free || self.objective == Cost::TipTravel {
             // A line is the shortest way of the joints, and the quickest, but not of the tip.
             let travel = |points: &[Vec<f64>]| tip_travel_along(self.search.robot, points);
             let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| travel(new) <= travel(old);
-            paths.push(self.trees.shorten(path, (&is_shorter, shortcuts), &mut same, monitor));
+            paths.push(self.trees.shorten(path, (&is_shorter, SHORTCUTS), &mut same, monitor));
         }
-        Ok(paths)
+        Ok(paths.into_iter().map(|path| BlendedPath::new(path, &measure, &mut self.trees.check)).collect())
+    }
+
+    /// What makes one path better than another.
+    pub(super) fn measure(&self) -> Measure<'a> {
+        let PairSearch { robot, limits, .. } = self.search;
+        Measure { robot, limits, objective: self.objective }
     }
 
     /// A timed path and its cost.
-    fn timed(&mut self, path: JointPolyline) -> Result<(f64, TimedPath)> {
-        let timed = TimedPath::new(path, self.search.limits, &mut self.trees.check)?;
+    fn timed(&self, BlendedPath { path, shares, .. }: BlendedPath) -> Result<(f64, TimedPath)> {
+        let timed = TimedPath::new(path, shares, self.search.limits)?;
         Ok((self.objective.of(self.search.robot, &timed.motion), timed))
     }
 
@@ -225,25 +240,13 @@ impl<'a> PathSearch<'_, 'a> {
         }
     }
 
-    /// Searches on until the budget is spent.
-    fn improve(
-        &mut self,
-        open: &[EndPair],
-        starts: &[Point],
-        best: &mut Best,
-        mut stream: u64,
-        monitor: &mut dyn Monitor,
-    ) -> Result<()> {
-        for start in starts.iter().cycle() {
-            stream += 1;
-            let Ok(paths) = self.paths(open, start, (stream, MORE_SHORTCUTS), monitor) else { break };
-            for path in paths {
-                let candidate = self.timed(path)?;
-                self.keep_best(vec![candidate], best)?;
-            }
-            monitor.progress(self.trees.check.examined(), self.trees.budget);
-        }
-        Ok(())
+    /// Whether a path can be certified; keeps its motion if that is the best.
+    pub(super) fn can_be_certified(&mut self, path: &BlendedPath, best: &mut Best) -> Result<bool> {
+        let (_, timed) = self.timed(path.clone())?;
+        let motion = self.timing().certified(timed)?;
+        let is_certified = motion.is_some();
+        motion.into_iter().for_each(|motion| self.keep(motion, best));
+        Ok(is_certified)
     }
 
     fn timing(&mut self) -> Timing<'_, 'a> {

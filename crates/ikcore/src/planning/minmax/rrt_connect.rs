@@ -28,6 +28,18 @@ const COMPARISONS: usize = 100;
 /// What drawing a sample costs, in comparisons.
 const SAMPLE: usize = 10;
 
+/// Draws after which a sample is taken even if it is not promising.
+const DRAWS: usize = 1000;
+
+/// What a path is wanted for.
+pub(super) struct Route<'r> {
+    pub start: &'r [f64],
+    /// Any of them will do.
+    pub ends: &'r [Vec<f64>],
+    /// Whether a path through a configuration can be good enough.
+    pub is_promising: &'r dyn Fn(&[f64]) -> bool,
+}
+
 /// The search: lines, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
     pub check: LineCheck<'a>,
@@ -62,17 +74,11 @@ impl<'a> TreeSearch<'a> {
         self.check.examined() >= self.budget || self.compared >= comparisons || self.deadline.is_over()
     }
 
-    /// A path from `start` to any of `ends`, all of them clear.
-    pub(super) fn connect(
-        &mut self,
-        start: &[f64],
-        ends: &[Vec<f64>],
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> Connection {
-        let n = start.len();
-        let mut growing = ConfigurationTree::rooted(&self.ranges, [start]);
-        let mut other = ConfigurationTree::rooted(&self.ranges, ends.iter().map(Vec::as_slice));
+    /// A path between ends that are clear.
+    pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
+        let n = route.start.len();
+        let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);
+        let mut other = ConfigurationTree::rooted(&self.ranges, route.ends.iter().map(Vec::as_slice));
         let mut from_start = true;
         let (mut sample, mut next) = (vec![0.0; n], vec![0.0; n]);
         while !self.is_spent() {
@@ -84,10 +90,8 @@ impl<'a> TreeSearch<'a> {
                 std::mem::swap(&mut growing, &mut other);
                 from_start = !from_start;
             }
-            for (sample, (lower, upper)) in sample.iter_mut().zip(&self.ranges) {
-                *sample = rng.uniform_in(*lower, *upper);
-            }
-            self.compared += growing.len() + SAMPLE;
+            self.draw(route, rng, &mut sample);
+            self.compared += growing.len();
             let Some((near, distance)) = growing.nearest(&sample) else { break };
             if !growing.is_in_domain(near, distance) {
                 continue;
@@ -111,6 +115,19 @@ impl<'a> TreeSearch<'a> {
             }
         }
         Connection::NotFound
+    }
+
+    /// Draws a configuration that is promising, if possible.
+    fn draw(&mut self, route: &Route, rng: &mut LazyRng, sample: &mut [f64]) {
+        for _ in 0..DRAWS {
+            self.compared += SAMPLE;
+            for (sample, (lower, upper)) in sample.iter_mut().zip(&self.ranges) {
+                *sample = rng.uniform_in(*lower, *upper);
+            }
+            if (route.is_promising)(sample) {
+                break;
+            }
+        }
     }
 
     /// Grows `tree` towards `goal` stride by stride; returns the node from which a clear line leads there.
@@ -161,7 +178,8 @@ mod tests {
         let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
         let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
         let mut rng = rng::stream(1, 0);
-        let found = search.connect(&start, &[end.to_vec()], &mut rng, monitor);
+        let route = Route { start: &start, ends: &[end.to_vec()], is_promising: &|_| true };
+        let found = search.connect(&route, &mut rng, monitor);
         if let Connection::Found(path) = &found {
             let length =
                 |path: &JointPolyline| -> f64 { path.0.windows(2).map(|line| distance(&line[0], &line[1])).sum() };
