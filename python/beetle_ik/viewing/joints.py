@@ -1,0 +1,50 @@
+"""A slider for each joint."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .page import set_value
+
+if TYPE_CHECKING:
+    from .page import Page
+
+_STEP = 0.001  # rad, m
+_UNLIMITED = {"prismatic": 2.0}  # m; other joints without limits: a turn each way
+
+
+class Joints:
+    """Sliders between the limits of the joints, which put the arm."""
+
+    def __init__(self, page: Page) -> None:
+        """Adds the sliders."""
+        self._arm = arm = page.arm
+        robot = arm.robot
+        self._sliders = []
+        for name, kind, low, high, q in zip(
+            robot.joint_names, robot.joint_kinds, robot.lower, robot.upper, arm.q, strict=True
+        ):
+            span = _UNLIMITED.get(kind, 2 * np.pi)
+            low, high = (float(each) for each in (max(low, -span), min(high, span)))
+            slider = page.server.gui.add_slider(
+                name, min=low, max=high, step=_STEP, initial_value=float(np.clip(q, low, high)),
+                hint=f"{kind}, {'m' if kind == 'prismatic' else 'rad'}",
+            )  # fmt: skip
+            page.on_input(slider, self._put)
+            self._sliders.append(slider)
+
+    def _put(self) -> None:
+        q = self._arm.q.copy()
+        for j, slider in enumerate(self._sliders):
+            if abs(slider.value - q[j]) > _STEP:
+                q[j] = slider.value
+        self._arm.put(self._arm.robot.clip(q))
+
+    def refresh(self) -> None:
+        """Shows where the joints are."""
+        for slider, q in zip(self._sliders, self._arm.q.tolist(), strict=True):
+            shown = min(max(q, slider.min), slider.max)
+            if abs(slider.value - shown) > 0.5 * _STEP:
+                set_value(slider, round(shown, 3))
