@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from .. import tasks
-from .._core import Obstacle, Robot, Solution, Status, Step, Stop, Tracker, nearest, solve
+from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, nearest, solve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +23,9 @@ PARTS: tuple[Part, ...] = get_args(Part)
 
 DT = 1.0 / 60.0  # s, of a tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
-_STILL = 1e-7  # rad, m: an arm that moves less in a tick rests
+_REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
+_ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
+_STILL = 1e-8  # rad, m: an arm that moves less in a tick rests
 
 
 class Arm:
@@ -32,6 +34,7 @@ class Arm:
     Attributes:
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
+        moves: whether the last tick moved it.
     """
 
     def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
@@ -39,12 +42,14 @@ class Arm:
         self.robot = robot
         self.q = q
         self.outcome: Step | Solution | None = None
+        self.moves = False
         self._target = robot.fk(q)
         self._obstacles = obstacles
         self._follow: Follow = "track"
         self._part: Part = "pose" if robot.dof >= 6 else "position"
         self._keeps_clear = True
         self._tracker: Tracker | None = None
+        self._escapes = False
         self._rests = True
 
     @property
@@ -125,17 +130,16 @@ class Arm:
 
     def advance(self) -> bool:
         """Moves towards the target for one tick; returns whether the arm moved. An arm that was put somewhere rests."""
+        self.moves = False
         if self._rests or self._follow == "off":
             return False
         before = self.q
         if self._follow == "solve":
             self.solve()
         else:
-            if self._tracker is None:
-                self._tracker = Tracker(self.robot, self.q, dt=DT, task=self.task, obstacles=self.avoided)
-            self.outcome = self._tracker.step(self.goal)
-            self.q = self.outcome.q
-        return bool(np.abs(self.q - before).max() > _STILL)
+            self._track()
+        self.moves = bool(np.abs(self.q - before).max() > _STILL) or (self._escapes and self._tracker is None)
+        return self.moves
 
     def solve(self) -> None:
         """Puts the arm at a solution, or as near to the target as it gets, unless it would collide there."""
@@ -149,6 +153,23 @@ class Arm:
     def avoided(self) -> list[Obstacle] | None:
         """What solvers take as `obstacles`."""
         return self._obstacles if self._keeps_clear else None
+
+    def _track(self) -> None:
+        """Takes a step of the tracker.
+
+        Under acceleration limits an arm follows smoothly and comes to rest beside an obstacle; without them it moves
+        out of one that was moved into it.
+        """
+        if self._tracker is None:
+            limits = None if self._escapes else Limits(acceleration=_ACCELERATION)
+            self._tracker = Tracker(
+                self.robot, self.q, dt=DT, task=self.task, obstacles=self.avoided, limits=limits, **_REACHED
+            )
+        self.outcome = self._tracker.step(self.goal)
+        self.q = self.outcome.q
+        touches = self.outcome.status is Status.IN_COLLISION
+        if touches != self._escapes:
+            self._escapes, self._tracker = touches, None
 
     def _restart(self) -> None:
         self._tracker, self._rests = None, False

@@ -28,7 +28,7 @@ class Handle:
         self._arm = arm = page.arm
         gui = page.server.gui
         self._gizmo = page.server.scene.add_transform_controls("/target", scale=_SIZE * page.scale, depth_test=False)
-        self._position = gui.add_vector3("target [m]", (0.0, 0.0, 0.0), step=0.01)
+        self._position = gui.add_vector3("target [m]", (0.0, 0.0, 0.0), step=0.001)
         self._part = gui.add_dropdown("what counts", PARTS, initial_value=arm.part)
         self._follow = gui.add_dropdown("the arm follows", FOLLOWS, initial_value=arm.follow)
         self._clear = gui.add_checkbox("keep clear", arm.keeps_clear, hint="of obstacles, and of the arm's own links")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _NONE = "none"
 _SIZE = 0.15  # of a new obstacle and of the handle, as a fraction of the arm
-_AWAY = 0.5  # in front of the base and above it, of a new obstacle, as a fraction of the arm
+_BESIDE = np.array([0.4, 0.4, 0.2])  # where a new obstacle appears, as a fraction of the arm
 _OPACITY = 0.7
 _NEW: dict[str, Callable[[NDArray[np.float64], float], Obstacle]] = {
     "box": lambda center, size: shapes.Box(center, (size, size, size)),
@@ -69,7 +69,7 @@ class Obstacles:
 
     def _add(self, kind: str) -> None:
         scale = self._page.scale
-        made = _NEW[kind](np.array([_AWAY, 0.0, _AWAY]) * scale, _SIZE * scale)
+        made = _NEW[kind](_BESIDE * scale, _SIZE * scale)
         self._page.arm.obstacles = [*self._page.arm.obstacles, made]
         self.refresh()
         self._choose(len(self._drawn) - 1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .._core import Status
 from .._style import BLUE, VERMILION, rgb
 
 if TYPE_CHECKING:
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
     from .page import Page
 
 _FAR = 1.0  # a nearest body farther away than this fraction of the arm is not pointed out
+_WORDS = {
+    Status.SOLVED: "reached",
+    Status.IN_COLLISION: "in collision",
+    Status.HELD_BY_OBSTACLE: "held by an obstacle",
+    Status.OUT_OF_REACH: "out of reach",
+}
 
 
 class Report:
@@ -53,7 +60,7 @@ class Report:
             return "at rest" if arm.follow != "off" else "moved from outside"
         position, rotation = arm.outcome.position_error, arm.outcome.rotation_error
         turned = "" if math.isnan(rotation) else f", {math.degrees(rotation):.1f}°"
-        word = arm.outcome.status.name.lower().replace("_", " ")
+        word = _WORDS.get(arm.outcome.status, "under way" if arm.moves else "as near as it gets from here")
         return f"{word}: {1e3 * position:.1f} mm{turned} from the target"
 
 

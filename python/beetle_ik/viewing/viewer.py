@@ -120,6 +120,7 @@ class Viewer:
         self._callbacks: list[Callable[[Array], object]] = []
         self._arm = Arm(self.robot, begin, scene)
         self._told = self._arm.target
+        self._moves = False
         self._last_tick = time.monotonic()
         self._worker = Worker(self._work, DT)
         try:
@@ -190,6 +191,11 @@ class Viewer:
         """The last `Step` or `Solution` on the way to the target; None after the arm was put somewhere."""
         return self._arm.outcome
 
+    @property
+    def moves(self) -> bool:
+        """Whether the arm is under way to its target, or a motion is played back."""
+        return self._moves
+
     def show(self, result: Shown) -> None:
         """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts.
 
@@ -235,6 +241,7 @@ class Viewer:
             raise BeetleIkError(f"the viewer of '{self.robot.name}' is closed: bik.view opens another one")
         with self._lock:
             change()
+            self._moves = True  # until the next tick knows better
             self._parts.refresh()
         self._worker.ask("changed", lambda: None)
 
@@ -247,14 +254,14 @@ class Viewer:
                 self._parts.report.problem = ""
             for request in requests:
                 self._guarded(request)
-            moving = bool(self._guarded(lambda: self._parts.advance(elapsed)))
-            self._parts.refresh(moving=moving)
+            self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
+            self._parts.refresh(moving=self._moves)
             target = self._arm.target
         if target is not self._told:
             self._told = target
             for callback in self._callbacks:
                 self._guarded(partial(callback, target))
-        return moving
+        return self._moves
 
     def _guarded(self, action: Callable[[], object]) -> object:
         """Carries out an action; what it raises is shown on the page, and does not end the thread."""
