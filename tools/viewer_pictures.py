@@ -1,11 +1,14 @@
 """Draws the pictures of `docs/viewer.md`: python tools/viewer_pictures.py docs/images.
 
-Drives a headless Chromium as a visitor of the page would; the tests of the viewer use the same visitor.
+Needs the extras `view` and `zoo`, playwright and Chromium. The tests of the viewer use the same visitor of the page.
 """
 
+import argparse
 import shutil
+import sysconfig
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +19,8 @@ import beetle_ik as bik
 Array = NDArray[np.float64]
 
 _SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+_WIDTH, _HEIGHT = 1050, 660  # of the pictures, in pixels
+_REDRAWS = 10  # until the resolution is full again
 _GRIP = 0.5  # where an arrow of a handle is taken, as a fraction of the size of the handle
 _MOVES = 8  # of the mouse, in a drag
 _DELIVERY = 100  # ms: messages to a page are sent a few times a second or more often
@@ -60,6 +65,14 @@ class Visitor:
                 return
             self.page.wait_for_timeout(20)
         raise TimeoutError(f"still {self.text()!r}, {self.viewer.outcome}")
+
+    def picture(self, file: Path) -> None:
+        """Writes what the page shows, once it has drawn all of it, and leaves."""
+        for _ in range(_REDRAWS):
+            self.settle()
+        self.page.mouse.move(1, 1)
+        self.page.screenshot(path=file)
+        self.page.close()
 
     def settle(self) -> None:
         """Waits until the page has drawn what it was sent."""
@@ -113,3 +126,70 @@ def visits() -> Iterator[Any]:
         browser = playwright.chromium.launch(executable_path=chromium(), args=_SOFTWARE)
         yield browser
         browser.close()
+
+
+ROBOTS = Path(sysconfig.get_path("purelib"), "cmeel.prefix", "share", "example-robot-data", "robots")
+START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
+
+
+def panda() -> bik.Robot:
+    """Returns a Panda with meshes."""
+    return bik.Robot.from_urdf(ROBOTS / "panda_description/urdf/panda.urdf", tip="panda_hand_tcp", collision="hulls")
+
+
+def dragged(browser: Any, file: Path) -> None:
+    """Pictures an arm beside a box, after its handle was dragged."""
+    board = bik.obstacles.Box((0.5, 0.0, 0.1), (0.4, 1.0, 0.02))
+    box = bik.obstacles.Box((0.5, 0.25, 0.23), (0.2, 0.15, 0.24))
+    with bik.view(panda(), START, obstacles=[board, box], port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        visitor.drag("/target", 2, 0.2)
+        visitor.until(lambda: not viewer.moves)
+        visitor.picture(file)
+
+
+def solved(browser: Any, file: Path) -> None:
+    """Pictures all solutions of a pose."""
+    robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
+    with bik.view(robot, port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        viewer.follow = "solve"
+        viewer.target = bik.pose([0.3, 0.35, 0.45], rpy=[np.pi / 2, 0.0, 2.0])
+        visitor.until(lambda: not viewer.moves)
+        visitor.open_tab("Postures")
+        visitor.press("Show all solutions")
+        visitor.page.get_by_label("velocity ellipsoid").check()
+        visitor.picture(file)
+
+
+def played(browser: Any, file: Path) -> None:
+    """Pictures a plan around a post, in the middle of its motion."""
+    robot = panda()
+    post = bik.obstacles.Box((0.5, 0.0, 0.25), (0.06, 0.06, 0.5))
+    ends = [START + side * np.array([0.7, 0, 0, 0, 0, 0, 0]) for side in (-1, 1)]
+    limits = bik.Limits(acceleration=5.0)
+    plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], obstacles=[post], limits=limits)
+    with bik.view(robot, START, port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        viewer.show(plan)
+        visitor.press("Pause")
+        visitor.settle()
+        middle = visitor.page.locator("input[type=text]:visible").first
+        middle.fill(f"{0.5 * plan.trajectory.duration:.2f}")
+        middle.press("Enter")
+        visitor.until(lambda: not viewer.moves)
+        visitor.picture(file)
+
+
+def main() -> None:
+    """Writes the pictures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path)
+    out: Path = parser.parse_args().out
+    with visits() as browser:
+        for draw in (dragged, solved, played):
+            draw(browser, out / f"viewer_{draw.__name__}.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -51,7 +51,7 @@ def _loaded(robot: str, base: str | None, tip: str | None) -> Robot:
     if file.suffix == ".xml":
         return Robot.from_mjcf(file, base=base, tip=tip, collision="hulls")
     try:
-        return Robot.from_urdf(file, base=base, tip=tip, collision="fit")
+        return Robot.from_urdf(file, base=base, tip=tip, collision="hulls")
     except UrdfError as error:
         arm = Robot.from_urdf(file, base=base, tip=tip)  # raises what is wrong with more than the meshes
         typer.echo(f"Without its meshes: {error}", err=True)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _LOOK = np.array([0.15, 0.0, 0.3])  # of the camera, as a fraction of the arm
-_FROM = np.array([1.5, 1.2, 0.9])
+_FROM = np.array([1.2, 1.0, 0.75])
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out

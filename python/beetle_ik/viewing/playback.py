@@ -48,7 +48,7 @@ class Playback:
         for handle in self._drawn:
             handle.remove()
         self._motion, self._time = motion, 0.0
-        self._bar.max = max(motion.duration, _STEP)
+        self._bar.max = max(round(motion.duration + 0.5 * _STEP, 2), _STEP)
         self._folder.visible = True
         times = np.linspace(0.0, motion.duration, _SAMPLES)
         q, qd, _ = motion.at(times)

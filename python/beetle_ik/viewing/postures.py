@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .page import Page
 
 _MOST = 32  # ghosts
-_ELLIPSOID = 0.3  # s: the ellipsoid is drawn as far as the tip comes in this time at unit joint speeds
+_ELLIPSOID = 0.15  # s: the ellipsoid is drawn as far as the tip comes in this time at unit joint speeds
 _FLAT = 1e-3  # thickness of the ellipsoid along a direction that is lost
 
 
@@ -66,7 +66,7 @@ class Postures:
     def _show_all(self) -> None:
         arm = self._page.arm
         found = solve_all(arm.robot, arm.goal, task=arm.task, start=arm.q, obstacles=arm.avoided, stop=QUICKLY)
-        proven = " No other is inside the limits." if found.complete else ""
+        proven = f" No other is inside the limits{' and clear' if arm.keeps_clear else ''}." if found.complete else ""
         self.show_ghosts(found.q, f"{counted(len(found), 'solution')}.{proven}" if len(found) else found.message)
 
     def _hide(self) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._core import Status
+from .._core import Solution, Status
 from .._style import BLUE, VERMILION, rgb
 
 if TYPE_CHECKING:
@@ -58,6 +58,8 @@ class Report:
         arm = self._page.arm
         if arm.outcome is None:
             return "at rest" if arm.follow != "off" else "moved from outside"
+        if isinstance(arm.outcome, Solution) and arm.outcome.status is Status.IN_COLLISION:
+            return "no clear solution: the arm stays"
         position, rotation = arm.outcome.position_error, arm.outcome.rotation_error
         turned = "" if math.isnan(rotation) else f", {math.degrees(rotation):.1f}°"
         word = _WORDS.get(arm.outcome.status, "under way" if arm.moves else "as near as it gets from here")

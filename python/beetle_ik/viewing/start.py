@@ -21,7 +21,7 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     unread = counted(len(robot.unread_collision_shapes), "collision shape")
     if robot.unread_collision_shapes and robot.bodies and has_meshes:
         robot = robot.with_capsules(list(robot.capsules))
-        notes.append(f'{unread} not read, and not kept clear: Robot.from_urdf(..., collision="fit") reads meshes')
+        notes.append(f'{unread} not read, and not kept clear: Robot.from_urdf(..., collision="fit") reads them')
     elif robot.unread_collision_shapes or not robot.bodies:
         lacking = f"{unread} not read" if robot.unread_collision_shapes else "no bodies in the model"
         radius = max(_THICKNESS * length(robot), _THINNEST)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._core import Capsule, Ellipsoid, Sphere
 from .._style import LINKS, SKY, rgb
 from .._surface import simplified
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 _MOST = 100_000  # triangles of a link
 _TRANSLUCENT = 0.25
+_SAME = 7  # decimals of corners that are the same
+_SMOOTH = (Capsule, Ellipsoid, Sphere)
 
 
 class Surface(NamedTuple):
@@ -31,6 +34,16 @@ class Surface(NamedTuple):
     triangles: Array
     color: tuple[int, int, int]
     is_body: bool
+    """Whether it encloses a mesh of the same link."""
+    smooth: bool = False
+
+    def mesh(self) -> dict[str, Any]:
+        """Returns what viser takes: vertices, faces, and how light falls on them. Shared corners are smooth."""
+        vertices, faces = soup(self.triangles)
+        if self.smooth:
+            _, first, corners = np.unique(vertices.round(_SAME), axis=0, return_index=True, return_inverse=True)
+            vertices, faces = vertices[first], corners.reshape(-1, 3)
+        return {"vertices": vertices, "faces": faces, "flat_shading": not self.smooth}
 
 
 def surfaces(robot: Robot, meshes: Meshes) -> list[Surface]:
@@ -40,8 +53,9 @@ def surfaces(robot: Robot, meshes: Meshes) -> list[Surface]:
     covered = {surface.link for surface in made}
     for body in robot.bodies:
         if getattr(body.shape, "radius", 1.0):  # a rod without thickness has no surface
-            color = rgb(SKY) if body.link in covered else colors[body.link]
-            made.append(Surface(body.link, body.shape.triangles, color, is_body=body.link in covered))
+            color = rgb(SKY if body.link in covered else LINKS[1])  # one colour: neighbours overlap at their joint
+            smooth = isinstance(body.shape, _SMOOTH)
+            made.append(Surface(body.link, body.shape.triangles, color, body.link in covered, smooth))
     return made
 
 
@@ -68,8 +82,8 @@ class Links:
         frames = dict(zip(self._robot.all_link_names, self._frames, strict=True))
         for i, surface in enumerate(self._surfaces):
             yield surface, self._scene.add_mesh_simple(
-                f"{frames[surface.link].name}/{i}", *soup(surface.triangles), color=surface.color, flat_shading=True,
-                side="double", opacity=_TRANSLUCENT if surface.is_body else None, visible=not surface.is_body,
+                f"{frames[surface.link].name}/{i}", **surface.mesh(), color=surface.color, side="double",
+                opacity=_TRANSLUCENT if surface.is_body else None, visible=not surface.is_body,
             )  # fmt: skip
 
     def show_bodies(self, shown: bool) -> None:
@@ -100,8 +114,8 @@ class Links:
                 continue
             places = poses[:, self._robot.all_link_names.index(surface.link)]
             ghosts = self._scene.add_batched_meshes_simple(
-                f"/ghosts/{i}", *soup(surface.triangles), wxyz(places), places[:, :3, 3], opacity=_TRANSLUCENT,
-                batched_colors=surface.color, flat_shading=True, lod="off", cast_shadow=False,
+                f"/ghosts/{i}", **surface.mesh(), batched_wxyzs=wxyz(places), batched_positions=places[:, :3, 3],
+                batched_colors=rgb(SKY), opacity=_TRANSLUCENT, lod="off", cast_shadow=False,
             )  # fmt: skip
             self._ghosts.append(ghosts)
 
