@@ -25,7 +25,8 @@ DT = 1.0 / 60.0  # s, of a tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
 _REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
 _ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
-_STILL = 1e-8  # rad, m: an arm that moves less in a tick rests
+_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived
+_PAUSE = 30  # ticks
 
 
 class Arm:
@@ -34,7 +35,7 @@ class Arm:
     Attributes:
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
-        moves: whether the last tick moved it.
+        moves: whether it is under way to the target.
     """
 
     def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
@@ -50,7 +51,7 @@ class Arm:
         self._keeps_clear = True
         self._tracker: Tracker | None = None
         self._escapes = False
-        self._rests = True
+        self._anchor, self._ticks = q, 0
 
     @property
     def target(self) -> Array:
@@ -60,7 +61,7 @@ class Arm:
     @target.setter
     def target(self, target: Array) -> None:
         self._target = target
-        self._rests = False
+        self._set_off()
 
     @property
     def obstacles(self) -> list[Obstacle]:
@@ -70,7 +71,7 @@ class Arm:
     @obstacles.setter
     def obstacles(self, obstacles: list[Obstacle]) -> None:
         self._obstacles = obstacles
-        self._rests = False
+        self._set_off()
         if self._tracker is not None:
             self._tracker.obstacles = self.avoided
 
@@ -82,7 +83,6 @@ class Arm:
     @follow.setter
     def follow(self, follow: Follow) -> None:
         self._follow = follow
-        self.q = self.robot.clip(self.q)  # who moves the arm may leave its limits, where no tracker starts
         self._restart()
 
     @property
@@ -116,6 +116,11 @@ class Arm:
         return tasks.Pointing() if self._part == "pointing" else None
 
     @property
+    def inside(self) -> Array:
+        """The configuration inside the limits where solvers start; a motion that was shown may have left them."""
+        return self.robot.clip(self.q)
+
+    @property
     def nearest(self) -> Nearest | None:
         """The nearest two bodies, whether the arm keeps clear of them or not."""
         return nearest(self.robot, self.q, self._obstacles)
@@ -125,29 +130,29 @@ class Arm:
         self.q, self.outcome = q, None
         if self._follow != "off":
             self._target = self.robot.fk(q)
-        self._restart()
-        self._rests = True
+        self._tracker, self.moves = None, False
 
     def advance(self) -> bool:
-        """Moves towards the target for one tick; returns whether the arm moved. An arm that was put somewhere rests."""
-        self.moves = False
-        if self._rests or self._follow == "off":
+        """Moves towards the target for one tick, unless the arm was put somewhere; returns whether it is under way."""
+        if not self.moves:
             return False
-        before = self.q
         if self._follow == "solve":
             self.solve()
-        else:
-            self._track()
-        self.moves = bool(np.abs(self.q - before).max() > _STILL) or (self._escapes and self._tracker is None)
+            return False
+        self._track()
+        if np.abs(self.q - self._anchor).max() > _STILL:
+            self._anchor, self._ticks = self.q, 0
+        self._ticks += 1
+        self.moves = self._ticks < _PAUSE
         return self.moves
 
     def solve(self) -> None:
         """Puts the arm at a solution, or as near to the target as it gets, unless it would collide there."""
-        found = solve(self.robot, self.goal, task=self.task, start=self.q, obstacles=self.avoided, stop=QUICKLY)
+        found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
         self.outcome = found
+        self._tracker, self.moves = None, False
         if found.status is not Status.IN_COLLISION:
             self.q = found.q
-            self._tracker = None
 
     @property
     def avoided(self) -> list[Obstacle] | None:
@@ -163,7 +168,7 @@ class Arm:
         if self._tracker is None:
             limits = None if self._escapes else Limits(acceleration=_ACCELERATION)
             self._tracker = Tracker(
-                self.robot, self.q, dt=DT, task=self.task, obstacles=self.avoided, limits=limits, **_REACHED
+                self.robot, self.inside, dt=DT, task=self.task, obstacles=self.avoided, limits=limits, **_REACHED
             )
         self.outcome = self._tracker.step(self.goal)
         self.q = self.outcome.q
@@ -172,4 +177,9 @@ class Arm:
             self._escapes, self._tracker = touches, None
 
     def _restart(self) -> None:
-        self._tracker, self._rests = None, False
+        self._tracker = None
+        self._set_off()
+
+    def _set_off(self) -> None:
+        self.moves = self._follow != "off"
+        self._anchor, self._ticks = self.q, 0

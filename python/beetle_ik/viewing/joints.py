@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy as np
 from .page import set_value
 
 if TYPE_CHECKING:
+    import viser
+
     from .page import Page
 
 _STEP = 0.001  # rad, m
@@ -22,7 +25,7 @@ class Joints:
         """Adds the sliders."""
         self._arm = arm = page.arm
         robot = arm.robot
-        self._sliders = []
+        self._sliders: list[viser.GuiSliderHandle[float]] = []
         for name, kind, low, high, q in zip(
             robot.joint_names, robot.joint_kinds, robot.lower, robot.upper, arm.q, strict=True
         ):
@@ -32,14 +35,12 @@ class Joints:
                 name, min=low, max=high, step=_STEP, initial_value=float(np.clip(q, low, high)),
                 hint=f"{kind}, {'m' if kind == 'prismatic' else 'rad'}",
             )  # fmt: skip
-            page.on_input(slider, self._put)
+            page.on_input(slider, partial(self._put, len(self._sliders)))
             self._sliders.append(slider)
 
-    def _put(self) -> None:
+    def _put(self, joint: int) -> None:
         q = self._arm.q.copy()
-        for j, slider in enumerate(self._sliders):
-            if abs(slider.value - q[j]) > _STEP:
-                q[j] = slider.value
+        q[joint] = self._sliders[joint].value
         self._arm.put(self._arm.robot.clip(q))
 
     def refresh(self) -> None:

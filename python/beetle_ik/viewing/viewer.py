@@ -106,6 +106,10 @@ class Viewer:
     ) -> None:
         """Serves the page; `view` describes the arguments."""
         require("robot", robot, Robot)
+        if robot.fk(start.middle(robot)).ndim > 2:
+            raise InvalidInputError(
+                f"robot '{robot.name}' has several tips; the viewer steers one: load it with one tip"
+            )
         meshes, missing = start.meshes(robot)
         self.robot, notes = start.shown(robot, has_meshes=bool(meshes))
         scene = list(Scene(() if obstacles is None else obstacles))
