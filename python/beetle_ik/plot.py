@@ -14,7 +14,7 @@ import numpy as np
 from . import _core, _plan_figure
 from ._arguments import require
 from ._shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
-from ._style import BLUE, FORBIDDEN, GREEN, ORANGE, VERMILION, line, style
+from ._style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, style
 from ._surface import Surface, draw_surfaces
 from ._text import counted
 
@@ -36,7 +36,6 @@ _HEADROOM = 1.15  # height of a panel over what it shows
 _FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
-_LINKS = ("#E9EBEE", "#9FB3C8")  # colours of meshes, by turns
 _ABOVE = 1000  # drawn after everything else
 
 
@@ -86,7 +85,7 @@ def robot(
 def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
     """Returns the meshes of the links at `q` (n,); neighbours differ in colour."""
     poses = link_poses(robot, q)
-    colors = dict(zip(poses, itertools.cycle(_LINKS), strict=False))
+    colors = dict(zip(poses, itertools.cycle(LINKS), strict=False))
     meshes = robot.collision_meshes()
     return [Surface(moved(mesh.triangles, poses[link]), colors[link]) for link, mesh in meshes]
 
