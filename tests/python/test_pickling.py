@@ -388,7 +388,7 @@ DAMAGED = "the bytes were damaged: their checksum differs"
     ("damage", "problem"),
     [
         (lambda stored: stored[:0], "no bytes"),
-        (lambda stored: b"\x63" + stored[1:], "format version 99, this library reads version 1"),
+        (lambda stored: b"\x63" + stored[1:], "format version 99, this library reads versions 1 to 2"),
         (lambda stored: stored[:-1], DAMAGED),
         (lambda stored: stored[:20] + bytes([stored[20] ^ 1]) + stored[21:], DAMAGED),
         (lambda stored: stored[:5], DAMAGED),

@@ -51,6 +51,7 @@ pub(crate) fn check_point_to_point(
     ends: &[Endpoint],
     options: &PointToPointOptions,
 ) -> Result<()> {
+    robot.require_one_tip("plan_point_to_point")?;
     let task = options.task.as_ref();
     task.map_or(Ok(()), Task::validate)?;
     start.check(EndName::Start, robot, task)?;

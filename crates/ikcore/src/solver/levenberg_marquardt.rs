@@ -5,7 +5,6 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result, require_positive};
-use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Levenberg-Marquardt.
@@ -152,9 +151,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let State { x, descent, linearizations, here } = state;
         let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
-        let Linearization { columns, residual } = &linearizations[*here];
-        let (lower, upper) = (bounds.lower(), bounds.upper());
-        BoxStep { columns, residual, lambda, x, lower, upper }.write(&mut trial);
+        linearizations[*here].write_step(lambda, x, [bounds.lower(), bounds.upper()], &mut trial);
         if trial == *x {
             return Err(Status::Stalled);
         }
