@@ -363,6 +363,10 @@ def assert_same(one: object, other: object) -> None:
         assert one.keys() == other.keys()
         for name in one:
             assert_same(one[name], other[name])
+    elif isinstance(one, tuple):
+        assert len(one) == len(other)  # type: ignore[arg-type]
+        for mine, theirs in zip(one, other, strict=True):  # type: ignore[call-overload]
+            assert_same(mine, theirs)
     elif isinstance(one, float):
         np.testing.assert_array_equal(one, other)
     else:

@@ -65,7 +65,7 @@ impl<'a> Job<'a> {
         self.targets.check(i)?;
         if i == 0 || matches!(self.targets, Targets::Tips(_)) {
             // Whether the task takes targets of this kind, and those of several tips go together.
-            self.context.part_used(&self.targets.read(i))?;
+            self.context.reduce(&mut self.targets.read(i))?;
         }
         self.own_start(i).map_or(Ok(()), |start| self.context.check_start(start))
     }
@@ -75,7 +75,8 @@ impl<'a> Job<'a> {
         if !self.rows_are_checked {
             self.check(i)?;
         }
-        let targets = self.context.part_used(&self.targets.read(i))?;
+        let mut targets = self.targets.read(i);
+        self.context.reduce(&mut targets)?;
         Ok((targets, self.own_start(i).or(self.common_start)))
     }
 

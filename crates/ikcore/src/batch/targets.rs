@@ -1,7 +1,6 @@
 //! The targets of a batch.
 
 use nalgebra::Matrix4;
-use smallvec::smallvec;
 
 use crate::error::{Error, Result};
 use crate::math::pose;
@@ -49,8 +48,10 @@ impl Targets<'_> {
     #[inline]
     pub fn read(&self, i: usize) -> TargetRow {
         match self {
-            Self::Positions(rows) => smallvec![Target::Position(rows[i])],
-            Self::Poses(rows) => smallvec![Target::from(&pose::from_checked(&Matrix4::from_row_slice(&rows[i])))],
+            Self::Positions(rows) => TargetRow::from_buf([Target::Position(rows[i])]),
+            Self::Poses(rows) => {
+                TargetRow::from_buf([Target::from(&pose::from_checked(&Matrix4::from_row_slice(&rows[i])))])
+            }
             Self::Tips(tasks) => tasks.iter().flat_map(|task| task.read(i)).collect(),
         }
     }

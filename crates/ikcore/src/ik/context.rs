@@ -3,11 +3,9 @@
 use std::borrow::Cow;
 use std::sync::{LazyLock, OnceLock};
 
-use smallvec::smallvec;
-
 use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
-use super::tip_tasks::{parts_used, tasks_of_tips};
+use super::tip_tasks::{reduce, tasks_of_tips};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
@@ -140,33 +138,37 @@ impl<'a> SolveContext<'a> {
     /// The problem of reaching the targets of a query.
     pub(super) fn problem<'p>(&'p self, targets: &'p [Target]) -> Problem<'p> {
         let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
-        let problem = match (&self.tips[..], targets) {
-            ([], [target]) => Problem::new(self.robot(), target, self.criterion),
-            (tasks, targets) => Problem::of_tips(self.robot(), TipAims { tasks, targets }),
-        };
-        problem.disregarding_turns().penalized(penalty)
+        match (&self.tips[..], targets) {
+            ([], [target]) => Problem::of_configuration(self.robot(), target, self.criterion, penalty),
+            (tasks, targets) => Problem::of_tips(self.robot(), TipAims { tasks, targets }, penalty),
+        }
     }
 
     /// Returns the parts of the targets `wanted` that their tasks use, validated.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets of tips that contradict each other.
+    /// [`Error::NotFinite`]; those of [`reduce`](Self::reduce).
     pub(crate) fn read(&self, wanted: &[Target]) -> Result<TargetRow> {
         wanted.iter().try_for_each(Target::validate)?;
-        self.part_used(wanted)
+        let mut targets = TargetRow::from_slice(wanted);
+        self.reduce(&mut targets)?;
+        Ok(targets)
     }
 
-    /// Returns the parts of the targets `wanted` that their tasks use.
+    /// Reduces targets to the parts that their tasks use.
     ///
     /// # Errors
-    /// [`Error::WrongTarget`]; as [`read`](Self::read) for targets that contradict each other.
+    /// [`Error::WrongTarget`], or [`Error::Contradiction`] for targets of tips that contradict each other.
     #[inline]
-    pub(crate) fn part_used(&self, wanted: &[Target]) -> Result<TargetRow> {
-        if let ([], [wanted]) = (&self.tips[..], wanted) {
-            let used = self.options.task.as_ref().map_or(Ok(*wanted), |task| task.target(wanted))?;
-            return Ok(smallvec![used]);
+    pub(crate) fn reduce(&self, targets: &mut [Target]) -> Result<()> {
+        match (&self.tips[..], targets, &self.options.task) {
+            ([], [_], None) => Ok(()),
+            ([], [target], Some(task)) => {
+                *target = task.target(target)?;
+                Ok(())
+            }
+            (tasks, targets, _) => reduce(self.robot, tasks, targets),
         }
-        parts_used(self.robot, &self.tips, wanted)
     }
 
     /// Checks a start.

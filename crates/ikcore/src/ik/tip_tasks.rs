@@ -51,19 +51,19 @@ fn turned(subject: Subject) -> Subject {
     }
 }
 
-/// The parts of the targets `wanted` that their tasks use.
+/// Reduces targets to the parts that their tasks use.
 ///
 /// # Errors
 /// [`Error::WrongLength`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets that contradict each other.
-pub(super) fn parts_used(robot: &Robot, tasks: &[TipCriterion], wanted: &[Target]) -> Result<TargetRow> {
-    if tasks.len() != wanted.len() {
+pub(super) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
+    if tasks.len() != targets.len() {
         let expected = format!("{} targets, one for each task", tasks.len().max(1));
-        return Err(Error::WrongLength { what: "targets".into(), expected, got: wanted.len() });
+        return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });
     }
-    let used: TargetRow =
-        tasks.iter().zip(wanted).map(|(task, wanted)| task.part_used(wanted)).collect::<Result<_>>()?;
-    TipAims { tasks, targets: &used }.require_consistent(robot)?;
-    Ok(used)
+    for (task, target) in tasks.iter().zip(&mut *targets) {
+        *target = task.part_used(target)?;
+    }
+    TipAims { tasks, targets }.require_consistent(robot)
 }
 
 /// The errors of each task of several tips at each of the configurations `qs` (m, n), row-major; NaN where a configuration or a
@@ -81,8 +81,9 @@ pub fn tip_errors(
     let mut errors = Vec::with_capacity(tasks.len() * qs.len() / robot.dof());
     for (row, q) in qs.chunks_exact(robot.dof()).enumerate() {
         checkpoint_at(row)?;
-        match parts_used(robot, &tasks, &targets(row)) {
-            Ok(targets) if q.iter().all(|value| value.is_finite()) => {
+        let mut targets = targets(row);
+        match reduce(robot, &tasks, &mut targets) {
+            Ok(()) if q.iter().all(|value| value.is_finite()) => {
                 errors.extend(TipAims { tasks: &tasks, targets: &targets }.errors(robot, q));
             }
             _ => errors.extend(tasks.iter().map(|_| TipError { position: f64::NAN, rotation: f64::NAN })),

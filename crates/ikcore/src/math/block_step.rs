@@ -192,9 +192,9 @@ by_instructions! {
     fn write_step(step: &BlockStep<'_>, out: &mut [f64]) {
         match (ROWS * step.tasks.len()).min(step.x.len()) {
             ..=12 => step.write_within::<A, 12>(out),
-            ..=18 => step.write_within::<A, 18>(out),
-            ..=24 => step.write_within::<A, 24>(out),
-            ..=36 => step.write_within::<A, 36>(out),
+            13..=18 => step.write_within::<A, 18>(out),
+            19..=24 => step.write_within::<A, 24>(out),
+            25..=36 => step.write_within::<A, 36>(out),
             _ => step.write_within::<A, MAX_DOF>(out),
         }
     }

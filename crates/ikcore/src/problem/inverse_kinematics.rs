@@ -40,15 +40,7 @@ enum Turns {
 impl<'a> Problem<'a> {
     /// The problem of moving the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        Self::of(robot, Aim::Tip(target, criterion.into()))
-    }
-
-    /// The problem of moving several tips of `robot` to their targets.
-    pub(crate) fn of_tips(robot: &'a Robot, aims: TipAims<'a>) -> Self {
-        Self { tip_starts: Some(Box::default()), ..Self::of(robot, Aim::Tips(aims)) }
-    }
-
-    fn of(robot: &'a Robot, aim: Aim<'a>) -> Self {
+        let aim = Aim::Tip(target, criterion.into());
         Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
     }
 
@@ -57,9 +49,24 @@ impl<'a> Problem<'a> {
         Self { turns: Turns::Equivalent, ..self }
     }
 
-    /// The same problem with a penalty on its values outside `space`, where no configuration is a solution.
-    pub(crate) fn penalized(self, space: Option<&'a ClearSpace<'a>>) -> Self {
-        Self { space, ..self }
+    /// The problem of a single configuration, in which full turns do not matter, with a penalty on its values outside `space`, where
+    /// no configuration is a solution.
+    #[inline]
+    pub(crate) fn of_configuration(
+        robot: &'a Robot,
+        target: &'a Target,
+        criterion: Criterion,
+        space: Option<&'a ClearSpace<'a>>,
+    ) -> Self {
+        // In one go: a problem is large, and copies of it take longer than many a solve by closed form may.
+        let aim = Aim::Tip(target, criterion);
+        Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Equivalent, space }
+    }
+
+    /// The same of moving several tips to their targets.
+    pub(crate) fn of_tips(robot: &'a Robot, aims: TipAims<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
+        let tip_starts = Some(Box::default());
+        Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts, turns: Turns::Equivalent, space }
     }
 
     /// The target of the only tip, and its criterion; None for several tips.

@@ -134,10 +134,11 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
     type State = State;
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let mut x = Point::from_slice(x0);
-        let mut linearizations = [Linearization::default(), Linearization::default()];
-        let value = evaluator.linearize(&mut x, &mut linearizations[0])?;
-        Ok(State { x, descent: self.descent_from(value), linearizations, here: 0 })
+        let linearizations = [Linearization::default(), Linearization::default()];
+        let x = Point::from_slice(x0);
+        let mut state = State { x, descent: self.descent_from(f64::INFINITY), linearizations, here: 0 };
+        state.descent.value = evaluator.linearize(&mut state.x, &mut state.linearizations[0])?;
+        Ok(state)
     }
 
     fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
