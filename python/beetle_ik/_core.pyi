@@ -231,6 +231,7 @@ class Robot:
     @property
     def joint_kinds(self) -> list[str]:
         """Kinds of the independent joints: "revolute", "continuous" or "prismatic"."""
+    def _links_to_tips(self) -> list[list[str]]: ...
     @property
     def tips(self) -> list[str]:
         """Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of

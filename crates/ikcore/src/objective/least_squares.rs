@@ -74,8 +74,14 @@ impl Linearization {
             let TaskBlock { columns, residual } = &self.first;
             BoxStep { columns, residual, lambda, x, lower, upper }.write(out);
         } else {
-            BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write(out);
+            self.write_step_of_several(lambda, x, [lower, upper], out);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn write_step_of_several(&self, lambda: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write(out);
     }
 
     /// Writes the point in the box \[`lower`, `upper`\] that (nearly) solves r + J (out - x) = 0 and is nearest to `preferred`, which

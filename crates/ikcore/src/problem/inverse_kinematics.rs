@@ -105,7 +105,7 @@ impl<'a> Problem<'a> {
     pub fn assess(&self, q: &[f64]) -> Assessment {
         match &self.aim {
             Aim::Tip(target, criterion) => target.assess(self.robot, q, criterion),
-            Aim::Tips(aims) => aims.assess(self.robot, q),
+            Aim::Tips(aims) => assess_tips(aims, self.robot, q),
         }
     }
 }
@@ -130,7 +130,7 @@ impl Objective for Problem<'_> {
         };
         match &self.aim {
             Aim::Tip(target, criterion) => target.assess_all(self.robot, qs, criterion, keep),
-            Aim::Tips(aims) => qs.chunks_exact(self.robot.dof()).for_each(|q| keep(aims.assess(self.robot, q))),
+            Aim::Tips(aims) => qs.chunks_exact(self.robot.dof()).for_each(|q| keep(assess_tips(aims, self.robot, q))),
         }
         if let Some(space) = self.space {
             for (q, score) in qs.chunks_exact(self.robot.dof()).zip(out) {
@@ -225,14 +225,33 @@ impl LeastSquares for Problem<'_> {
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
         match &self.aim {
             Aim::Tip(target, criterion) => target.linearize(self.robot, q, criterion, &mut out.first).score,
-            Aim::Tips(aims) => {
-                let note = |task: usize| {
-                    if let Some(starts) = &mut self.tip_starts {
-                        starts.note(task, q);
-                    }
-                };
-                aims.linearize(self.robot, q, out, note).score
-            }
+            Aim::Tips(aims) => linearize_tips(aims, self.robot, self.tip_starts.as_deref_mut(), q, out),
         }
     }
+}
+
+// Those of several tips are kept out of line: inlined, they would make those of one slower.
+
+#[cold]
+#[inline(never)]
+fn assess_tips(aims: &TipAims<'_>, robot: &Robot, q: &[f64]) -> Assessment {
+    aims.assess(robot, q)
+}
+
+/// Notes in `starts` which tasks are solved.
+#[cold]
+#[inline(never)]
+fn linearize_tips(
+    aims: &TipAims<'_>,
+    robot: &Robot,
+    mut starts: Option<&mut TipStarts>,
+    q: &[f64],
+    out: &mut Linearization,
+) -> Score {
+    let note = |task: usize| {
+        if let Some(starts) = &mut starts {
+            starts.note(task, q);
+        }
+    };
+    aims.linearize(robot, q, out, note).score
 }

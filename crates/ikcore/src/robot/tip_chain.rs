@@ -29,6 +29,8 @@ impl CompiledChain {
 pub(crate) struct TipChain {
     /// Number of the tip's link.
     pub link: usize,
+    /// Numbers of the links from the base to it.
+    pub links: Vec<usize>,
     pub whole: CompiledChain,
     /// Up to the last element that moves another tip too.
     pub stem: CompiledChain,
@@ -64,6 +66,7 @@ impl TipChains {
             let reach_of_links = Reach::of_links(&whole.chain);
             TipChain {
                 link: way.link,
+                links: way.links.clone(),
                 whole,
                 stem: CompiledChain::new(folded(parts, stem)),
                 own: own.to_vec(),

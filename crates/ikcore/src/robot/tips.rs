@@ -32,6 +32,15 @@ impl Robot {
         })
     }
 
+    /// Names of the links from the base to each tip.
+    pub fn links_to_tips(&self) -> Vec<Vec<&str>> {
+        let names: Vec<&str> = self.all_link_names().collect();
+        match &self.tip_chains().chains[..] {
+            [] => vec![self.link_names().collect()],
+            chains => chains.iter().map(|chain| chain.links.iter().map(|link| names[*link]).collect()).collect(),
+        }
+    }
+
     /// Err if the robot has several tips, which `call` does not take.
     ///
     /// # Errors

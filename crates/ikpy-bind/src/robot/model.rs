@@ -90,6 +90,11 @@ impl PyRobot {
         self.core.tips().collect()
     }
 
+    /// For drawings: the names of the links from the base to each tip.
+    fn _links_to_tips(&self) -> Vec<Vec<&str>> {
+        self.core.links_to_tips()
+    }
+
     /// Names of the links along the chain (of several, that to the first tip), base first, tip last.
     #[getter]
     fn link_names(&self) -> Vec<&str> {
