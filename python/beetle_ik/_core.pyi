@@ -231,7 +231,8 @@ class Robot:
     @property
     def joint_kinds(self) -> list[str]:
         """Kinds of the independent joints: "revolute", "continuous" or "prismatic"."""
-    def _links_to_tips(self) -> list[list[str]]: ...
+    def _links_to_tips(self) -> list[list[str]]:
+        """For drawings: the names of the links from the base to each tip."""
     @property
     def tips(self) -> list[str]:
         """Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of
@@ -2752,6 +2753,7 @@ def plan_point_to_point(
         robot: the arm.
         start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
             (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
+            For a robot with several `tips` dicts of them, as for `solve`; several ends are a list of dicts.
         start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.

@@ -9,6 +9,7 @@ import pytest
 from pair_of_pandas import pair_of_pandas
 
 import beetle_ik as bik
+from beetle_ik import sim
 
 URDF = pair_of_pandas()
 TIPS = ["left_tool", "right_tool"]
@@ -157,6 +158,38 @@ def test_goals_act_on_all_joints() -> None:
     assert bik.solve(PAIR, of_row(4), goals=[goal, bik.goals.Centring()]).success
 
 
+def test_motions_of_both_arms_keep_clear_of_obstacles_and_of_each_other() -> None:
+    limits = bik.Limits(velocity=1.5, acceleration=5.0)
+    post = bik.obstacles.Capsule((0.6, 0.0, 0.0), (0.6, 0.0, 1.6), radius=0.05)
+    clear = bik.obstacles.clearance(PAIR, Q, [post]) > 2e-3
+    first, second = Q[clear][:2]
+    plan = bik.plan_point_to_point(PAIR, start_q=first, end_q=second, limits=limits, obstacles=[post])
+    assert plan.success, plan.message
+    t = np.linspace(0.0, plan.trajectory.duration, 200)
+    assert (bik.obstacles.clearance(PAIR, plan.trajectory.at(t)[0], [post]) >= 1e-3).all()
+    wanted = dict(zip(TIPS, PAIR.fk(second), strict=True))
+    plan = bik.plan_point_to_point(PAIR, start_q=first, end=wanted, limits=limits, obstacles=[post])
+    assert (plan.success, plan.chosen_end) == (True, 0), plan.message
+    end = plan.trajectory.at(plan.trajectory.duration)[0]
+    np.testing.assert_allclose(PAIR.fk(end), PAIR.fk(second), rtol=0, atol=3e-6)
+    far = {"left_tool": bik.pose((9, 0, 0))}
+    plan = bik.plan_point_to_point(
+        PAIR, wanted, [far, {"right_tool": PAIR.fk(first)[1, :3, 3]}], limits=limits, self_collision=False
+    )
+    assert (plan.success, plan.chosen_end) == (True, 1), plan.message
+    with pytest.raises(bik.InvalidInputError, match=r"^end cannot be reached: as near as possible, .*tip 'left_tool': out of reach"):
+        bik.plan_point_to_point(PAIR, start_q=first, end=far, limits=limits)
+    with pytest.raises(bik.InvalidInputError, match=r"^end: robot 'pair_of_pandas' has several tips"):
+        bik.plan_point_to_point(PAIR, start_q=first, end=np.eye(4), limits=limits)
+    bik.plot.plan(plan)
+
+
+def test_robots_with_several_tips_are_drawn() -> None:
+    figure = bik.plot.robot(PAIR, Q[0], bodies=True)
+    tips = next(line for line in figure.axes[0].lines if line.get_label() == "tip")
+    np.testing.assert_allclose(np.array(tips.get_data_3d()).T, PAIR.fk(Q[0])[:, :3, 3])
+
+
 REFUSED = "takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as tip="
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 CALLS: dict[str, Callable[[], object]] = {
@@ -164,7 +197,16 @@ CALLS: dict[str, Callable[[], object]] = {
     "Tracker": lambda: bik.Tracker(PAIR, Q[0], dt=0.1),
     "KinematicPlant": lambda: bik.KinematicPlant(PAIR),
     "plan_along_path": lambda: bik.plan_along_path(PAIR, LINE),
-    "plan_point_to_point": lambda: bik.plan_point_to_point(PAIR, start_q=Q[0], end_q=Q[1]),
+    "approach=, retreat= or free_start= of plan_point_to_point": lambda: bik.plan_point_to_point(
+        PAIR, start_q=Q[0], end_q=Q[1], approach=0.1
+    ),
+    'method="tpbso" of plan_point_to_point': lambda: bik.plan_point_to_point(
+        PAIR, start_q=Q[0], end_q=Q[1], method="tpbso"
+    ),
+    'objective="tip_travel" of plan_point_to_point': lambda: bik.plan_point_to_point(
+        PAIR, start_q=Q[0], end_q=Q[1], objective="tip_travel"
+    ),
+    "MujocoPlant": lambda: sim.MujocoPlant(PAIR),
     "self_motion": lambda: bik.self_motion(PAIR, POSES[0, 0]),
     "manipulability": lambda: PAIR.manipulability(Q[0]),
     "with_tool": lambda: PAIR.with_tool(np.eye(4)),

@@ -12,6 +12,7 @@ use ikcore::manipulability::Motion;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::Matrix4;
 use ikcore::obstacle::Surroundings;
+use ikcore::planning::{PointToPointOptions, TipsEndpoint, plan_point_to_point_tips};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
@@ -337,4 +338,34 @@ fn robots_with_several_tips_survive_storing_and_copies() {
     assert!(far(&placed.link_fk("right_tool", &q).unwrap(), &(base * tip("right_tool", &q))) < 1e-14);
     let fk = placed.tips_fk_all(&q).unwrap();
     assert!(pose::rows(&(base * tip("right_tool", &q))).iter().zip(&fk[16..]).all(|(a, b)| (a - b).abs() < 1e-14));
+}
+
+#[test]
+fn motions_join_configurations_of_all_tips() {
+    let options = PointToPointOptions::default();
+    let space = Surroundings { self_collision: Some(true), ..Surroundings::default() };
+    let space = space.clear_space(&PAIR).unwrap().unwrap();
+    let clear: Vec<Vec<f64>> = random(40).into_iter().filter(|q| space.holds(q)).collect();
+    let (first, second) = (&clear[0], &clear[1]);
+    let start = TipsEndpoint::Configuration(first.clone());
+    let tasks = [LEFT, RIGHT].map(task);
+    let end = TipsEndpoint::Targets(tasks.into_iter().zip(both(second)).collect());
+    let plan = plan_point_to_point_tips(&PAIR, &start, &[end], &options, &mut Unattended).unwrap();
+    assert_eq!((plan.status, plan.chosen_end), (Status::Solved, Some(0)), "{}", plan.message());
+    let at = |t: f64| {
+        let mut state = [const { [0.0; 15] }; 3];
+        let [q, qd, qdd] = &mut state;
+        plan.trajectory.at(t, q, qd, qdd).unwrap();
+        state[0]
+    };
+    let duration = plan.trajectory.duration();
+    for i in 0..=100 {
+        assert!(space.holds(&at(duration * f64::from(i) / 100.0)));
+    }
+    let q = at(duration);
+    assert!(far(&tip("right_tool", &q), &tip("right_tool", second)) < 3e-6);
+    let short = TipsEndpoint::Configuration(vec![0.0; 3]);
+    let ends = [TipsEndpoint::Configuration(second.clone())];
+    let error = plan_point_to_point_tips(&PAIR, &short, &ends, &options, &mut Unattended).unwrap_err().to_string();
+    assert_eq!(error, "start_q of robot 'pair': expected 15 joints, got 3");
 }
