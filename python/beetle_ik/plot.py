@@ -71,7 +71,9 @@ def robot(
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        _draw_stick(axes, corners, len(robot.link_names) - 1, inside=bool(surfaces))
+        flange = len(robot.link_names) - 1 if len(robot.tips) == 1 else len(corners) - 1
+        tips = robot.fk(q).reshape(-1, 4, 4)[:, :3, 3]
+        _draw_stick(axes, corners, flange, tips, inside=bool(surfaces))
         draw_surfaces(axes, surfaces)
         draw_bodies(axes, translucent)
         solid = [triangles.reshape(-1, 3) for triangles in (*(s.triangles for s in surfaces), *translucent)]
@@ -90,14 +92,16 @@ def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
     return [Surface(moved(mesh.triangles, poses[link]), colors[link]) for link, mesh in meshes]
 
 
-def _draw_stick(axes: Axes3D, corners: NDArray[np.float64], flange: int, *, inside: bool) -> None:
-    """Draws the links from joint to joint, the tool and the tip; `inside` meshes only tool and tip."""
+def _draw_stick(
+    axes: Axes3D, corners: NDArray[np.float64], flange: int, tips: NDArray[np.float64], *, inside: bool
+) -> None:
+    """Draws the links from joint to joint, the tool and the tips (k, 3); `inside` meshes only tool and tips."""
     if not inside:
         axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
     if len(corners) > flange + 1:
         axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
     above = {"zorder": _ABOVE} if inside else {}
-    axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip", **above)
+    axes.plot(*tips.T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip", **above)
 
 
 def track(result: TrackResult) -> Figure:
