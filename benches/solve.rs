@@ -78,7 +78,7 @@ fn best_postures(c: &mut Criterion) {
         let robot = named(name);
         let goals = robot.random_configurations(POSES, &mut rng::stream(1, 0)).expect("they fit into memory");
         let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| Target::Pose(robot.tip(q))).collect();
-        let goals = vec![Goal::Manipulability { motion: Motion::Pose, weight: 1.0 }];
+        let goals = vec![Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 }];
         let options = SolveOptions { goals, prefer: Prefer::Best, ..SolveOptions::default() };
         group.bench_function(name, |b| {
             b.iter(|| {

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
-use ikcore::math::box_step::ROWS;
 use ikcore::objective::{
     Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore,
+    TaskResiduals,
 };
 use ikcore::problem::Problem;
 use ikcore::rng;
@@ -52,13 +52,13 @@ impl Objective for Unsolved<'_> {
 }
 
 impl Residual for Sphere {
-    fn residual(&mut self, x: &[f64], _: &mut [f64; ROWS]) -> Score {
+    fn residual(&mut self, x: &[f64], _: &mut TaskResiduals) -> Score {
         self.evaluate(x)
     }
 }
 
 impl Residual for Unsolved<'_> {
-    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score {
+    fn residual(&mut self, x: &[f64], out: &mut TaskResiduals) -> Score {
         Score { solved: false, ..self.0.residual(x, out) }
     }
 }

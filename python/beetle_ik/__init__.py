@@ -83,6 +83,7 @@ from ._core import (
 )
 from ._scene import Scene
 from ._versions import show_versions
+from .viewing import Viewer, view
 
 # Silent unless the application configures logging.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
@@ -137,6 +138,7 @@ __all__ = [
     "UnsupportedLimit",
     "UrdfError",
     "VelocityEllipsoid",
+    "Viewer",
     "Violation",
     "WeightedPseudoInverse",
     "__version__",
@@ -162,5 +164,6 @@ __all__ = [
     "time_optimal",
     "track",
     "track_model_free",
+    "view",
     "vision",
 ]

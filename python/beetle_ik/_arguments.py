@@ -2,7 +2,7 @@
 
 from numbers import Integral
 
-from ._core import InvalidInputError
+from ._core import InvalidInputError, Robot
 
 
 def require(name: str, value: object, *kinds: type) -> None:
@@ -10,6 +10,15 @@ def require(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
         raise InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
+
+
+def require_one_tip(call: str, robot: Robot) -> None:
+    """Raises `InvalidInputError` if the robot has several tips, which `call` does not take."""
+    if len(robot.tips) > 1:
+        tips = f"{', '.join(robot.tips[:-1])} and {robot.tips[-1]}"
+        raise InvalidInputError(
+            f"{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip="
+        )
 
 
 def require_text(name: str, value: object) -> None:

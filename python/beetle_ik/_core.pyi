@@ -29,6 +29,10 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], _Pose] | _Mover
 _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
+_TipKey: TypeAlias = str | tuple[str, str]  # a tip, or one as seen from another
+_Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
+_Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
+_Tolerance: TypeAlias = float | Mapping[str, float] | Mapping[_TipKey, float]
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 @type_check_only
@@ -71,11 +75,11 @@ class InfeasibleError(InvalidInputError):
 
 @final
 class Robot:
-    """A robot arm: the chain of joints from a base link to a tip link, and the links that branch off it. Immutable; made by
-    `from_urdf`, `from_dh`, `planar` or `named`.
+    """A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
+    Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
 
-    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them, and joints beside the chain
-    are held. Poses are 4x4 matrices in the frame of the robot's base.
+    Joint vectors hold the n independent joints in chain order (rad, m), those of several chains one chain after another, shared ones
+    once; mimic joints follow them, and joints beside the chains are held. Poses are 4x4 matrices in the frame of the robot's base.
     """
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
@@ -84,7 +88,7 @@ class Robot:
         path_or_xml: str | os.PathLike[str],
         *,
         base: str | None = None,
-        tip: str | None = None,
+        tip: str | Sequence[str] | None = None,
         hold: Mapping[str, float] | None = None,
         srdf: str | os.PathLike[str] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
@@ -97,7 +101,8 @@ class Robot:
             path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
                 extra "robots".
             base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
-            tip: link at the end of the chain; None: the only leaf.
+            tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
+                several, q holds the joints of one chain after another, shared ones once.
             hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
                 the limit nearest to it.
             srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
@@ -120,7 +125,7 @@ class Robot:
         model: Any,
         *,
         base: str | None = None,
-        tip: str | None = None,
+        tip: str | Sequence[str] | None = None,
         hold: Mapping[str, float] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
     ) -> Robot:
@@ -129,7 +134,7 @@ class Robot:
         Args:
             model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
             base: body whose frame is the reference frame; None: "world".
-            tip: body or site at the end of the chain; None: the only leaf body.
+            tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
             hold, collision: as in `from_urdf`.
 
         Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
@@ -146,7 +151,7 @@ class Robot:
         name: str,
         *,
         base: str | None = None,
-        tip: str | None = None,
+        tip: str | Sequence[str] | None = None,
         hold: Mapping[str, float] | None = None,
         srdf: str | os.PathLike[str] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = None,
@@ -226,9 +231,16 @@ class Robot:
     @property
     def joint_kinds(self) -> list[str]:
         """Kinds of the independent joints: "revolute", "continuous" or "prismatic"."""
+    def _links_to_tips(self) -> list[list[str]]:
+        """For drawings: the names of the links from the base to each tip."""
+    @property
+    def tips(self) -> list[str]:
+        """Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of
+        results.
+        """
     @property
     def link_names(self) -> list[str]:
-        """Names of the links along the chain, base first, tip last."""
+        """Names of the links along the chain (of several, that to the first tip), base first, tip last."""
     @property
     def all_link_names(self) -> list[str]:
         """Names of all links: those of the chain as in `link_names`, then those that branch off it."""
@@ -368,8 +380,9 @@ class Robot:
         joint, turns, axis (3,), scale, offset) or ("link", name).
         """
     def fk(self, q: ArrayLike, *, link: str | None = None) -> _Array:
-        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. With `link`, that of any link
-        of the robot; `all_link_names` lists them.
+        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. Of a robot with several tips
+        those of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`, that of any link of the robot;
+        `all_link_names` lists them.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
@@ -382,8 +395,8 @@ class Robot:
         """Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4)."""
     def jacobian(self, q: ArrayLike, *, link: str | None = None) -> _Array:
         """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-        then angular rows, along the axes of the base. With `link`, that of the origin of any link of the robot;
-        `all_link_names` lists them.
+        then angular rows, along the axes of the base. Of a robot with several tips those of all, (tips, 6, n) or (m, tips, 6, n).
+        With `link`, that of the origin of any link of the robot; `all_link_names` lists them.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
@@ -1393,10 +1406,11 @@ class Manipulability(Goal):
 
     Args:
         motion: motion of the tip that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+        tip: the tip, of a robot with several; None: the only one.
         weight: weight relative to other goals.
     """
 
-    def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
+    def __new__(cls, *, motion: _Motion = "pose", tip: str | None = None, weight: float = 1.0) -> Manipulability: ...
 
 @final
 class LinkManipulability(Goal):
@@ -1429,13 +1443,13 @@ class Clearance(Goal):
 
 def solve(
     robot: Robot,
-    target: _Pose,
+    target: _Targets,
     *,
-    task: Task | None = None,
+    task: _Tasks = None,
     start: ArrayLike | None = None,
     solver: _Solver | None = None,
-    position_tolerance: float = 1e-6,
-    rotation_tolerance: float = 1e-6,
+    position_tolerance: _Tolerance = 1e-6,
+    rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
@@ -1449,15 +1463,16 @@ def solve(
 
     Args:
         robot: the arm.
-        target: pose (4, 4), or position (3,) (m) with the orientation left free.
-        task: which part of the target counts, one of `tasks`; None: all of it.
+        target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips` a dict of them, such
+            as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the first.
+        task: which part of the target counts, one of `tasks`, or a dict for several tips; None: all of it.
         start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
             where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
             inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
         solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
             Levenberg-Marquardt from many starts for everything else.
-        position_tolerance: largest position error (m).
-        rotation_tolerance: largest rotation error, a geodesic angle (rad).
+        position_tolerance: largest position error (m); for several tips also a dict.
+        rotation_tolerance: largest rotation error, a geodesic angle (rad); for several tips also a dict.
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
         prefer: which solution to return.
             "any": the first one found.
@@ -1510,11 +1525,16 @@ class Solution:
     def q(self) -> _Array:
         """The configuration (n,) (rad, m), inside the limits."""
     @property
+    def errors(self) -> dict[_TipKey, tuple[float, float]]:
+        """Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (m), rotation (rad))}, as
+        `position_error` and `rotation_error`.
+        """
+    @property
     def position_error(self) -> float:
-        """Distance of the tip from the target (m), by forward kinematics of `q`."""
+        """Distance of the tip from the target (m), by forward kinematics of `q`; the largest of several tips."""
     @property
     def rotation_error(self) -> float:
-        """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
+        """Geodesic angle to the target's orientation (rad), the largest of several tips; NaN if the task leaves the orientation free."""
     @property
     def clearance(self) -> float:
         """Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
@@ -1532,17 +1552,17 @@ class Solution:
 
 def solve_all(
     robot: Robot,
-    target: _Pose,
+    target: _Targets,
     *,
     start: ArrayLike | None = None,
     limit: int | None = None,
     separation: float | None = None,
     redundancy: int = 16,
     turns: bool = False,
-    task: Task | None = None,
+    task: _Tasks = None,
     solver: _Solver | None = None,
-    position_tolerance: float = 1e-6,
-    rotation_tolerance: float = 1e-6,
+    position_tolerance: _Tolerance = 1e-6,
+    rotation_tolerance: _Tolerance = 1e-6,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -1691,16 +1711,16 @@ class SolutionSet:
 
 def solve_batch(
     robot: Robot,
-    targets: _Pose,
+    targets: _Targets,
     *,
     starts: ArrayLike | None = None,
     threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
-    task: Task | None = None,
+    task: _Tasks = None,
     solver: _Solver | None = None,
-    position_tolerance: float = 1e-6,
-    rotation_tolerance: float = 1e-6,
+    position_tolerance: _Tolerance = 1e-6,
+    rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
@@ -1717,7 +1737,8 @@ def solve_batch(
 
     Args:
         robot: the arm.
-        targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
+        targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
+            them, as for `solve`.
         starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
@@ -1761,11 +1782,14 @@ class BatchSolution:
     def message(self) -> str:
         """How many were solved, and what to try for the others."""
     @property
+    def errors(self) -> dict[_TipKey, tuple[_Array, _Array]]:
+        """Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (m,) (m), rotation (m,) (rad))}."""
+    @property
     def position_error(self) -> _Array:
-        """Distances of the tip from the targets (m,) (m), by forward kinematics of `q`."""
+        """Distances of the tip from the targets (m,) (m), by forward kinematics of `q`; the largest of several tips."""
     @property
     def rotation_error(self) -> _Array:
-        """Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free."""
+        """Geodesic angles to the targets' orientations (m,) (rad), the largest of several tips; NaN if the task leaves the orientation free."""
     @property
     def clearance(self) -> _Array:
         """Smallest distances to obstacles or between links (m,) (m), as in `Solution.clearance`."""
@@ -2729,6 +2753,7 @@ def plan_point_to_point(
         robot: the arm.
         start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
             (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
+            For a robot with several `tips` dicts of them, as for `solve`; several ends are a list of dicts.
         start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.

@@ -25,7 +25,7 @@ Matrix = NDArray[np.float64]
 def robot(
     model: "mujoco.MjModel | str | os.PathLike[str]",
     base: str | None,
-    tip: str | None,
+    tips: list[str],
     hold: Mapping[str, float] | None,
     collision: Literal["primitives", "fit", "hulls"] | None,
 ) -> Robot:
@@ -33,14 +33,14 @@ def robot(
     mujoco = library("mujoco", "mujoco", "a MuJoCo model", extra="sim")
     described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model)
     reader = _Reader(mujoco, described)
-    for link in (base, tip):
+    for link in (base, *tips):
         reader.require_known(link)
     with TemporaryDirectory() as folder:
         if collision in ("fit", "hulls"):
             reader.write_meshes(Path(folder))
         try:
             made = Robot.from_urdf(
-                reader.urdf(tip), base=base, tip=tip, hold=hold, collision=collision, package_dirs=[folder]
+                reader.urdf(tips), base=base, tip=tips or None, hold=hold, collision=collision, package_dirs=[folder]
             )
         except UrdfError as error:
             problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
@@ -86,14 +86,16 @@ class _Reader:
                     f"joint '{joint}' of the MuJoCo model is coupled by an equality constraint that is not linear"
                 )
 
-    def urdf(self, tip: str | None) -> str:
-        """Returns the model, with the site `tip` as a link if no body has that name."""
+    def urdf(self, tips: list[str]) -> str:
+        """Returns the model, with those sites among `tips` as links whose names no body has."""
         model = self.model
         lines = [f"<robot name={quoteattr(self._name())}>", *(f"<link name={quoteattr(self.bodies[0])}/>",)]
         for body in range(1, model.nbody):
             lines += self._joints_to(body)
             lines += [f"<link name={quoteattr(self.bodies[body])}>", *self._collisions(body), "</link>"]
-        if tip is not None and tip not in self.bodies:
+        for tip in tips:
+            if tip in self.bodies:
+                continue
             site = self.sites.index(tip)
             carrier = self.bodies[model.site_bodyid[site]]
             place = pose(model.site_pos[site], wxyz=model.site_quat[site])

@@ -36,7 +36,7 @@ class Scene:
         self._obstacles = getattr(plan, "obstacles", [])
         time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
         self._q = plan.trajectory.at(time)[0]
-        self._tip = plan.robot.fk(self._q)[:, :3, 3]
+        self._tips = plan.robot.fk(self._q).reshape(_SAMPLES, -1, 4, 4)[:, :, :3, 3]
         self._corners = np.array([self._origins(q) for q in self._q[:: _SAMPLES // 40]])
         self._flat = bool(np.ptp(self._corners[..., 2]) < _FLAT)
         self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
@@ -47,9 +47,10 @@ class Scene:
             points = np.asarray(self._plan.reference)
             few = {"marker": "x", "markersize": 4} if len(points) <= _FEW else {}
             self._plot(points, color=VERMILION, linewidth=0.8, label="path to follow", **few)
-        self._plot(self._tip, color=BLUE, label="tip")
-        self._plot(self._tip[:1], color=GREEN, marker="o", linestyle="none", label="start")
-        self._plot(self._tip[-1:], color=BLACK, marker="o", linestyle="none", label="end")
+        for i in range(self._tips.shape[1]):
+            self._plot(self._tips[:, i], color=BLUE, label="tip" if i == 0 else None)
+        self._plot(self._tips[0], color=GREEN, marker="o", linestyle="none", label="start")
+        self._plot(self._tips[-1], color=BLACK, marker="o", linestyle="none", label="end")
         self._scale()
 
     def draw_arm(self, share: float, **style: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -78,10 +79,25 @@ def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray
 
 
 def joints_to_tip(robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
-    """Returns the origins of the link frames at `q` (n,), base first, and the tip if a tool moves it: (k, 3)."""
+    """Returns the origins of the link frames at `q` (n,), base first, and the tip if a tool moves it: (k, 3).
+
+    Of several tips: along the links to each, and back to where the way to the next one branches off.
+    """
+    if len(robot.tips) > 1:
+        poses = link_poses(robot, q)
+        return np.array([poses[link][:3, 3] for link in _there_and_back(robot._links_to_tips())])
     origins, tip = robot.link_poses(q)[:, :3, 3], robot.fk(q)[:3, 3]
     has_tool = float(np.linalg.norm(tip - origins[-1])) > _TOOL
     return np.vstack((origins, tip)) if has_tool else origins
+
+
+def _there_and_back(ways: Sequence[Sequence[str]]) -> list[str]:
+    """Returns the links passed on a walk to the ends of all `ways`, which begin alike."""
+    passed = list(ways[0])
+    for before, way in itertools.pairwise(ways):
+        shared = sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], zip(before, way, strict=False)))
+        passed += [*reversed(before[shared - 1 : -1]), *way[shared:]]
+    return passed
 
 
 def placed_bodies(robot: Robot, q: ArrayLike) -> list[NDArray[np.float64]]:

@@ -13,6 +13,7 @@ EXTRAS = {
     "report": ["jinja2"],
     "robots": ["robot_descriptions", "xacro"],
     "sim": ["mujoco"],
+    "view": ["viser"],
     "vision": ["scikit-image"],
 }
 """The packages that each extra adds."""

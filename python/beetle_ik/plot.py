@@ -14,7 +14,7 @@ import numpy as np
 from . import _core, _plan_figure
 from ._arguments import require
 from ._shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
-from ._style import BLUE, FORBIDDEN, GREEN, ORANGE, VERMILION, line, style
+from ._style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, style
 from ._surface import Surface, draw_surfaces
 from ._text import counted
 
@@ -36,7 +36,6 @@ _HEADROOM = 1.15  # height of a panel over what it shows
 _FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
-_LINKS = ("#E9EBEE", "#9FB3C8")  # colours of meshes, by turns
 _ABOVE = 1000  # drawn after everything else
 
 
@@ -72,7 +71,9 @@ def robot(
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        _draw_stick(axes, corners, len(robot.link_names) - 1, inside=bool(surfaces))
+        flange = len(robot.link_names) - 1 if len(robot.tips) == 1 else len(corners) - 1
+        tips = robot.fk(q).reshape(-1, 4, 4)[:, :3, 3]
+        _draw_stick(axes, corners, flange, tips, inside=bool(surfaces))
         draw_surfaces(axes, surfaces)
         draw_bodies(axes, translucent)
         solid = [triangles.reshape(-1, 3) for triangles in (*(s.triangles for s in surfaces), *translucent)]
@@ -86,19 +87,21 @@ def robot(
 def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
     """Returns the meshes of the links at `q` (n,); neighbours differ in colour."""
     poses = link_poses(robot, q)
-    colors = dict(zip(poses, itertools.cycle(_LINKS), strict=False))
+    colors = dict(zip(poses, itertools.cycle(LINKS), strict=False))
     meshes = robot.collision_meshes()
     return [Surface(moved(mesh.triangles, poses[link]), colors[link]) for link, mesh in meshes]
 
 
-def _draw_stick(axes: Axes3D, corners: NDArray[np.float64], flange: int, *, inside: bool) -> None:
-    """Draws the links from joint to joint, the tool and the tip; `inside` meshes only tool and tip."""
+def _draw_stick(
+    axes: Axes3D, corners: NDArray[np.float64], flange: int, tips: NDArray[np.float64], *, inside: bool
+) -> None:
+    """Draws the links from joint to joint, the tool and the tips (k, 3); `inside` meshes only tool and tips."""
     if not inside:
         axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
     if len(corners) > flange + 1:
         axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
     above = {"zorder": _ABOVE} if inside else {}
-    axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip", **above)
+    axes.plot(*tips.T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip", **above)
 
 
 def track(result: TrackResult) -> Figure:

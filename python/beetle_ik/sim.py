@@ -19,6 +19,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
+from ._arguments import require_one_tip
 from ._core import InvalidInputError, Robot, pose
 from ._needs import library
 
@@ -73,6 +74,7 @@ class MujocoPlant:
         for name, value in (("noise", noise), ("rotation_noise", rotation_noise or 0.0)):
             if not (np.isfinite(value) and value >= 0.0):
                 raise InvalidInputError(f"{name} must be zero or more and finite, got {value}")
+        require_one_tip("MujocoPlant", robot)
         self._mujoco = _mujoco()
         self.robot = robot
         self.dt = dt

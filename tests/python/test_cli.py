@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pair_of_pandas import pair_of_pandas
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
@@ -75,6 +76,26 @@ def test_solved_angles_can_be_fed_back() -> None:
     assert q is not None
     pose = run_json("fk", "planar5", "--q", q[1])["pose"]
     assert [row[3] for row in pose[:2]] == pytest.approx([3.0, 1.0], abs=2e-6)
+
+
+def test_several_tips_take_a_target_each(tmp_path: Path) -> None:
+    file, tips = tmp_path / "pair.urdf", ["left_tool", "right_tool"]
+    file.write_text(pair_of_pandas())
+    pair = bik.Robot.from_urdf(file, tip=tips)
+    placed = zip(tips, pair.fk(pair.random_configurations(1)[0]), strict=True)
+    targets = [f"--target={tip}={','.join(f'{x:.6f}' for x in pose[:3, 3])}" for tip, pose in placed]
+    robot = ["solve", "--urdf", str(file), "--tip", "left_tool", "--tip", "right_tool"]
+    assert list(run_json(*robot, *targets)["errors"]) == tips
+    assert "position error of left_tool [m]" in run(*robot, *targets).stdout
+    assert refused(*robot, "--target", "left_tool=1,2").endswith(
+        "--target: expected tip=x,y,z or tip=x,y,z,roll,pitch,yaw, got 'left_tool=1,2'"
+    )
+    assert refused(*robot).endswith(
+        "no target was given: use --position x,y,z, or --target tip=x,y,z for each of several tips"
+    )
+    assert refused(*robot, *targets, "--position", "1,2,3").endswith(
+        "--target gives tips their targets: leave out --position and --rpy"
+    )
 
 
 def test_a_budget_of_evaluations_is_kept() -> None:

@@ -72,6 +72,7 @@ TRACK = bik.track(ARM, LINE, START, dt=0.1)
 MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, START, dt=0.1)
 ASKED, IDLE = (bik.ZNNBAS().session(**TICKS) for _ in range(2))
 ASKED.command((0.3, 0.3, 1.0))
+VIEWER = bik.view(ARM, port=0)
 
 # What a call needs besides the argument that is wrong; "." stands for the instance that a method is called on.
 NEEDED: dict[str, dict[str, Any]] = {
@@ -117,6 +118,9 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": START},
     "Tracker.step": {".": bik.Tracker(ARM, **TICKS), "target": (0.3, 0.3, 1.0)},
     "Tracker.stop": {".": bik.Tracker(ARM, **TICKS)},
+    "Viewer.": {".": VIEWER},
+    "Viewer.on_target": {"callback": len},
+    "Viewer.show": {"result": TRACK},
     "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
     "Trajectory.": {".": MOTION},
     "Trajectory.at": {"t": 0.0},
@@ -173,6 +177,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "time_optimal": {"waypoints_q": [[0, 0], [1, 1]], "limits": LIMITS},
     "track": {"robot": ARM, "path": LINE, **TICKS},
     "track_model_free": {"plant": bik.KinematicPlant(ARM), "path": LINE, **TICKS},
+    "view": {"robot": ARM, "port": 0},
 }
 # A right call would change what the others are called on, or leave a film that nobody looks at.
 ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
@@ -222,6 +227,7 @@ MADE_BY_THE_LIBRARY = [
     "Step",
     "TrackResult",
     "VelocityEllipsoid",
+    "Viewer",
     "Violation",
     "obstacles.Nearest",
 ]
@@ -250,7 +256,9 @@ def _with_one_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 def refusal(call: Callable[..., object], arguments: dict[str, Any]) -> str | None:
     """What an exception of the right kind says, with its notes; None where there is none."""
     try:
-        call(**arguments)
+        made = call(**arguments)
+        if isinstance(made, bik.Viewer):
+            made.close()
     except (bik.BeetleIkError, TypeError, ValueError, FileNotFoundError) as error:
         return "\n".join([str(error), *getattr(error, "__notes__", [])])
     return None

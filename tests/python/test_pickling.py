@@ -363,6 +363,10 @@ def assert_same(one: object, other: object) -> None:
         assert one.keys() == other.keys()
         for name in one:
             assert_same(one[name], other[name])
+    elif isinstance(one, tuple):
+        assert len(one) == len(other)  # type: ignore[arg-type]
+        for mine, theirs in zip(one, other, strict=True):  # type: ignore[call-overload]
+            assert_same(mine, theirs)
     elif isinstance(one, float):
         np.testing.assert_array_equal(one, other)
     else:
@@ -388,7 +392,7 @@ DAMAGED = "the bytes were damaged: their checksum differs"
     ("damage", "problem"),
     [
         (lambda stored: stored[:0], "no bytes"),
-        (lambda stored: b"\x63" + stored[1:], "format version 99, this library reads version 1"),
+        (lambda stored: b"\x63" + stored[1:], "format version 99, this library reads versions 1 to 2"),
         (lambda stored: stored[:-1], DAMAGED),
         (lambda stored: stored[:20] + bytes([stored[20] ^ 1]) + stored[21:], DAMAGED),
         (lambda stored: stored[:5], DAMAGED),

@@ -28,7 +28,7 @@ fn planar_optima_are_those_of_the_scan() {
         let target = Target::Position([0.5, 0.5, 0.0]);
         let measure = Manipulability::of(&arm, Motion::Position);
         let motion = Motion::Position;
-        let found = best(&arm, &target, Goal::Manipulability { motion, weight: 1.0 });
+        let found = best(&arm, &target, Goal::Manipulability { motion, tip: None, weight: 1.0 });
         let index = PI * measure.index(&arm, &found.q);
         assert!((index / tip - 1.0).abs() < 1e-5, "{length}: {index} {tip}");
         let found = best(&arm, &target, Goal::LinkManipulability { motion, weight: 1.0 });
@@ -96,7 +96,7 @@ fn seven_joint_arms_find_the_best_of_the_scan() {
         let measure = Manipulability::of(&arm, Motion::Pose);
         for q in arm.random_configurations(3, &mut rng::stream(5, 0)).unwrap().chunks(7) {
             let target = Target::from(&arm.fk(q).unwrap());
-            let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
+            let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 });
             assert_eq!(found.status, Status::Solved);
             let (index, scanned) = (measure.index(&arm, &found.q), scan(&arm, &target));
             assert!(index > 0.999 * scanned, "{name} {q:?}: {index} {scanned}");
@@ -115,7 +115,7 @@ fn the_best_is_found_where_limits_cut_it_off() {
     {
         let all = panda.random_configurations(150, &mut rng::stream(5, stream)).unwrap();
         let target = Target::from(&panda.fk(&all[7 * row..7 * (row + 1)]).unwrap());
-        let found = best(&panda, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
+        let found = best(&panda, &target, Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 });
         let index = measure.index(&panda, &found.q);
         assert!(index > 0.999 * scanned, "row {row} of stream {stream}: {index} {scanned}");
         assert!(found.evaluations < 2500, "row {row} of stream {stream}: {}", found.evaluations);
@@ -130,7 +130,7 @@ fn six_joint_arms_find_the_best_of_all_solutions() {
         let measure = Manipulability::of(&arm, Motion::Pose);
         for q in arm.random_configurations(8, &mut rng::stream(5, 0)).unwrap().chunks(6) {
             let target = Target::from(&arm.fk(q).unwrap());
-            let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
+            let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 });
             let all = solve_all(&arm, &target, &AllOptions::default(), &mut Unattended).unwrap();
             let largest = all.solutions.iter().map(|each| measure.index(&arm, each.q)).fold(0.0, f64::max);
             assert!(measure.index(&arm, &found.q) > (1.0 - 1e-5) * largest, "{name} {q:?}");
@@ -152,7 +152,7 @@ fn a_planar_arm_of_four_links_finds_the_best_of_a_grid() {
         let indices = postures.flatten().filter_map(|points| linkage.index(&points, &mut scratch));
         let largest = indices.fold(0.0, f64::max);
         let motion = Motion::Position;
-        let found = best(&arm, &Target::Position(target), Goal::Manipulability { motion, weight: 1.0 });
+        let found = best(&arm, &Target::Position(target), Goal::Manipulability { motion, tip: None, weight: 1.0 });
         assert!(measure.index(&arm, &found.q) > (1.0 - 1e-6) * largest, "{target:?}");
     }
 }
@@ -187,7 +187,7 @@ fn budgets_are_exact() {
     let arm = robot("panda");
     let q = arm.random_configurations(1, &mut rng::stream(5, 0)).unwrap();
     let target = Target::from(&arm.fk(&q).unwrap());
-    let goals = vec![Goal::Manipulability { motion: Motion::Pose, weight: 1.0 }];
+    let goals = vec![Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 }];
     for max_evaluations in (20..400).step_by(7) {
         let stop = Stop { max_evaluations, ..Stop::default() };
         let options = SolveOptions { goals: goals.clone(), prefer: Prefer::Best, stop, ..SolveOptions::default() };
@@ -205,7 +205,7 @@ fn the_best_needs_to_know_for_what() {
 
 #[test]
 fn a_target_beyond_the_reach_is_a_status() {
-    let goal = Goal::Manipulability { motion: Motion::Position, weight: 1.0 };
+    let goal = Goal::Manipulability { motion: Motion::Position, tip: None, weight: 1.0 };
     let found = best(&Robot::planar(&[0.5; 3]).unwrap(), &Target::Position([2.0, 0.0, 0.0]), goal);
     assert_eq!(found.status, Status::OutOfReach, "{}", found.message());
 }

@@ -110,7 +110,7 @@ fn goals_move_along_the_self_motion_to_where_they_are_best() {
     type Cost<'a> = &'a dyn Fn(&[f64]) -> f64;
     let goals: [(Goal, Cost<'_>); 3] = [
         (Goal::Centring { weight: 1.0 }, &centring),
-        (Goal::Manipulability { motion: Motion::Pose, weight: 1.0 }, &singularity),
+        (Goal::Manipulability { motion: Motion::Pose, tip: None, weight: 1.0 }, &singularity),
         (Goal::Posture { posture: posture.to_vec(), weight: 2.0 }, &to_posture),
     ];
     for (goal, cost) in goals {

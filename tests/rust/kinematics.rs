@@ -173,7 +173,7 @@ fn bytes_of_something_else_are_refused() {
     assert_eq!(message(Robot::from_bytes(&[])), "cannot restore robot: no bytes");
     assert!(message(Robot::from_bytes(&bytes[..40])).starts_with("cannot restore robot: "));
     bytes[0] = 200;
-    let expected = "cannot restore robot: format version 200, this library reads version 1";
+    let expected = "cannot restore robot: format version 200, this library reads versions 1 to 2";
     assert_eq!(message(Robot::from_bytes(&bytes)), expected);
 }
 

@@ -43,6 +43,7 @@ mod seed_index;
 mod state_to_state;
 mod tasks;
 mod time_optimal;
+mod tips;
 mod touch;
 mod track_clear;
 mod tracking;

@@ -78,6 +78,26 @@ pub enum Error {
         /// All links, separated by commas.
         known: String,
     },
+    /// No tip of the robot has this name.
+    #[error("robot '{robot}' has no tip '{name}'{suggestion}; its tips: {known}")]
+    UnknownTip {
+        /// The robot's name.
+        robot: String,
+        /// The requested tip.
+        name: String,
+        /// ` (did you mean 'x'?)`, or empty.
+        suggestion: String,
+        /// All tips, separated by commas.
+        known: String,
+    },
+    /// A call that takes robots with one tip got one with several.
+    #[error("{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip=")]
+    SeveralTips {
+        /// The call.
+        call: String,
+        /// The tips.
+        tips: String,
+    },
     /// No joint that the robot holds has this name.
     #[error("robot '{robot}' holds no joint '{name}'{problem}; joints that it holds: {}", if .held.is_empty() { "none" } else { .held })]
     NotHeld {

@@ -45,6 +45,16 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// Joins names as in a sentence: "a, b and c".
+pub(crate) fn joined<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    match names.split_last() {
+        None => String::new(),
+        Some((last, [])) => (*last).into(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+    }
+}
+
 /// Length of a list of names in a message: long enough for a known robot, short enough to read (characters).
 const LIST_LENGTH: usize = 400;
 

@@ -7,7 +7,7 @@ use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyIterator;
+use pyo3::types::{PyDict, PyIterator};
 
 use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
@@ -20,6 +20,7 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
@@ -37,10 +38,10 @@ pub struct PyBatchSolution {
     /// Why each search ended (m,), values of `Status`.
     #[pyo3(get)]
     status: Py<PyArray1<u8>>,
-    /// Distances of the tip from the targets (m,) (m), by forward kinematics of `q`.
+    /// Distances of the tip from the targets (m,) (m), by forward kinematics of `q`; the largest of several tips.
     #[pyo3(get)]
     position_error: Py<PyArray1<f64>>,
-    /// Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free.
+    /// Geodesic angles to the targets' orientations (m,) (rad), the largest of several tips; NaN if the task leaves the orientation free.
     #[pyo3(get)]
     rotation_error: Py<PyArray1<f64>>,
     /// Smallest distances to obstacles or between links (m,) (m), as in `Solution.clearance`.
@@ -56,6 +57,8 @@ pub struct PyBatchSolution {
     #[pyo3(get)]
     evaluations: Py<PyArray1<i64>>,
     elapsed: Duration,
+    /// What was asked of each tip.
+    tips: TipErrors,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
@@ -68,6 +71,15 @@ traversed!(PyBatchSolution: limits);
 
 #[pymethods]
 impl PyBatchSolution {
+    /// Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (m,) (m), rotation (m,) (rad))}.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.tips.dict(py, self.items.iter().map(|item| item.error), |errors| {
+            let (position, rotation) = errors.map(|error| (error.position, error.rotation)).unzip();
+            (row::<f64>(py, position), row::<f64>(py, rotation))
+        })
+    }
+
     /// Total time (s).
     #[getter]
     fn elapsed(&self) -> f64 {
@@ -85,11 +97,13 @@ impl PyBatchSolution {
             Selection::One(i) => {
                 let q = self.q.bind(py).readonly();
                 let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
-                Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py)))?.into_any())
+                let tips = self.tips.select(&[i]);
+                Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py), tips))?.into_any())
             }
             Selection::Many(rows) => {
                 let batch = self.core(py)?.select(&rows);
-                Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py))?)?.into_any())
+                let tips = self.tips.select(&rows);
+                Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py), tips)?)?.into_any())
             }
         }
     }
@@ -109,18 +123,19 @@ impl PyBatchSolution {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
-        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
+        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.tips.bytes(py)?))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
-        Self::new(py, from_bytes("batch of solutions", bytes).map_err(raise)?, limits)
+    #[pyo3(signature = (bytes, limits, tips=None))]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+        Self::new(py, from_bytes("batch of solutions", bytes).map_err(raise)?, limits, TipErrors::restored(tips)?)
     }
 }
 
 impl PyBatchSolution {
-    fn new(py: Python<'_>, batch: Batch, limits: Py<PyLimits>) -> PyResult<Self> {
+    fn new(py: Python<'_>, batch: Batch, limits: Py<PyLimits>, tips: TipErrors) -> PyResult<Self> {
         let message = batch.message();
         let Batch { dof, q, items, elapsed } = batch;
         Ok(Self {
@@ -135,6 +150,7 @@ impl PyBatchSolution {
             restarts: column(py, &items, |item| item.restarts as i64),
             evaluations: column(py, &items, |item| item.evaluations as i64),
             elapsed,
+            tips,
             limits,
             message,
             items,
@@ -160,7 +176,8 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///
 /// Args:
 ///     robot: the arm.
-///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
+///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
+///         them, as for `solve`.
 ///     starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
@@ -185,8 +202,10 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///     LimitError: a start outside the limits (names the row).
 #[pyfunction]
 #[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, task=None,
-                    solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6, goals=None, prefer="any",
-                    limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0))]
+                    solver=None, position_tolerance=ToleranceArgument::All(1e-6),
+                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
+                    self_collision=None, stop=None, seed=0),
+       text_signature = "(robot, targets, *, starts=None, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
@@ -198,8 +217,8 @@ pub fn solve_batch(
     progress: Option<&Bound<'_, PyAny>>,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
-    position_tolerance: f64,
-    rotation_tolerance: f64,
+    #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
+    #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
@@ -210,8 +229,12 @@ pub fn solve_batch(
     seed: i128,
 ) -> PyResult<PyBatchSolution> {
     let arm = &*robot.core;
-    let targets = array("targets", targets)?;
-    let targets = read_targets(&targets)?;
+    let asked = Asked::read("targets", robot, targets, array)?;
+    let each = asked.values().iter().map(read_targets).collect::<PyResult<Vec<_>>>()?;
+    let targets = match (&asked, &each[..]) {
+        (Asked::One(_), [only]) => *only,
+        _ => Targets::Tips(&each),
+    };
     let starts = starts.map(|starts| rows("starts", arm.name(), arm.dof(), starts)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
@@ -219,11 +242,11 @@ pub fn solve_batch(
         None => (None, None),
     };
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked = SolveArguments {
+    let arguments = SolveArguments {
         task,
         solver,
-        position_tolerance,
-        rotation_tolerance,
+        position_tolerance: &position_tolerance,
+        rotation_tolerance: &rotation_tolerance,
         goals,
         prefer,
         obstacles,
@@ -233,14 +256,15 @@ pub fn solve_batch(
         seed,
     };
     let options = BatchOptions {
-        each: asked.read(start_of_all, resolved)?,
+        each: arguments.read(robot, &asked, start_of_all, resolved)?,
         starts: start_of_each,
         threads: optional_count("threads", threads)?,
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };
     let batch = watched(py, progress, |watcher| batch::solve_batch(arm, targets, &options, watcher))?;
     python_calls::log(py, format!("solve_batch: {}", batch.message()))?;
-    PyBatchSolution::new(py, batch, in_force)
+    let tips = tip_errors(robot, &asked, |row| targets.read(row), &options.each, &batch.q)?;
+    PyBatchSolution::new(py, batch, in_force, tips)
 }
 
 fn read_targets<'a>(numbers: &'a Numbers<'_>) -> PyResult<Targets<'a>> {

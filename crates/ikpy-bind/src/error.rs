@@ -21,7 +21,10 @@ impl Classes {
     fn of(&self, error: &Error) -> &Py<PyType> {
         match error {
             Error::InRow { error, .. } | Error::InProblem { error, .. } => self.of(error),
-            Error::UnknownRobot { .. } | Error::UnknownLink { .. } | Error::NotHeld { .. } => &self.unknown_name,
+            Error::UnknownRobot { .. }
+            | Error::UnknownLink { .. }
+            | Error::UnknownTip { .. }
+            | Error::NotHeld { .. } => &self.unknown_name,
             Error::Urdf { .. } | Error::Srdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. }
             | Error::OutsideLimits { .. }

@@ -42,8 +42,11 @@ impl PyGoal {
         match &self.core {
             Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight:?})"),
             Goal::Centring { .. } => format!("goals.Centring(weight={weight:?})"),
-            Goal::Manipulability { motion, .. } => {
+            Goal::Manipulability { motion, tip: None, .. } => {
                 format!("goals.Manipulability(motion='{motion}', weight={weight:?})")
+            }
+            Goal::Manipulability { motion, tip: Some(tip), .. } => {
+                format!("goals.Manipulability(motion='{motion}', tip='{tip}', weight={weight:?})")
             }
             Goal::LinkManipulability { motion, .. } => {
                 format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
@@ -62,7 +65,14 @@ impl PyGoal {
         let arguments = match &self.core {
             Goal::Posture { posture, .. } => PyTuple::new(py, [row(py, posture.clone())])?,
             Goal::Centring { .. } => PyTuple::empty(py),
-            Goal::Manipulability { motion, .. } | Goal::LinkManipulability { motion, .. } => {
+            Goal::Manipulability { motion, tip, .. } => {
+                options.set_item("motion", motion.name())?;
+                if let Some(tip) = tip {
+                    options.set_item("tip", tip)?;
+                }
+                PyTuple::empty(py)
+            }
+            Goal::LinkManipulability { motion, .. } => {
                 options.set_item("motion", motion.name())?;
                 PyTuple::empty(py)
             }
@@ -131,6 +141,7 @@ impl PyCentring {
 ///
 /// Args:
 ///     motion: motion of the tip that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+///     tip: the tip, of a robot with several; None: the only one.
 ///     weight: weight relative to other goals.
 #[pyclass(name = "Manipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyManipulability;
@@ -138,10 +149,10 @@ pub struct PyManipulability;
 #[pymethods]
 impl PyManipulability {
     #[new]
-    #[pyo3(signature = (*, motion="pose", weight=1.0))]
-    fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+    #[pyo3(signature = (*, motion="pose", tip=None, weight=1.0))]
+    fn new(motion: &str, tip: Option<String>, weight: f64) -> PyResult<PyClassInitializer<Self>> {
         let motion = motion.parse::<Motion>().map_err(raise)?;
-        made(Goal::Manipulability { motion, weight }, Self)
+        made(Goal::Manipulability { motion, tip, weight }, Self)
     }
 }
 

@@ -3,9 +3,10 @@
 use ikcore::ik;
 use ikcore::math::Frame;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::Target;
+use ikcore::task::{Target, TipError};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
@@ -17,12 +18,15 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
 
 /// The best configuration found, and how the search ended.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
     core: ik::Solution,
+    /// What was asked of each tip.
+    tips: TipErrors,
     /// The configuration (n,) (rad, m), inside the limits.
     #[pyo3(get)]
     q: Py<PyArray1<f64>>,
@@ -47,13 +51,22 @@ outcome! {
 
 #[pymethods]
 impl PySolution {
-    /// Distance of the tip from the target (m), by forward kinematics of `q`.
+    /// Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (m), rotation (rad))}, as
+    /// `position_error` and `rotation_error`.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.tips.dict(py, std::iter::once(self.core.error), |errors| {
+            errors.next().map(|TipError { position, rotation }| (position, rotation))
+        })
+    }
+
+    /// Distance of the tip from the target (m), by forward kinematics of `q`; the largest of several tips.
     #[getter]
     fn position_error(&self) -> f64 {
         self.core.error.position
     }
 
-    /// Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free.
+    /// Geodesic angle to the target's orientation (rad), the largest of several tips; NaN if the task leaves the orientation free.
     #[getter]
     fn rotation_error(&self) -> f64 {
         self.core.error.rotation
@@ -90,19 +103,20 @@ impl PySolution {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("solution", &self.core))?;
-        pickling::restored_from::<Self>(py, (core, &self.limits))
+        pickling::restored_from::<Self>(py, (core, &self.limits, self.tips.bytes(py)?))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
-        Ok(Self::new(py, from_bytes("solution", bytes).map_err(raise)?, limits))
+    #[pyo3(signature = (bytes, limits, tips=None))]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+        Ok(Self::new(py, from_bytes("solution", bytes).map_err(raise)?, limits, TipErrors::restored(tips)?))
     }
 }
 
 impl PySolution {
-    pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>) -> Self {
-        Self { q: copied(py, &core.q).unbind(), limits, core }
+    pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>, tips: TipErrors) -> Self {
+        Self { q: copied(py, &core.q).unbind(), limits, tips, core }
     }
 }
 
@@ -110,15 +124,16 @@ impl PySolution {
 ///
 /// Args:
 ///     robot: the arm.
-///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
-///     task: which part of the target counts, one of `tasks`; None: all of it.
+///     target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips` a dict of them, such
+///         as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the first.
+///     task: which part of the target counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
 ///         where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
 ///         inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
 ///     solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
 ///         Levenberg-Marquardt from many starts for everything else.
-///     position_tolerance: largest position error (m).
-///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
+///     position_tolerance: largest position error (m); for several tips also a dict.
+///     rotation_tolerance: largest rotation error, a geodesic angle (rad); for several tips also a dict.
 ///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
 ///     prefer: which solution to return.
 ///         "any": the first one found.
@@ -144,9 +159,10 @@ impl PySolution {
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-6,
-                    rotation_tolerance=1e-6, goals=None, prefer="any", limits=None, obstacles=None, margin=None, self_collision=None,
-                    stop=None, seed=0))]
+#[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=ToleranceArgument::All(1e-6),
+                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
+                    self_collision=None, stop=None, seed=0),
+       text_signature = "(robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve(
     py: Python<'_>,
@@ -155,8 +171,8 @@ pub fn solve(
     task: Option<&Bound<'_, PyAny>>,
     start: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
-    position_tolerance: f64,
-    rotation_tolerance: f64,
+    #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
+    #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
@@ -166,13 +182,13 @@ pub fn solve(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
-    let target = read_target("target", target)?;
+    let asked = Asked::read("target", robot, target, read_target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked = SolveArguments {
+    let arguments = SolveArguments {
         task,
         solver,
-        position_tolerance,
-        rotation_tolerance,
+        position_tolerance: &position_tolerance,
+        rotation_tolerance: &rotation_tolerance,
         goals,
         prefer,
         obstacles,
@@ -181,9 +197,11 @@ pub fn solve(
         stop,
         seed,
     };
-    let options = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
-    let core = watched(py, None, |watcher| ik::solve(&robot.core, &target, &options, watcher))?;
-    Ok(PySolution::new(py, core, in_force))
+    let start = start.map(|start| vector("start", start)).transpose()?;
+    let options = arguments.read(robot, &asked, start, resolved)?;
+    let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
+    let tips = tip_errors(robot, &asked, |_| asked.values().iter().copied().collect(), &options, &core.q)?;
+    Ok(PySolution::new(py, core, in_force, tips))
 }
 
 /// A pose (4, 4) or a position (3,).

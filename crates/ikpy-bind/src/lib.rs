@@ -27,6 +27,7 @@ mod solve_all;
 mod solve_arguments;
 mod solver;
 mod task;
+mod tips;
 mod tracking;
 mod trajectory;
 mod traversal;

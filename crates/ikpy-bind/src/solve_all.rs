@@ -21,6 +21,7 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::{Traversed, traversed};
 
 /// The distinct solutions for one target, a sequence of `Solution`.
@@ -33,6 +34,8 @@ pub struct PySolutionSet {
     /// What finds the nearest configuration to a target that is proven out of reach, when that is first asked for.
     unreached: Option<Box<Unreached>>,
     miss: PyOnceLock<ik::Solution>,
+    /// What was asked of each tip, and the errors of each solution, then those of the best miss.
+    tips: TipErrors,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
@@ -92,7 +95,8 @@ impl PySolutionSet {
     #[getter]
     fn miss(&self, py: Python<'_>) -> PyResult<Option<PySolution>> {
         let miss = self.nearest_miss(py)?;
-        Ok(miss.map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py))))
+        let tips = || self.tips.select(&[self.core.solutions.len()]);
+        Ok(miss.map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py), tips())))
     }
 
     fn __len__(&self) -> usize {
@@ -105,7 +109,8 @@ impl PySolutionSet {
             let found = self.core.solution(i);
             let outside =
                 || PyIndexError::new_err(format!("index {i} is outside a set of {}", self.core.solutions.len()));
-            found.map(|found| PySolution::new(py, found, self.limits.clone_ref(py))).ok_or_else(outside)
+            let tips = || self.tips.select(&[i]);
+            found.map(|found| PySolution::new(py, found, self.limits.clone_ref(py), tips())).ok_or_else(outside)
         };
         match select("a set", index, self.core.solutions.len())? {
             Selection::One(i) => Ok(Bound::new(py, solution(i)?)?.into_any()),
@@ -128,19 +133,27 @@ impl PySolutionSet {
         let miss = self.nearest_miss(py)?.cloned().map(Box::new);
         let complete = ik::SolutionSet { miss, ..self.core.clone() };
         let core = pickling::bytes(py, to_bytes("set of solutions", &complete))?;
-        pickling::restored_from::<Self>(py, (core, self.dof, self.limits.clone_ref(py)))
+        pickling::restored_from::<Self>(py, (core, self.dof, self.limits.clone_ref(py), self.tips.bytes(py)?))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
-        Ok(Self::new(from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits, None))
+    #[pyo3(signature = (bytes, dof, limits, tips=None))]
+    fn _restore(bytes: &[u8], dof: usize, limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+        let core = from_bytes("set of solutions", bytes).map_err(raise)?;
+        Ok(Self::new(core, dof, limits, None, TipErrors::restored(tips)?))
     }
 }
 
 impl PySolutionSet {
-    fn new(core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>, unreached: Option<Box<Unreached>>) -> Self {
-        Self { core, dof, q: PyOnceLock::new(), unreached, miss: PyOnceLock::new(), limits }
+    fn new(
+        core: ik::SolutionSet,
+        dof: usize,
+        limits: Py<PyLimits>,
+        unreached: Option<Box<Unreached>>,
+        tips: TipErrors,
+    ) -> Self {
+        Self { core, dof, q: PyOnceLock::new(), unreached, miss: PyOnceLock::new(), tips, limits }
     }
 
     fn nearest_miss(&self, py: Python<'_>) -> PyResult<Option<&ik::Solution>> {
@@ -199,7 +212,9 @@ impl Unreached {
 ///     LimitError: a start outside the limits.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0))]
+                    position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), limits=None,
+                    obstacles=None, margin=None, self_collision=None, stop=None, seed=0),
+       text_signature = "(robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=False, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
     py: Python<'_>,
@@ -212,8 +227,8 @@ pub fn solve_all(
     turns: bool,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
-    position_tolerance: f64,
-    rotation_tolerance: f64,
+    #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
+    #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     limits: Option<&PyLimits>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
@@ -221,15 +236,15 @@ pub fn solve_all(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolutionSet> {
-    let target = read_target("target", target)?;
     let owner = robot;
     let robot = owner.get();
+    let asked = Asked::read("target", robot, target, read_target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let asked = SolveArguments {
+    let arguments = SolveArguments {
         task,
         solver,
-        position_tolerance,
-        rotation_tolerance,
+        position_tolerance: &position_tolerance,
+        rotation_tolerance: &rotation_tolerance,
         goals: None,
         prefer: "any",
         obstacles,
@@ -238,12 +253,19 @@ pub fn solve_all(
         stop,
         seed,
     };
-    let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
+    let each = arguments.read(robot, &asked, start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;
     let options = AllOptions { each, limit, separation, redundancy, turns };
-    let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
-    let is_unreached = core.obstruction.is_some();
-    let unreached = is_unreached.then(|| Box::new(Unreached { robot: owner.clone().unbind(), target, options }));
-    Ok(PySolutionSet::new(core, robot.core.dof(), in_force, unreached))
+    let core = watched(py, None, |watcher| ik::solve_all_tips(&robot.core, asked.values(), &options, watcher))?;
+    let mut qs = core.solutions.values().to_vec();
+    qs.extend(core.miss.iter().flat_map(|miss| miss.q.iter().copied()));
+    let tips = tip_errors(robot, &asked, |_| asked.values().iter().copied().collect(), &options.each, &qs)?;
+    let unreached = match (&asked, &core.obstruction) {
+        (Asked::One(target), Some(_)) => {
+            Some(Box::new(Unreached { robot: owner.clone().unbind(), target: *target, options }))
+        }
+        _ => None,
+    };
+    Ok(PySolutionSet::new(core, robot.core.dof(), in_force, unreached, tips))
 }

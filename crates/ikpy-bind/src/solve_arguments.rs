@@ -4,22 +4,22 @@ use ikcore::ik::SolveOptions;
 use ikcore::limits::Limits;
 use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stop;
-use ikcore::task::Tolerance;
 use pyo3::prelude::*;
 
 use crate::convert::count;
 use crate::error::raise;
 use crate::goal::read_goals;
 use crate::obstacle::Obstacles;
+use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
-use crate::task::read_task;
+use crate::tips::{Asked, TaskArguments, ToleranceArgument};
 
 /// The arguments as passed from Python.
 pub struct SolveArguments<'a, 'py> {
     pub task: Option<&'a Bound<'py, PyAny>>,
     pub solver: Option<&'a Bound<'py, PyAny>>,
-    pub position_tolerance: f64,
-    pub rotation_tolerance: f64,
+    pub position_tolerance: &'a ToleranceArgument<'py>,
+    pub rotation_tolerance: &'a ToleranceArgument<'py>,
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub prefer: &'a str,
     pub obstacles: Option<&'a Bound<'py, PyAny>>,
@@ -30,15 +30,19 @@ pub struct SolveArguments<'a, 'py> {
 }
 
 impl SolveArguments<'_, '_> {
-    /// Converts the arguments to options of the core, with the `start` and the `limits` of the call.
-    pub fn read(&self, start: Option<Vec<f64>>, limits: Option<Limits>) -> PyResult<SolveOptions> {
-        Ok(SolveOptions {
+    /// Converts the arguments to options of the core for the targets that were `asked`, with the `start` and the `limits` of the call.
+    pub fn read<T>(
+        &self,
+        robot: &PyRobot,
+        asked: &Asked<T>,
+        start: Option<Vec<f64>>,
+        limits: Option<Limits>,
+    ) -> PyResult<SolveOptions> {
+        let mut options = SolveOptions {
             solver: self.solver.map(any_solver).transpose()?,
-            task: read_task(self.task)?,
             goals: read_goals(self.goals)?,
             prefer: self.prefer.parse().map_err(raise)?,
             start,
-            tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
             limits,
             surroundings: Surroundings {
                 obstacles: self.obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?,
@@ -47,6 +51,11 @@ impl SolveArguments<'_, '_> {
             },
             stop: self.stop.map_or(Stop::default(), PyStop::core),
             seed: count("seed", self.seed)?,
-        })
+            ..SolveOptions::default()
+        };
+        let Self { task, position_tolerance, rotation_tolerance, .. } = *self;
+        let tasks = TaskArguments { task, position_tolerance, rotation_tolerance };
+        tasks.write(robot, asked, &mut options)?;
+        Ok(options)
     }
 }

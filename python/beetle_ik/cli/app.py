@@ -14,6 +14,7 @@ from .reproduce import reproduce
 from .robots import robots
 from .solve import solve
 from .track import track
+from .view import view
 
 _WRONG_INPUT = 2
 _INTERRUPTED = 130  # the convention of shells: 128 + SIGINT
@@ -72,7 +73,7 @@ def _options_of_all(
         logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track, doctor):
+for command in (robots, fk, solve, track, view, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

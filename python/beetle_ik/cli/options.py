@@ -29,6 +29,10 @@ UrdfFile = Annotated[
     Path | None, typer.Option("--urdf", help="A URDF file instead of a built-in robot.", rich_help_panel=_ROBOT)
 ]
 TipLink = Annotated[str | None, typer.Option("--tip", help="Tip link; default: the only leaf.", rich_help_panel=_ROBOT)]
+TipLinks = Annotated[
+    list[str] | None,
+    typer.Option("--tip", help="Tip link; default: the only leaf. Several make several tips.", rich_help_panel=_ROBOT),
+]
 BaseLink = Annotated[
     str | None, typer.Option("--base", help="Base link, which stays fixed; default: the root.", rich_help_panel=_ROBOT)
 ]
@@ -106,23 +110,23 @@ def make_solver(name: SolverName) -> "_Single":
 
 
 def load_robot(
-    name: str | None, urdf: Path | None, base: str | None, tip: str | None, link_radius: float | None = None
+    name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None, link_radius: float | None = None
 ) -> Robot:
     """Loads the built-in robot or the one in the URDF file, whichever was given; with capsules of `link_radius`."""
     robot = _load(name, urdf, base, tip)
     return robot if link_radius is None else robot.with_capsules(radius=link_radius)
 
 
-def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:
+def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None) -> Robot:
     if urdf is not None:
         if name is not None:
             raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
-        return Robot.from_urdf(urdf, base=base, tip=tip)
+        return Robot.from_urdf(urdf, base=base, tip=tip or None)
     if name is None:
         raise InvalidInputError(
             "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE"
         )
-    if base is not None or tip is not None:
+    if base is not None or tip:
         raise InvalidInputError(
             "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip"
         )

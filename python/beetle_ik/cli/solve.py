@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import Robot, Scene, Solution, SolutionSet, Stop, pose, solve_all
+from .. import InvalidInputError, Robot, Scene, Solution, SolutionSet, Stop, pose, solve_all
 from .. import solve as solve_target
 from .options import (
     AsJson,
@@ -17,7 +17,7 @@ from .options import (
     Seed,
     SolverName,
     Start,
-    TipLink,
+    TipLinks,
     UrdfFile,
     load_robot,
     make_solver,
@@ -29,8 +29,12 @@ from .show import as_argument, print_json, print_pairs
 def solve(
     robot: RobotName = None,
     *,
-    position: Annotated[str, typer.Option(help="Target position of the tip: x,y,z in m.")],
+    position: Annotated[str | None, typer.Option(help="Target position of the tip: x,y,z in m.")] = None,
     rpy: Annotated[str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; default: free.")] = None,
+    target: Annotated[
+        list[str] | None,
+        typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),
+    ] = None,
     start: Start = None,
     solver: Annotated[
         SolverName | None, typer.Option(help="Default: the closed form, else Levenberg-Marquardt from many starts.")
@@ -46,14 +50,13 @@ def solve(
     margin: Margin = None,
     link_radius: LinkRadius = None,
     urdf: UrdfFile = None,
-    tip: TipLink = None,
+    tip: TipLinks = None,
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
     """Inverse kinematics: joint positions for a position or a pose of the tip."""
     arm = load_robot(robot, urdf, base, tip, link_radius)
-    point = numbers("--position", position, 3)
-    target = point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3))
+    wanted = _wanted(position, rpy, target)
     options: dict[str, Any] = {
         "start": None if start is None else numbers("--start", start),
         "obstacles": None if scene is None else Scene.load(scene),
@@ -65,12 +68,38 @@ def solve(
         "seed": seed,
     }
     if every:
-        found = solve_all(arm, target, **options)
+        found = solve_all(arm, wanted, **options)
         _show_all(arm, found, as_json)
         raise typer.Exit(0 if found.success else 1)
-    solution = solve_target(arm, target, **options)
-    _show(arm, solution, rpy is not None, as_json)
+    solution = solve_target(arm, wanted, **options)
+    _show(arm, solution, as_json)
     raise typer.Exit(0 if solution.success else 1)
+
+
+def _wanted(position: str | None, rpy: str | None, targets: list[str] | None) -> Any:
+    """Returns the target of the only tip, or those of several by name."""
+    if targets:
+        if position is not None or rpy is not None:
+            raise InvalidInputError("--target gives tips their targets: leave out --position and --rpy")
+        return dict(map(_named, targets))
+    if position is None:
+        raise InvalidInputError(
+            "no target was given: use --position x,y,z, or --target tip=x,y,z for each of several tips"
+        )
+    return _placed(numbers("--position", position, 3), None if rpy is None else numbers("--rpy", rpy, 3))
+
+
+def _named(text: str) -> tuple[str, Any]:
+    """Reads "tip=x,y,z" or "tip=x,y,z,roll,pitch,yaw"."""
+    tip, given, values = text.partition("=")
+    entries = numbers("--target", values) if given else []
+    if len(entries) not in (3, 6):
+        raise InvalidInputError(f"--target: expected tip=x,y,z or tip=x,y,z,roll,pitch,yaw, got '{text}'")
+    return tip, _placed(entries[:3], entries[3:] or None)
+
+
+def _placed(point: list[float], rpy: list[float] | None) -> Any:
+    return point if rpy is None else pose(point, rpy=rpy)
 
 
 def _show_all(robot: Robot, found: SolutionSet, as_json: bool) -> None:
@@ -93,7 +122,7 @@ def _show_all(robot: Robot, found: SolutionSet, as_json: bool) -> None:
         typer.echo(f"q [rad, m]: {as_argument(q)}")
 
 
-def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> None:
+def _show(robot: Robot, solution: Solution, as_json: bool) -> None:
     if as_json:
         fields = (
             "q",
@@ -107,18 +136,25 @@ def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> No
             "evaluations",
         )
         status = {"robot": robot.name, "status": solution.status.name, "elapsed": solution.elapsed}
+        if len(robot.tips) > 1:
+            status["errors"] = solution.errors
         print_json(status | {field: getattr(solution, field) for field in fields})
         return
-    rotation = [("rotation error [rad]", f"{solution.rotation_error:.3g}")] if oriented else []
     clearance = [] if math.isnan(solution.clearance) else [("clearance [m]", f"{solution.clearance:.3g}")]
     print_pairs(
         f"{robot.name}: {solution.message}",
         [
-            ("position error [m]", f"{solution.position_error:.3g}"),
-            *rotation,
+            *(pair for tip, errors in solution.errors.items() for pair in _errors(robot, tip, *errors)),
             *clearance,
             ("evaluations", str(solution.evaluations)),
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],
     )
     typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on its own line, so that no terminal width breaks it
+
+
+def _errors(robot: Robot, tip: Any, position: float, rotation: float) -> list[tuple[str, str]]:
+    """Returns the errors of a tip with their names, those of tasks that leave them free left out."""
+    of = f" of {tip}" if len(robot.tips) > 1 else ""
+    both = ((f"position error{of} [m]", position), (f"rotation error{of} [rad]", rotation))
+    return [(name, f"{value:.3g}") for name, value in both if not math.isnan(value)]

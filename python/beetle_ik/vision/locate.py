@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._arguments import require_one_tip
 from .._core import InvalidInputError, Robot
 from .._needs import library
 from .camera import Camera, check_planar, checked, distance_to_links, numbers
@@ -153,6 +154,7 @@ def _grey(image: ArrayLike) -> NDArray[np.float64]:
 
 
 def _checked_guess(guess: ArrayLike, robot: Robot) -> NDArray[np.float64]:
+    require_one_tip("locate", robot)
     start = numbers("guess", guess)
     robot.fk(start)  # raises for a wrong length and for NaN
     return start

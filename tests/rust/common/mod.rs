@@ -62,9 +62,9 @@ pub fn assert_derivative(robot: &Robot, target: &Target, criterion: impl Into<Cr
     let mut residual_at = |q: &[f64]| {
         let mut out = Linearization::default();
         let score = problem.linearize(q, &mut out);
-        let squares: f64 = out.residual.iter().map(|r| r * r).sum();
+        let squares: f64 = out.first.residual.iter().map(|r| r * r).sum();
         assert!((score.value - squares).abs() <= 1e-14 * squares, "{}: value and residual differ", robot.name());
-        (out.residual, out.columns)
+        (out.first.residual, out.first.columns)
     };
     let (_, columns) = residual_at(q);
     let h = 1e-6;

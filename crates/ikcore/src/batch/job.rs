@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::ik::{Query, SolveContext, solve_query};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::Target;
+use crate::task::TargetRow;
 
 /// The data that all threads share.
 pub(super) struct Job<'a> {
@@ -34,6 +34,7 @@ const GROUP: usize = 16;
 
 impl<'a> Job<'a> {
     pub fn new(robot: &'a Robot, targets: Targets<'a>, options: &'a BatchOptions<'a>) -> Result<Self> {
+        targets.require_even()?;
         let (dof, rows) = (robot.dof(), targets.len());
         if let Some(starts) = options.starts
             && starts.len() != rows * dof
@@ -62,20 +63,21 @@ impl<'a> Job<'a> {
 
     fn check(&self, i: usize) -> Result<()> {
         self.targets.check(i)?;
-        if i == 0 {
-            // Whether the task takes targets of this kind.
-            self.context.part_used(&self.targets.read(i))?;
+        if i == 0 || matches!(self.targets, Targets::Tips(_)) {
+            // Whether the task takes targets of this kind, and those of several tips go together.
+            self.context.reduce(&mut self.targets.read(i))?;
         }
         self.own_start(i).map_or(Ok(()), |start| self.context.check_start(start))
     }
 
     /// Returns target `i` and its start, validated.
-    fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
+    fn read(&self, i: usize) -> Result<(TargetRow, Option<&'a [f64]>)> {
         if !self.rows_are_checked {
             self.check(i)?;
         }
-        let target = self.context.part_used(&self.targets.read(i))?;
-        Ok((target, self.own_start(i).or(self.common_start)))
+        let mut targets = self.targets.read(i);
+        self.context.reduce(&mut targets)?;
+        Ok((targets, self.own_start(i).or(self.common_start)))
     }
 
     /// The start given for target `i` alone.
@@ -101,8 +103,8 @@ impl<'a> Job<'a> {
         for ((row, item), q) in items.iter_mut().enumerate().zip(qs.chunks_mut(self.dof)) {
             *item = match self.read(first + row) {
                 Err(_) => BatchItem::untouched(Status::Invalid),
-                Ok((target, start)) => {
-                    let query = Query { target, start, stream: (first + row) as u64, stopwatch };
+                Ok((targets, start)) => {
+                    let query = Query { targets: &targets, start, stream: (first + row) as u64, stopwatch };
                     let solution = solve_query(&self.context, &query, monitor);
                     q.copy_from_slice(&solution.q);
                     stopwatch = stopwatch.started_later(solution.elapsed);

@@ -2,9 +2,9 @@
 
 use nalgebra::Matrix4;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::pose;
-use crate::task::Target;
+use crate::task::{Target, TargetRow};
 
 /// The targets of a batch as arrays of m rows, not yet checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +13,8 @@ pub enum Targets<'a> {
     Positions(&'a [[f64; 3]]),
     /// Poses: homogeneous 4x4 matrices, each row-major.
     Poses(&'a [[f64; 16]]),
+    /// Of several tips, those of each task, all as many.
+    Tips(&'a [Targets<'a>]),
 }
 
 impl Targets<'_> {
@@ -21,6 +23,7 @@ impl Targets<'_> {
         match self {
             Self::Positions(rows) => rows.len(),
             Self::Poses(rows) => rows.len(),
+            Self::Tips(tasks) => tasks.first().map_or(0, Targets::len),
         }
     }
 
@@ -37,15 +40,34 @@ impl Targets<'_> {
         match self {
             Self::Positions(rows) => Target::Position(rows[i]).validate(),
             Self::Poses(rows) => pose::check_matrix("target", &Matrix4::from_row_slice(&rows[i])),
+            Self::Tips(tasks) => tasks.iter().try_for_each(|task| task.check(i)),
         }
     }
 
-    /// Target `i`, which was checked.
+    /// Target `i` or, of several tips, those of each task, which were checked.
     #[inline]
-    pub(super) fn read(&self, i: usize) -> Target {
+    pub fn read(&self, i: usize) -> TargetRow {
         match self {
-            Self::Positions(rows) => Target::Position(rows[i]),
-            Self::Poses(rows) => Target::from(&pose::from_checked(&Matrix4::from_row_slice(&rows[i]))),
+            Self::Positions(rows) => TargetRow::from_buf([Target::Position(rows[i])]),
+            Self::Poses(rows) => {
+                TargetRow::from_buf([Target::from(&pose::from_checked(&Matrix4::from_row_slice(&rows[i])))])
+            }
+            Self::Tips(tasks) => tasks.iter().flat_map(|task| task.read(i)).collect(),
+        }
+    }
+
+    /// Checks that all tasks of several tips have as many targets.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub(super) fn require_even(&self) -> Result<()> {
+        let Self::Tips(tasks) = self else { return Ok(()) };
+        match tasks.iter().enumerate().find(|(_, task)| task.len() != self.len()) {
+            None => Ok(()),
+            Some((i, task)) => {
+                let expected = format!("{} as for the first tip", self.len());
+                Err(Error::WrongLength { what: format!("targets of task {i}"), expected, got: task.len() })
+            }
         }
     }
 }

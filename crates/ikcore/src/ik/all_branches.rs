@@ -43,15 +43,14 @@ pub(super) struct AllBranches {
 /// The solutions at the whole turns nearest to `reference`; of a redundant arm those at `redundancy` values of its parameter. None
 /// where the closed form does not apply, or leaves open whether there are any.
 pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], redundancy: usize) -> Option<AllBranches> {
-    let target = attempt.problem.target();
-    let Target::Pose(pose) = target else { return None };
+    let (target @ Target::Pose(pose), criterion) = attempt.problem.only_target()? else { return None };
+    let tolerance = criterion.tolerance;
     let MultiStart { solver: descent, .. } = attempt.context.solver().restarted_descent()?;
     if !attempt.context.asks_for_pose_alone(target) {
         return None;
     }
     let context = attempt.context;
     let (robot, bounds) = (context.robot(), context.bounds());
-    let tolerance = attempt.problem.criterion().tolerance;
     let mut taker = Taker {
         turns: NearestTurns::new(robot, bounds, reference),
         descent,

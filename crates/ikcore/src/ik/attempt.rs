@@ -107,14 +107,15 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// Descends once from `q` within `bounds`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider; returns the
+    /// Descends once from `q` within `bounds`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider (of the only tip); returns the
     /// best point. It refines a solution already found, so it may go on where the budget is spent.
     pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64, bounds: &Bounds) -> Point {
-        let asked = *self.problem.criterion();
+        let Some((target, asked)) = self.problem.only_target() else { return q };
+        let asked = *asked;
         let Tolerance { position, rotation } = asked.tolerance;
         let tighter = Tolerance { position: position.min(tolerance), rotation: rotation.min(tolerance) };
-        let (robot, target) = (self.context.robot(), self.problem.target());
-        let mut problem = Problem::new(robot, target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
+        let mut problem =
+            Problem::new(self.context.robot(), target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
         let objective: &mut dyn Differentiable = &mut problem;
         let stop = Stop { max_evaluations: REFINEMENT, ..Stop::default() };
         let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
@@ -214,7 +215,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
     /// itself.
     pub fn mark_held_in_region(&self, solution: &mut Solution) {
         if solution.status == Status::Solved
-            && let Some(obstruction) = self.problem.criterion().blocked_by_region(self.problem.target())
+            && let Some((target, criterion)) = self.problem.only_target()
+            && let Some(obstruction) = criterion.blocked_by_region(target)
         {
             (solution.status, solution.obstruction) = (Status::HeldInRegion, obstruction);
         }

@@ -5,6 +5,7 @@ use std::sync::{LazyLock, OnceLock};
 
 use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
+use super::tip_tasks::{reduce, tasks_of_tips};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
@@ -14,13 +15,13 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
-use crate::task::{Criterion, Goals, Target, Task};
+use crate::task::{Criterion, Goals, Target, TargetRow, Task, TipAims, TipCriterion};
 
 /// A validated target and start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Query<'a> {
-    /// The target, as returned by [`SolveContext::read`].
-    pub target: Target,
+    /// The target or, of several tips, those of the tasks in their order, as returned by [`SolveContext::read`].
+    pub targets: &'a [Target],
     /// The start, if given.
     pub start: Option<&'a [f64]>,
     /// The random stream of the seed.
@@ -37,6 +38,8 @@ pub(crate) struct SolveContext<'a> {
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     criterion: Criterion,
+    /// The tasks of several tips; none for one.
+    tips: Vec<TipCriterion>,
     goals: Goals,
     bounds: Bounds,
     /// The preference of queries without a start, made when first asked for.
@@ -54,6 +57,7 @@ impl<'a> SolveContext<'a> {
         options.solver.as_ref().map_or(Ok(()), |solver| solver.validate())?;
         options.stop.validate()?;
         options.task.as_ref().map_or(Ok(()), Task::validate)?;
+        let tips = tasks_of_tips(robot, options)?;
         let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
         criterion.validate()?;
         let space = options.surroundings.clear_space(robot)?.map(Box::new);
@@ -69,7 +73,7 @@ impl<'a> SolveContext<'a> {
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
-        Ok(Self { robot, with_tool, options, criterion, goals, bounds, central: OnceLock::new(), space })
+        Ok(Self { robot, with_tool, options, criterion, tips, goals, bounds, central: OnceLock::new(), space })
     }
 
     pub(super) fn robot(&self) -> &Robot {
@@ -91,7 +95,7 @@ impl<'a> SolveContext<'a> {
 
     /// Whether the target fixes the pose of the tip.
     pub(super) fn fixes_pose(&self, target: &Target) -> bool {
-        matches!(target, Target::Pose(_)) && self.criterion.components.is_none() && self.criterion.region.is_none()
+        self.criterion.fixes_pose(target)
     }
 
     pub(super) fn options(&self) -> &SolveOptions {
@@ -131,28 +135,40 @@ impl<'a> SolveContext<'a> {
         self.central.get_or_init(|| Preference::new(self.robot(), &self.bounds, None))
     }
 
-    /// The problem of reaching `target`.
-    pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
+    /// The problem of reaching the targets of a query.
+    pub(super) fn problem<'p>(&'p self, targets: &'p [Target]) -> Problem<'p> {
         let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
-        Problem::new(self.robot(), target, self.criterion).disregarding_turns().penalized(penalty)
+        match (&self.tips[..], targets) {
+            ([], [target]) => Problem::of_configuration(self.robot(), target, self.criterion, penalty),
+            (tasks, targets) => Problem::of_tips(self.robot(), TipAims { tasks, targets }, penalty),
+        }
     }
 
-    /// Returns the part of `wanted` that the task uses, validated.
+    /// Returns the parts of the targets `wanted` that their tasks use, validated.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::WrongTarget`].
-    pub(crate) fn read(&self, wanted: &Target) -> Result<Target> {
-        wanted.validate()?;
-        self.part_used(wanted)
+    /// [`Error::NotFinite`]; those of [`reduce`](Self::reduce).
+    pub(crate) fn read(&self, wanted: &[Target]) -> Result<TargetRow> {
+        wanted.iter().try_for_each(Target::validate)?;
+        let mut targets = TargetRow::from_slice(wanted);
+        self.reduce(&mut targets)?;
+        Ok(targets)
     }
 
-    /// Returns the part of `wanted` that the task uses.
+    /// Reduces targets to the parts that their tasks use.
     ///
     /// # Errors
-    /// [`Error::WrongTarget`].
+    /// [`Error::WrongTarget`], or [`Error::Contradiction`] for targets of tips that contradict each other.
     #[inline]
-    pub(crate) fn part_used(&self, wanted: &Target) -> Result<Target> {
-        self.options.task.as_ref().map_or(Ok(*wanted), |task| task.target(wanted))
+    pub(crate) fn reduce(&self, targets: &mut [Target]) -> Result<()> {
+        match (&self.tips[..], targets, &self.options.task) {
+            ([], [_], None) => Ok(()),
+            ([], [target], Some(task)) => {
+                *target = task.target(target)?;
+                Ok(())
+            }
+            (tasks, targets, _) => reduce(self.robot, tasks, targets),
+        }
     }
 
     /// Checks a start.

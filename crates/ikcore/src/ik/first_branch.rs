@@ -25,8 +25,8 @@ const TRIAL: usize = 100;
 /// The branch nearest to the start or, without one, the most central one; or the nearest configuration, if it is proven that
 /// there is no solution inside the limits. None where the closed form does not apply, or leaves that open.
 pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
-    let (context, target) = (attempt.context, attempt.problem.target());
-    let Target::Pose(pose) = target else { return None };
+    let context = attempt.context;
+    let (target @ Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
     if !context.asks_for_pose(target) || attempt.budget.left() < LEAST_BUDGET {
         return None;
     }

@@ -4,7 +4,6 @@
 //! Gauss-Newton corrects each step back onto the task; the step length follows Barzilai and Borwein (1988), which on
 //! the one-dimensional self-motion of a 7-joint arm is the secant method.
 
-use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::dot;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
 use crate::obstacle::ClearSpace;
@@ -124,7 +123,8 @@ impl GoalDescent<'_, '_> {
             }
             was_solved = is_solved;
             let from = q.clone();
-            self.box_step(&linearization, &from).write(q);
+            let lambda = linearization.least_damping(from.len());
+            linearization.write_step(lambda, &from, self.box_of(), q);
         }
         false
     }
@@ -143,15 +143,13 @@ impl GoalDescent<'_, '_> {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
         let mut out = preferred.clone();
-        self.box_step(at, &here.q).write_near(&preferred, &mut out);
+        at.write_step_near(&preferred, &here.q, self.box_of(), &mut out);
         out
     }
 
-    /// The step from `x` within the limits.
-    fn box_step<'b>(&'b self, at: &'b Linearization, x: &'b [f64]) -> BoxStep<'b> {
-        let Linearization { columns, residual } = at;
-        let lambda = least_damping(&columns[..x.len()]);
-        BoxStep { columns, residual, lambda, x, lower: self.bounds.lower(), upper: self.bounds.upper() }
+    /// The limits.
+    fn box_of(&self) -> [&[f64]; 2] {
+        [self.bounds.lower(), self.bounds.upper()]
     }
 
     /// Residual and Jacobian at `q`; whether it solves the task.

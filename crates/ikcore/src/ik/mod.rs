@@ -3,7 +3,7 @@
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
 //! one target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form, with the
 //! `preference` for one of its branches. `nearest` and `best` choose among several solutions,
-//! `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects
+//! `tip_tasks` holds the tasks of several tips. `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects
 //! solutions (`all_branches` by the closed form). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;
@@ -22,14 +22,16 @@ mod solutions;
 mod solve;
 mod solve_all;
 mod solve_options;
+mod tip_tasks;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
 pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
 pub use solution::{Nearest, Solution};
 pub use solutions::{SolutionView, Solutions};
-pub use solve::solve;
 pub(crate) use solve::solve_query;
-pub use solve_all::{AllOptions, SolutionSet, nearest_miss, solve_all};
+pub use solve::{solve, solve_tips};
+pub use solve_all::{AllOptions, SolutionSet, nearest_miss, solve_all, solve_all_tips};
 pub use solve_options::{Prefer, SolveOptions};
+pub use tip_tasks::tip_errors;
 pub(crate) use whole_turns::bring_near;

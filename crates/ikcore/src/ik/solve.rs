@@ -36,18 +36,34 @@ use crate::task::Target;
 /// # Errors
 /// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
+    solve_tips(robot, std::slice::from_ref(target), options, monitor)
+}
+
+/// [`solve`] for several tips: `targets` are those of [`SolveOptions::tips`], in the same order. Tips without a target are free.
+///
+/// Searches begin with the joints that tips share in the middle of their ranges, later anywhere, and each arm at its own closed form or
+/// index of starts, given those. All joints then move together.
+///
+/// # Errors
+/// As [`solve`]; [`Error::Contradiction`](crate::Error::Contradiction) for targets that contradict each other.
+pub fn solve_tips(
+    robot: &Robot,
+    targets: &[Target],
+    options: &SolveOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Solution> {
     let stopwatch = Stopwatch::start();
     let context = SolveContext::new(robot, options)?;
     let start = options.start.as_deref();
-    let target = context.read(target)?;
+    let targets = context.read(targets)?;
     start.map_or(Ok(()), |q| context.check_start(q))?;
     context.require_reference(start)?;
-    Ok(solve_query(&context, &Query { target, start, stream: 0, stopwatch }, monitor))
+    Ok(solve_query(&context, &Query { targets: &targets, start, stream: 0, stopwatch }, monitor))
 }
 
 /// Solves a validated query.
 pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor: &mut dyn Monitor) -> Solution {
-    let mut problem = context.problem(&query.target);
+    let mut problem = context.problem(query.targets);
     let mut rng = rng::stream(context.options().seed, query.stream);
     let budget = Budget::new(context.options().stop, query.stopwatch);
     let mut attempt = Attempt { context, problem: &mut problem, rng: &mut rng, monitor, budget };

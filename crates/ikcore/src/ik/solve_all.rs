@@ -154,6 +154,19 @@ pub fn solve_all(
     options: &AllOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<SolutionSet> {
+    solve_all_tips(robot, std::slice::from_ref(target), options, monitor)
+}
+
+/// [`solve_all`] for several tips: distinct solutions by a search. `targets` are those of [`SolveOptions::tips`], in the same order.
+///
+/// # Errors
+/// As [`solve_all`].
+pub fn solve_all_tips(
+    robot: &Robot,
+    targets: &[Target],
+    options: &AllOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<SolutionSet> {
     let AllOptions { each, limit, separation, redundancy, turns } = options;
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
     if *limit == Some(0) {
@@ -161,9 +174,9 @@ pub fn solve_all(
     }
     let context = SolveContext::new(robot, each)?;
     let start = each.start.as_deref();
-    let target = context.read(target)?;
+    let targets = context.read(targets)?;
     start.map_or(Ok(()), |q| context.check_start(q))?;
-    let mut problem = context.problem(&target);
+    let mut problem = context.problem(&targets);
     let mut rng = rng::stream(each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
@@ -224,8 +237,8 @@ pub fn nearest_miss(
     monitor: &mut dyn Monitor,
 ) -> Result<Solution> {
     let context = SolveContext::new(robot, &options.each)?;
-    let target = context.read(target)?;
-    let mut problem = context.problem(&target);
+    let targets = context.read(std::slice::from_ref(target))?;
+    let mut problem = context.problem(&targets);
     let mut rng = rng::stream(options.each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let start = options.each.start.as_deref();

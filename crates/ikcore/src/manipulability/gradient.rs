@@ -19,7 +19,7 @@ impl Manipulability {
     /// Exact, by the derivative of the geometric Jacobian. At index zero there is no gradient: `out` then points out of
     /// the singularity on one of its two sides, or is zero.
     pub fn gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
-        let screws = robot.screws(q);
+        let screws = robot.screws_of(self.tip(), q);
         let Some(tip) = screws.last().map(|screw| screw.end) else { return 0.0 };
         out.fill(0.0);
         add(self, &screws, &tip, out)

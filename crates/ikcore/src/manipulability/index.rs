@@ -18,18 +18,30 @@ use crate::robot::Robot;
 pub struct Manipulability {
     motion: Motion,
     rank: usize,
+    /// Number of the tip.
+    tip: usize,
 }
 
 impl Manipulability {
     /// The measure of `motion` for `robot`.
     pub fn of(robot: &Robot, motion: Motion) -> Self {
-        let TaskRank { pose, position, rotation } = robot.task_rank();
+        Self::of_tip(robot, 0, motion)
+    }
+
+    /// The measure of `motion` for tip number `tip` of `robot`.
+    pub(crate) fn of_tip(robot: &Robot, tip: usize, motion: Motion) -> Self {
+        let TaskRank { pose, position, rotation } = robot.task_rank_of(tip);
         let rank = match motion {
             Motion::Pose => pose,
             Motion::Position => position,
             Motion::Rotation => rotation,
         };
-        Self { motion, rank }
+        Self { motion, rank, tip }
+    }
+
+    /// Number of the tip.
+    pub(super) fn tip(&self) -> usize {
+        self.tip
     }
 
     /// The motion that counts.
@@ -45,7 +57,7 @@ impl Manipulability {
     /// Yoshikawa's index at `q`, which has one finite entry per joint of the robot.
     pub fn index(&self, robot: &Robot, q: &[f64]) -> f64 {
         let mut columns: Columns = [[0.0; 6]; MAX_DOF];
-        robot.tip_and_jacobian(q, &mut columns);
+        robot.tip_and_jacobian_of(self.tip, q, &mut columns);
         self.index_of(&mut columns[..q.len()])
     }
 
@@ -65,7 +77,7 @@ impl Manipulability {
 
     /// The ellipsoid of tip velocities at `q`, which has one finite entry per joint.
     pub fn ellipsoid(&self, robot: &Robot, q: &[f64]) -> Ellipsoid {
-        Ellipsoid::new(&decompose(robot, self.motion, q), self.rank)
+        Ellipsoid::new(&decompose(robot, self, q), self.rank)
     }
 
     /// The product of the `rank` largest singular values.
@@ -74,19 +86,20 @@ impl Manipulability {
     }
 }
 
-fn decompose(robot: &Robot, motion: Motion, q: &[f64]) -> SingularValues {
+fn decompose(robot: &Robot, measure: &Manipulability, q: &[f64]) -> SingularValues {
     let mut columns: Columns = [[0.0; 6]; MAX_DOF];
-    robot.tip_and_jacobian(q, &mut columns);
+    robot.tip_and_jacobian_of(measure.tip, q, &mut columns);
     let columns = &mut columns[..q.len()];
-    motion.select(columns);
+    measure.motion.select(columns);
     SingularValues::of(columns)
 }
 
 /// Yoshikawa's index of `motion` at `q` (n,).
 ///
 /// # Errors
-/// As [`Robot::jacobian`].
+/// As [`Robot::jacobian`]; [`SeveralTips`](crate::Error::SeveralTips).
 pub fn manipulability(robot: &Robot, motion: Motion, q: &[f64]) -> Result<f64> {
+    robot.require_one_tip("manipulability")?;
     robot.check("joint angles", q)?;
     Ok(Manipulability::of(robot, motion).index(robot, q))
 }
@@ -94,8 +107,9 @@ pub fn manipulability(robot: &Robot, motion: Motion, q: &[f64]) -> Result<f64> {
 /// Yoshikawa's index of `motion` at `qs` (m, n), row-major.
 ///
 /// # Errors
-/// As [`Robot::jacobian_all`].
+/// As [`Robot::jacobian_all`]; [`SeveralTips`](crate::Error::SeveralTips).
 pub fn manipulability_all(robot: &Robot, motion: Motion, qs: &[f64]) -> Result<Vec<f64>> {
+    robot.require_one_tip("manipulability")?;
     let rows = robot.rows(qs)?;
     let measure = Manipulability::of(robot, motion);
     Ok(rows.map(|q| measure.index(robot, q)).collect())

@@ -8,12 +8,13 @@
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, beside rows |
+//! | `gram`, `ldl`, `box_step`, `block_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, of several tasks, beside rows |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
+pub mod block_step;
 pub mod box_step;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;

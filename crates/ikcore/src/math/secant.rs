@@ -1,6 +1,9 @@
 //! A Jacobian estimated from differences: columns from antennae, then a rank-one update after every step.
 
+use smallvec::{SmallVec, smallvec};
+
 use super::MAX_DOF;
+use super::block_step::{BlockStep, TaskRows};
 use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
 
@@ -57,6 +60,51 @@ impl Secant {
     pub fn step(&self, residual: &[f64; ROWS], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
         let lambda = damping * self.size(x.len());
         BoxStep { columns: &self.columns, residual, lambda, x, lower, upper }.write(out);
+    }
+}
+
+/// Jacobians of several tasks, estimated together.
+#[derive(Debug, Clone)]
+pub struct Secants(SmallVec<[Secant; 1]>);
+
+impl Secants {
+    /// Of this many tasks, with Jacobians of zero.
+    pub fn new(tasks: usize) -> Self {
+        Self(smallvec![Secant::default(); tasks])
+    }
+
+    /// Sets column `j` from one antenna: x_j moved by `length`, and the residuals changed from `before` to `after`.
+    pub fn set_column(&mut self, j: usize, length: f64, before: &[[f64; ROWS]], after: &[[f64; ROWS]]) {
+        for (secant, (before, after)) in self.0.iter_mut().zip(before.iter().zip(after)) {
+            secant.set_column(j, length, &std::array::from_fn(|k| after[k] - before[k]));
+        }
+    }
+
+    /// Updates the Jacobians after a step `dx` that changed the residuals from `before` to `after`.
+    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, before: &[[f64; ROWS]], after: &[[f64; ROWS]]) {
+        for (secant, (before, after)) in self.0.iter_mut().zip(before.iter().zip(after)) {
+            let predicted: [f64; ROWS] = secant.predict(dx.clone());
+            let surprise: [f64; ROWS] = std::array::from_fn(|k| after[k] - before[k] - predicted[k]);
+            secant.learn(dx.clone(), &surprise, 1.0);
+        }
+    }
+
+    /// Writes into `out` the bounded step from `x`; `damping` is relative to the squared size of the Jacobians.
+    pub fn step(
+        &self,
+        residuals: &[[f64; ROWS]],
+        damping: f64,
+        x: &[f64],
+        [lower, upper]: [&[f64]; 2],
+        out: &mut [f64],
+    ) {
+        if let ([secant], [residual]) = (&self.0[..], residuals) {
+            return secant.step(residual, damping, x, [lower, upper], out);
+        }
+        let lambda = damping * self.0.iter().map(|secant| secant.size(x.len())).sum::<f64>();
+        let rows = self.0.iter().zip(residuals).map(|(Secant { columns }, residual)| TaskRows { columns, residual });
+        let tasks: SmallVec<[TaskRows<'_>; 4]> = rows.collect();
+        BlockStep { tasks: &tasks, lambda, x, lower, upper }.write(out);
     }
 }
 

@@ -1,42 +1,123 @@
-//! Objectives that are sums of squares: residuals and Jacobians.
+//! Objectives that are sums of squares: residuals and Jacobians, in blocks of six rows, one a task.
+
+use smallvec::SmallVec;
 
 use super::evaluation::{Objective, Score};
 use super::gradient::Gradient;
 use crate::math::MAX_DOF;
-use crate::math::box_step::ROWS;
+use crate::math::block_step::{BlockStep, TaskRows};
+use crate::math::box_step::{BoxStep, LEAST_DAMPING, ROWS};
+use crate::math::vector::squared_size;
 
-/// Residual r and Jacobian dr/dx at a point.
+/// Residual r and Jacobian dr/dx of one task at a point.
 #[derive(Debug, Clone)]
-pub struct Linearization {
+pub struct TaskBlock {
     /// Weighted residual, actual minus target; rows that a task does not use are zero.
     pub residual: [f64; ROWS],
     /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
     pub columns: [[f64; ROWS]; MAX_DOF],
 }
 
-impl Default for Linearization {
+impl Default for TaskBlock {
     fn default() -> Self {
         Self { residual: [0.0; ROWS], columns: [[0.0; ROWS]; MAX_DOF] }
     }
 }
 
-/// An objective that is a sum of at most six squares.
+/// TaskResiduals and Jacobians of all tasks at a point: one block for most objectives.
+#[derive(Debug, Clone, Default)]
+pub struct Linearization {
+    /// That of the first task.
+    pub first: TaskBlock,
+    /// Those of further tasks, as of several tips.
+    pub more: Vec<TaskBlock>,
+}
+
+/// Weighted residuals, one for each task.
+pub type TaskResiduals = SmallVec<[[f64; ROWS]; 1]>;
+
+/// An objective that is a sum of squares, six for each task.
 pub trait Residual: Objective {
-    /// The weighted residual at `x`, actual minus target, and the score; rows that a task does not use are zero.
-    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
+    /// Writes the weighted residuals at `x`, actual minus target, and returns the score; rows that a task does not use are zero.
+    fn residual(&mut self, x: &[f64], out: &mut TaskResiduals) -> Score;
 }
 
 /// A residual with its Jacobian.
 pub trait LeastSquares: Residual {
-    /// Residual and Jacobian at `x` in one pass, and the score.
+    /// TaskResiduals and Jacobians at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
 }
 
 impl Linearization {
+    /// The blocks of all tasks.
+    pub fn blocks(&self) -> impl Iterator<Item = &TaskBlock> + Clone {
+        std::iter::once(&self.first).chain(&self.more)
+    }
+
+    /// The blocks of all tasks, writable.
+    pub fn blocks_mut(&mut self) -> impl Iterator<Item = &mut TaskBlock> {
+        std::iter::once(&mut self.first).chain(&mut self.more)
+    }
+
     /// Writes J'r, the gradient of r'r / 2, into `gradient`, which has one entry per entry of x.
     pub fn gradient(&self, gradient: &mut [f64]) {
+        self.first.gradient(gradient);
+        for block in &self.more {
+            block.add_gradient(gradient);
+        }
+    }
+
+    /// Writes the [bounded step](BoxStep) from `x` in the box \[`lower`, `upper`\] into `out`.
+    #[inline]
+    pub fn write_step(&self, lambda: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        if self.more.is_empty() {
+            let TaskBlock { columns, residual } = &self.first;
+            BoxStep { columns, residual, lambda, x, lower, upper }.write(out);
+        } else {
+            self.write_step_of_several(lambda, x, [lower, upper], out);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn write_step_of_several(&self, lambda: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write(out);
+    }
+
+    /// Writes the point in the box \[`lower`, `upper`\] that (nearly) solves r + J (out - x) = 0 and is nearest to `preferred`, which
+    /// must be in the box.
+    pub fn write_step_near(&self, preferred: &[f64], x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        let lambda = self.least_damping(x.len());
+        if self.more.is_empty() {
+            let TaskBlock { columns, residual } = &self.first;
+            BoxStep { columns, residual, lambda, x, lower, upper }.write_near(preferred, out);
+        } else {
+            BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write_near(preferred, out);
+        }
+    }
+
+    /// The damping that keeps a singular system of `n` unknowns solvable and has no effect otherwise.
+    pub fn least_damping(&self, n: usize) -> f64 {
+        LEAST_DAMPING * self.blocks().map(|block| squared_size(&block.columns[..n])).sum::<f64>()
+    }
+
+    #[cold]
+    fn rows(&self) -> SmallVec<[TaskRows<'_>; 4]> {
+        self.blocks().map(|TaskBlock { columns, residual }| TaskRows { columns, residual }).collect()
+    }
+}
+
+impl TaskBlock {
+    /// Writes J'r into `gradient`.
+    fn gradient(&self, gradient: &mut [f64]) {
         for (slope, column) in gradient.iter_mut().zip(&self.columns) {
             *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
+        }
+    }
+
+    fn add_gradient(&self, gradient: &mut [f64]) {
+        for (slope, column) in gradient.iter_mut().zip(&self.columns) {
+            *slope += column.iter().zip(&self.residual).map(|(c, r)| c * r).sum::<f64>();
         }
     }
 }

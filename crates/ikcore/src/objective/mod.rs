@@ -13,5 +13,5 @@ mod point;
 pub use bounds::Bounds;
 pub use evaluation::{CallPattern, Objective, Score};
 pub use gradient::{Gradient, SmoothScore};
-pub use least_squares::{Differentiable, LeastSquares, Linearization, Residual};
+pub use least_squares::{Differentiable, LeastSquares, Linearization, Residual, TaskBlock, TaskResiduals};
 pub use point::Point;

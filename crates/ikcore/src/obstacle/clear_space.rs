@@ -67,10 +67,10 @@ impl<'a> ClearSpace<'a> {
         self.scene.nearest_contact(q).ok().flatten()
     }
 
-    /// What makes every configuration unclear that has the tip where `q` (n,) has it: a body that no joint moves, or one that is
-    /// fixed to the tip, is nearer than the margin to something that does not move either.
-    pub(crate) fn blocked_at_tip(&self, q: &[f64]) -> Option<Blocked> {
-        self.blocked_anywhere(q).or_else(|| self.scene.contact_of_hand(q, self.margin).map(Blocked::Hand))
+    /// What makes every configuration unclear that has the frames of these numbers, those of tips, where `q` (n,) has them: a body
+    /// that no joint moves, or one that is fixed to a tip, is nearer than the margin to something that does not move either.
+    pub(crate) fn blocked_at(&self, q: &[f64], hands: &[usize]) -> Option<Blocked> {
+        self.blocked_anywhere(q).or_else(|| self.scene.contact_of_hands(q, hands, self.margin).map(Blocked::Hand))
     }
 
     /// What makes every configuration unclear: a body that no joint moves is nearer to an obstacle than the margin.

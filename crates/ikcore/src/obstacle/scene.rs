@@ -209,14 +209,18 @@ impl<'a> Scene<'a> {
         Some(self.contact(pair, distance))
     }
 
-    /// Of the pairs nearer than `margin` (m) with one body fixed to the tip and the other at rest the nearest; `None` if there is none.
-    pub(super) fn contact_of_hand(&self, q: &[f64], margin: f64) -> Option<Contact> {
+    /// Of the pairs nearer than `margin` (m) with one body on a frame of `hands` and the other on another one or at rest the nearest;
+    /// `None` if there is none.
+    pub(super) fn contact_of_hands(&self, q: &[f64], hands: &[usize], margin: f64) -> Option<Contact> {
+        if hands.is_empty() {
+            return None;
+        }
         let placement = self.place(q);
-        let hand = self.robot.tip_frame_number();
-        let stages = |body: usize| self.bodies.carried[body].stages;
+        let is_of_hand = |body: usize| hands.contains(&self.bodies.carried[body].stages);
+        let is_still = |body: usize| self.bodies.carried[body].stages == 0 || is_of_hand(body);
         let is_of_hand = |pair: &BodyPair| match *pair {
-            BodyPair::Obstacle { body, .. } => stages(body) == hand,
-            BodyPair::Bodies { near, far, .. } => stages(near) == 0 && stages(far) == hand,
+            BodyPair::Obstacle { body, .. } => is_of_hand(body),
+            BodyPair::Bodies { near, far, .. } => is_still(near) && is_of_hand(far),
         };
         let distances = self.pairs().filter(is_of_hand).map(|pair| (self.distance(pair, &placement, margin), pair));
         let nearest = distances.filter(|(distance, _)| *distance < margin).min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -387,7 +391,7 @@ fn moves_in_plane(robot: &Robot) -> bool {
     let mut columns = [[0.0; 6]; MAX_DOF];
     let tip = robot.tip_and_jacobian(&q, &mut columns);
     let flat = |column: &[f64; 6]| column[2..5].iter().all(|x| x.abs() < 1e-9);
-    tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
+    robot.tip_count() == 1 && tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
 }
 
 /// Says which shapes are missing and how to give them.

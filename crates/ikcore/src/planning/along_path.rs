@@ -23,6 +23,7 @@ pub fn plan_along_path(
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
+    robot.require_one_tip("plan_along_path")?;
     if options.objective == Cost::TipTravel {
         return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
     }

@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `point_to_point`, `along_path` | the two calls |
+//! | `several_tips` | point to point for several tips: targets become configurations |
 //! | `planner_options` | their options: method, objective, limits, budget |
 //! | `endpoint` | [`Endpoint`]: a start or an end, by target or configuration |
 //! | `tip_path` | [`TipPath`]: the curve that the tip follows |
@@ -43,6 +44,7 @@ mod planner_options;
 mod point_to_point;
 mod retime;
 mod search;
+mod several_tips;
 mod time_optimal;
 mod timed;
 mod tip_path;
@@ -59,6 +61,7 @@ pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
 pub use planner_options::{AlongPathMethod, AlongPathOptions, PointToPointMethod, PointToPointOptions};
 pub(crate) use point_to_point::check_point_to_point;
 pub use point_to_point::plan_point_to_point;
+pub use several_tips::{TipsEndpoint, plan_point_to_point_tips};
 pub use time_optimal::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
 pub use tip_path::TipPath;
 pub use tpbso::Tpbso;

@@ -62,7 +62,10 @@ impl PlanarArm {
     /// `robot` as a planar arm of at least two links; `None` if it is not one.
     pub fn of(robot: &Robot) -> Option<Self> {
         let n = robot.dof();
-        if n < ELBOW_LINKS || robot.joints().iter().any(|joint| joint.kind == JointKind::Prismatic) {
+        if robot.tip_count() > 1
+            || n < ELBOW_LINKS
+            || robot.joints().iter().any(|joint| joint.kind == JointKind::Prismatic)
+        {
             return None;
         }
         let mut columns = [[0.0; 6]; crate::math::MAX_DOF];

@@ -1,5 +1,6 @@
 //! Planning from point to point.
 
+use super::cost::Cost;
 use super::end_pieces::composed;
 use super::endpoint::{EndName, Endpoint};
 use super::motion_limits::MotionLimits;
@@ -41,6 +42,27 @@ pub fn plan_point_to_point(
     Ok(plan)
 }
 
+/// Err for what the planner does for one tip alone.
+///
+/// # Errors
+/// [`Error::SeveralTips`].
+fn require_joint_space(
+    robot: &Robot,
+    start: &Endpoint,
+    ends: &[Endpoint],
+    options: &PointToPointOptions,
+) -> Result<()> {
+    let has_target = std::iter::once(start).chain(ends).any(|end| matches!(end, Endpoint::Target(_)));
+    let cases = [
+        (has_target, "a plain target of plan_point_to_point"),
+        (options.task.is_some(), "task= of plan_point_to_point without a dict"),
+        (options.has_pieces(), "approach=, retreat= or free_start= of plan_point_to_point"),
+        (matches!(options.method, PointToPointMethod::Tpbso(_)), "method=\"tpbso\" of plan_point_to_point"),
+        (options.objective == Cost::TipTravel, "objective=\"tip_travel\" of plan_point_to_point"),
+    ];
+    cases.into_iter().filter(|(is_asked, _)| *is_asked).try_for_each(|(_, call)| robot.require_one_tip(call))
+}
+
 /// Checks the arguments of [`plan_point_to_point`]: numbers, lengths and kinds, not what only a planner finds out.
 ///
 /// # Errors
@@ -51,6 +73,7 @@ pub(crate) fn check_point_to_point(
     ends: &[Endpoint],
     options: &PointToPointOptions,
 ) -> Result<()> {
+    require_joint_space(robot, start, ends, options)?;
     let task = options.task.as_ref();
     task.map_or(Ok(()), Task::validate)?;
     start.check(EndName::Start, robot, task)?;

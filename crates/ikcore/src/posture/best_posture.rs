@@ -75,6 +75,7 @@ pub fn best_posture(
     options: &PostureOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Posture> {
+    robot.require_one_tip("best_posture")?;
     let stopwatch = Stopwatch::start();
     Target::Position(*target).validate()?;
     options.swarm.map_or(Ok(()), |swarm| swarm.validate())?;

@@ -1,22 +1,28 @@
 //! A robot and a target as an objective.
 
-use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
+use smallvec::{SmallVec, smallvec};
+
+use super::aim::Aim;
+use super::tip_starts::TipStarts;
+use crate::objective::{
+    Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore, TaskBlock, TaskResiduals,
+};
 use crate::obstacle::ClearSpace;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::starts::Starts;
 use crate::task::residual::entrywise;
-use crate::task::{Assessment, Criterion, Target};
+use crate::task::{Assessment, Criterion, Subject, Target, TipAims};
 
 /// The inverse kinematics problem. It borrows everything, so building one per tick costs nothing.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Problem<'a> {
     robot: &'a Robot,
-    target: &'a Target,
-    criterion: Criterion,
+    aim: Aim<'a>,
     /// Looked up when the first start is needed.
     seeds: Option<Starts<'a>>,
+    /// Where attempts for several tips begin.
+    tip_starts: Option<Box<TipStarts>>,
     turns: Turns,
     /// What a solution must keep clear of, for solvers that need values alone.
     space: Option<&'a ClearSpace<'a>>,
@@ -34,7 +40,8 @@ enum Turns {
 impl<'a> Problem<'a> {
     /// The problem of moving the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct, space: None }
+        let aim = Aim::Tip(target, criterion.into());
+        Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
     }
 
     /// The same problem, in which full turns of a joint do not matter.
@@ -42,28 +49,64 @@ impl<'a> Problem<'a> {
         Self { turns: Turns::Equivalent, ..self }
     }
 
-    /// The same problem with a penalty on its values outside `space`, where no configuration is a solution.
-    pub(crate) fn penalized(self, space: Option<&'a ClearSpace<'a>>) -> Self {
-        Self { space, ..self }
+    /// The problem of a single configuration, in which full turns do not matter, with a penalty on its values outside `space`, where
+    /// no configuration is a solution.
+    #[inline]
+    pub(crate) fn of_configuration(
+        robot: &'a Robot,
+        target: &'a Target,
+        criterion: Criterion,
+        space: Option<&'a ClearSpace<'a>>,
+    ) -> Self {
+        // In one go: a problem is large, and copies of it take longer than many a solve by closed form may.
+        let aim = Aim::Tip(target, criterion);
+        Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Equivalent, space }
     }
 
-    /// The target of the tip.
-    pub fn target(&self) -> &'a Target {
-        self.target
+    /// The same of moving several tips to their targets.
+    pub(crate) fn of_tips(robot: &'a Robot, aims: TipAims<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
+        let tip_starts = Some(Box::default());
+        Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts, turns: Turns::Equivalent, space }
+    }
+
+    /// The target of the only tip, and its criterion; None for several tips.
+    #[inline]
+    pub(crate) fn only_target(&self) -> Option<(&'a Target, &Criterion)> {
+        match &self.aim {
+            Aim::Tip(target, criterion) => Some((target, criterion)),
+            Aim::Tips(_) => None,
+        }
+    }
+
+    /// Numbers of the frames of the tips whose whole poses are given.
+    pub(crate) fn fixed_frames(&self) -> SmallVec<[usize; 2]> {
+        match &self.aim {
+            Aim::Tip(target, criterion) if criterion.fixes_pose(target) => smallvec![self.robot.frame_of_tip(0)],
+            Aim::Tip(..) => SmallVec::new(),
+            Aim::Tips(aims) => {
+                let fixed = aims.iter().filter_map(|(task, target)| match task.subject {
+                    Subject::Tip(tip) if task.criterion.fixes_pose(target) => Some(self.robot.frame_of_tip(tip)),
+                    _ => None,
+                });
+                fixed.collect()
+            }
+        }
+    }
+
+    pub(super) fn aim(&self) -> &Aim<'a> {
+        &self.aim
     }
 
     pub(super) fn robot(&self) -> &'a Robot {
         self.robot
     }
 
-    /// The criterion of the target.
-    pub(crate) fn criterion(&self) -> &Criterion {
-        &self.criterion
-    }
-
     /// The assessment of `q`, by forward kinematics.
     pub fn assess(&self, q: &[f64]) -> Assessment {
-        self.target.assess(self.robot, q, &self.criterion)
+        match &self.aim {
+            Aim::Tip(target, criterion) => target.assess(self.robot, q, criterion),
+            Aim::Tips(aims) => assess_tips(aims, self.robot, q),
+        }
     }
 }
 
@@ -80,11 +123,15 @@ impl Objective for Problem<'_> {
 
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
         let mut scores = out.iter_mut();
-        self.target.assess_all(self.robot, qs, &self.criterion, |assessment| {
+        let mut keep = |assessment: Assessment| {
             if let Some(score) = scores.next() {
                 *score = assessment.score;
             }
-        });
+        };
+        match &self.aim {
+            Aim::Tip(target, criterion) => target.assess_all(self.robot, qs, criterion, keep),
+            Aim::Tips(aims) => qs.chunks_exact(self.robot.dof()).for_each(|q| keep(assess_tips(aims, self.robot, q))),
+        }
         if let Some(space) = self.space {
             for (q, score) in qs.chunks_exact(self.robot.dof()).zip(out) {
                 *score = kept_clear(*score, space, q);
@@ -98,10 +145,20 @@ impl Objective for Problem<'_> {
     }
 
     /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box; unlimited sides
-    /// end at the joint's sampling range. The indexed configurations also follow a start given by the caller.
+    /// end at the joint's sampling range. The indexed configurations also follow a start given by the caller. For several tips see
+    /// `tip_starts`.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
+        let (target, criterion) = match &self.aim {
+            Aim::Tip(target, criterion) => (target, criterion),
+            Aim::Tips(aims) => {
+                if let Some(starts) = &mut self.tip_starts {
+                    starts.propose(self.robot, aims, bounds, rng, q);
+                }
+                return;
+            }
+        };
         if self.seeds.is_none() {
-            let aim = self.criterion.aim(self.target);
+            let aim = criterion.aim(target);
             self.seeds = match (&aim, aim.position()) {
                 (Target::Pose(pose), _) => Some(self.robot.starts_near_pose(pose)),
                 (_, Some(position)) => Some(self.robot.starts_near_position(&position)),
@@ -127,35 +184,74 @@ fn kept_clear(score: Score, space: &ClearSpace<'_>, q: &[f64]) -> Score {
 }
 
 impl Residual for Problem<'_> {
-    fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
-        // Without a Jacobian: the residual needs only the tip.
-        let mut linearization = Linearization::default();
-        let assessment = self.target.linearize_tip(&self.robot.tip(q), 0, &self.criterion, &mut linearization);
-        *out = linearization.residual;
-        assessment.score
+    fn residual(&mut self, q: &[f64], out: &mut TaskResiduals) -> Score {
+        out.clear();
+        match &self.aim {
+            Aim::Tip(target, criterion) => {
+                // Without a Jacobian: the residual needs only the tip.
+                let mut block = TaskBlock::default();
+                let assessment = target.linearize_tip(&self.robot.tip(q), 0, criterion, &mut block);
+                out.push(block.residual);
+                assessment.score
+            }
+            Aim::Tips(aims) => aims.residuals(self.robot, q, |residual| out.push(residual)).score,
+        }
     }
 }
 
 impl Gradient for Problem<'_> {
-    /// E of eq. (11) of Yuan et al. 2016; with component weights or a region, half the weighted sum of squares.
+    /// E of eq. (11) of Yuan et al. 2016; with component weights, a region or several tips, half the weighted sum of squares.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
-        if self.criterion.components.is_some() || self.criterion.region.is_some() {
-            let mut linearization = Linearization::default();
-            let score = self.linearize(q, &mut linearization);
-            linearization.gradient(gradient);
-            return SmoothScore { error: 0.5 * score.value, score };
-        }
-        let target = self.target;
+        let (target, criterion) = match &self.aim {
+            Aim::Tip(target, criterion) if criterion.components.is_none() && criterion.region.is_none() => {
+                (*target, criterion)
+            }
+            _ => {
+                let mut linearization = Linearization::default();
+                let score = self.linearize(q, &mut linearization);
+                linearization.gradient(gradient);
+                return SmoothScore { error: 0.5 * score.value, score };
+            }
+        };
         let tip = self.robot.tip_and_torques(q, &|tip| entrywise::wrench(target, tip), gradient);
         gradient.iter_mut().for_each(|slope| *slope = -*slope);
-        SmoothScore { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
+        SmoothScore { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, criterion).score }
     }
 }
 
 impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
-        self.target.linearize(self.robot, q, &self.criterion, out).score
+        match &self.aim {
+            Aim::Tip(target, criterion) => target.linearize(self.robot, q, criterion, &mut out.first).score,
+            Aim::Tips(aims) => linearize_tips(aims, self.robot, self.tip_starts.as_deref_mut(), q, out),
+        }
     }
+}
+
+// Those of several tips are kept out of line: inlined, they would make those of one slower.
+
+#[cold]
+#[inline(never)]
+fn assess_tips(aims: &TipAims<'_>, robot: &Robot, q: &[f64]) -> Assessment {
+    aims.assess(robot, q)
+}
+
+/// Notes in `starts` which tasks are solved.
+#[cold]
+#[inline(never)]
+fn linearize_tips(
+    aims: &TipAims<'_>,
+    robot: &Robot,
+    mut starts: Option<&mut TipStarts>,
+    q: &[f64],
+    out: &mut Linearization,
+) -> Score {
+    let note = |task: usize| {
+        if let Some(starts) = &mut starts {
+            starts.note(task, q);
+        }
+    };
+    aims.linearize(robot, q, out, note).score
 }

@@ -59,9 +59,11 @@ impl Robot {
     /// joint opens between two links is not covered.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] if nothing between two joints has a name.
+    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] if nothing between two joints has a name;
+    /// [`Error::SeveralTips`].
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
+        self.require_one_tip("with_capsules(radius=...)")?;
         let chain = self.chain();
         let moving = chain.moving;
         let mut capsules = vec![];

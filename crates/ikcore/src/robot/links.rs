@@ -149,11 +149,6 @@ impl Robot {
         (*stages, *offset)
     }
 
-    /// Number of the frame that carries the tip.
-    pub(crate) fn tip_frame_number(&self) -> usize {
-        self.chain().moving
-    }
-
     /// Numbers of all links, by name.
     pub(super) fn link_numbers(&self) -> HashMap<&str, usize> {
         self.all_link_names().enumerate().map(|(number, name)| (name, number)).collect()

@@ -11,8 +11,9 @@ impl Robot {
     /// drawn uniformly. Base and tool are unchanged.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a length or angle that is negative or not finite.
+    /// [`Error::OutOfRange`] for a length or angle that is negative or not finite; [`Error::SeveralTips`].
     pub fn with_errors(&self, length: f64, angle: f64, rng: &mut LazyRng) -> Result<Self> {
+        self.require_one_tip("with_errors")?;
         for (name, size) in [("length", length), ("angle", angle)] {
             if !(size.is_finite() && size >= 0.0) {
                 return Err(Error::out_of_range(name, "zero or more and finite", size));

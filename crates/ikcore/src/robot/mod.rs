@@ -9,6 +9,7 @@
 //! | `model`, `parts` | [`Robot`], and what determines one |
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
+//! | `tips`, `tip_chain`, `arms` | several tips: the kinematics of each, their chains, what moves one alone |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
 //! | `derived` | what a higher module derives from the bodies |
 //! | `carried` | bodies seen from the moving elements that carry them |
@@ -18,6 +19,7 @@
 //! | `stance` | named configurations |
 //! | `serialization` | robots as bytes |
 
+mod arms;
 mod attached;
 mod batched;
 mod bodies;
@@ -39,7 +41,10 @@ mod pairs;
 mod parts;
 mod serialization;
 mod stance;
+mod tip_chain;
+mod tips;
 
+pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;

@@ -12,10 +12,11 @@ use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::parts::Parts;
 use super::stance::Stance;
+use super::tip_chain::TipChains;
 use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
-use crate::kinematics::chain::Chain;
+use crate::kinematics::chain::{Chain, StageMotion};
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::link_tree::LinkTree;
 use crate::kinematics::{Reach, TaskRank};
@@ -25,15 +26,17 @@ use crate::rng::LazyRng;
 use crate::starts::Starts;
 use crate::starts::index::StartIndex;
 
-/// A robot arm: a serial chain from base to tip, and the links that branch off it.
+/// A robot: a serial chain from base to tip, or several to several [`tips`](Self::tips), and the links that branch off.
 ///
-/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs, and joints beside the
-/// chain are held. Poses are in the frame of the robot's base.
+/// Joint vectors hold the independent joints in chain order (rad, m), those of several chains one chain after another, shared ones
+/// once; mimic joints follow theirs, and joints beside the chains are held. Poses are in the frame of the robot's base.
 #[derive(Debug, Clone)]
 pub struct Robot {
     parts: Parts,
     /// The chain, folded from description, base and tool.
     chain: Arc<Chain>,
+    /// The chains of a robot with several tips.
+    tips: Arc<TipChains>,
     /// All links, folded at first use.
     tree: OnceLock<Arc<LinkTree>>,
     /// The kernels compiled for the chain's size and this machine.
@@ -48,10 +51,20 @@ pub struct Robot {
     turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
+    /// What moves each of several tips alone, made at first use; copies that differ in base share it.
+    arms: Arc<OnceLock<Vec<Option<TipArm>>>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
     /// Decided at first use; copies that differ in base and tool share it.
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
+}
+
+/// What moves one of several tips alone, seen from the end of what it shares with others.
+#[derive(Debug)]
+pub(crate) struct TipArm {
+    pub robot: Robot,
+    /// Its joints, as entries of q of the whole robot.
+    pub joints: Vec<usize>,
 }
 
 impl PartialEq for Robot {
@@ -68,9 +81,12 @@ impl Robot {
 
     pub(super) fn assembled(parts: Parts) -> Result<Self> {
         parts.validate()?;
+        TipChains::validate(&parts)?;
         let chain = parts.description.folded(&parts.base, &parts.tool);
+        let tips = TipChains::of(&parts);
         Ok(Self {
-            turn_periods: turn_periods(&chain, &parts.description.joints),
+            turn_periods: turn_periods(driving_motions(&chain, &tips), &parts.description.joints),
+            tips: Arc::new(tips),
             parts,
             kernels: Kernels::for_chain(&chain),
             reach_of_links: Reach::of_links(&chain),
@@ -79,6 +95,7 @@ impl Robot {
             pairs: Arc::default(),
             derived: Derived::default(),
             start_index: Arc::default(),
+            arms: Arc::default(),
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
         })
@@ -132,9 +149,10 @@ impl Robot {
     /// The same robot with its tip at `tool`, relative to the tip link.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] for NaN or infinity in the pose.
+    /// [`Error::NotFinite`] for NaN or infinity in the pose; [`Error::SeveralTips`].
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
+        self.require_one_tip("with_tool")?;
         let robot = Self::assembled(Parts { tool, ..self.parts.clone() })?;
         Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
@@ -153,7 +171,7 @@ impl Robot {
 
     /// Whether a full turn of joint `joint` leaves the pose of every link unchanged.
     pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
-        repeats_every_turn(&self.chain, &self.joints()[joint], joint)
+        repeats_every_turn(driving_motions(&self.chain, &self.tips), &self.joints()[joint], joint)
     }
 
     /// The smallest change of joint `joint` that leaves the pose of every link unchanged; None where there is none.
@@ -227,6 +245,7 @@ impl Robot {
         let name = |joint: usize| self.joints()[joint].name.clone();
         match self.closed_form_or_reason() {
             Ok(form) => form.structure(name),
+            Err(_) if self.tip_count() > 1 => "none: several tips; each arm uses its own".into(),
             Err(NoClosedForm::Joints(count)) => format!("none: {count} joints; closed forms are for 3 to 7"),
             Err(NoClosedForm::Drives { joint, axes }) => format!("none: joint '{}' drives {axes} axes", name(*joint)),
             Err(NoClosedForm::Rank(rank)) => format!("none: the tip moves in {rank} of 6 directions"),
@@ -271,6 +290,9 @@ impl Robot {
 
     fn closed_form_or_reason(&self) -> &std::result::Result<ClosedFormArm, NoClosedForm> {
         self.closed_form.get_or_init(|| {
+            if self.tip_count() > 1 {
+                return Err(NoClosedForm::Joints(self.dof()));
+            }
             let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
             let (lower, upper): (Vec<_>, Vec<_>) = self.sampling_ranges().into_iter().unzip();
             ClosedFormArm::new(&chain, [&lower, &upper], self.task_rank().pose)
@@ -284,7 +306,7 @@ impl Robot {
         })
     }
 
-    fn sampling_ranges(&self) -> Vec<(f64, f64)> {
+    pub(super) fn sampling_ranges(&self) -> Vec<(f64, f64)> {
         self.joints().iter().map(Joint::sampling_range).collect()
     }
 
@@ -308,7 +330,8 @@ impl Robot {
 
     /// Gives `robot`, which has the same chain, what was found of this one.
     fn lend_to(&self, robot: Self) -> Self {
-        Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot }
+        let (start_index, closed_form, arms) = (self.start_index.clone(), self.closed_form.clone(), self.arms.clone());
+        Self { start_index, closed_form, arms, ..robot }
     }
 
     /// The same robot with these named configurations in place of others.
@@ -326,6 +349,11 @@ impl Robot {
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {
         &self.pairs
+    }
+
+    /// The same robot with these branches, on which further tips are.
+    pub(crate) fn with_branches(&self, off_chain: OffChain, tips: Vec<String>) -> Result<Self> {
+        self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), tips, ..self.parts.clone() })
     }
 
     /// The same robot with other branches.
@@ -346,6 +374,14 @@ impl Robot {
         self.tree.get_or_init(|| Arc::new(self.parts.off_chain.folded(&self.parts.description, &self.chain)))
     }
 
+    pub(super) fn tip_chains(&self) -> &TipChains {
+        &self.tips
+    }
+
+    pub(super) fn found_arms(&self) -> &OnceLock<Vec<Option<TipArm>>> {
+        &self.arms
+    }
+
     pub(super) fn reach_of_links(&self) -> &Reach {
         &self.reach_of_links
     }
@@ -361,17 +397,22 @@ impl Robot {
     }
 }
 
-fn repeats_every_turn(chain: &Chain, joint: &Joint, number: usize) -> bool {
-    let mut driven = chain.motions.iter().filter(|motion| motion.joint == number);
+/// The motions of the elements that move a tip.
+fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [StageMotion] {
+    if tips.chains.is_empty() { &chain.motions[..chain.moving] } else { &tips.motions }
+}
+
+fn repeats_every_turn(motions: &[StageMotion], joint: &Joint, number: usize) -> bool {
+    let mut driven = motions.iter().filter(|motion| motion.joint == number);
     joint.kind.turns() && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0)
 }
 
-fn turn_periods(chain: &Chain, joints: &[Joint]) -> Vec<Option<f64>> {
+fn turn_periods(motions: &[StageMotion], joints: &[Joint]) -> Vec<Option<f64>> {
     let period = |(number, joint): (usize, &Joint)| {
-        let mut driven = chain.motions[..chain.moving].iter().filter(|motion| motion.joint == number);
+        let mut driven = motions.iter().filter(|motion| motion.joint == number);
         match (driven.next(), driven.next()) {
             (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
-            _ => repeats_every_turn(chain, joint, number).then_some(TAU),
+            _ => repeats_every_turn(motions, joint, number).then_some(TAU),
         }
     };
     joints.iter().enumerate().map(period).collect()

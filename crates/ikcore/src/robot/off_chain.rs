@@ -45,28 +45,31 @@ impl OffChain {
         for link in &self.links {
             tree.start_at(link.parent);
             for element in &link.elements {
-                match element {
-                    Element::Fixed(transform) => tree.fixed(transform),
+                match self.settled(element, dof) {
+                    Element::Fixed(transform) => tree.fixed(&transform),
                     Element::Link(_) => {}
                     Element::Moving { axis, turns, joint, scale, offset } => {
-                        match self.held.get(joint.wrapping_sub(dof)) {
-                            Some(held) => {
-                                let value = scale * held.value + offset;
-                                let turned = || pose::rotation(*axis, value);
-                                let slid = || pose::translation(value * axis.x, value * axis.y, value * axis.z);
-                                tree.fixed(&if *turns { turned() } else { slid() });
-                            }
-                            None => {
-                                let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
-                                tree.moving(axis, motion(*joint, *scale, *offset));
-                            }
-                        }
+                        let motion = if turns { StageMotion::turn } else { StageMotion::slide };
+                        tree.moving(&axis, motion(joint, scale, offset));
                     }
                 }
             }
             tree.link();
         }
         tree.finish()
+    }
+
+    /// An element of a robot with `dof` independent joints; constant if its joint is held.
+    pub fn settled(&self, element: &Element, dof: usize) -> Element {
+        if let Element::Moving { axis, turns, joint, scale, offset } = element
+            && let Some(held) = self.held.get(joint.wrapping_sub(dof))
+        {
+            let value = scale * held.value + offset;
+            let turned = || pose::rotation(*axis, value);
+            let slid = || pose::translation(value * axis.x, value * axis.y, value * axis.z);
+            return Element::Fixed(if *turns { turned() } else { slid() });
+        }
+        element.clone()
     }
 
     /// The independent joints, then the held ones.

@@ -28,6 +28,8 @@ pub(crate) struct Parts {
     pub may_touch: Vec<[String; 2]>,
     /// Named configurations.
     pub stances: Vec<Stance>,
+    /// Links of further tips, beside that at the end of the chain.
+    pub tips: Vec<String>,
 }
 
 impl Parts {
@@ -43,6 +45,7 @@ impl Parts {
             pairs: PairRule::default(),
             may_touch: vec![],
             stances: vec![],
+            tips: vec![],
         }
     }
 
@@ -50,5 +53,25 @@ impl Parts {
     pub fn validate(&self) -> Result<()> {
         self.description.validate()?;
         self.off_chain.validate(&self.description)
+    }
+}
+
+/// The form in which parts were stored before robots had several tips.
+#[derive(Deserialize)]
+pub(super) struct PartsOfOneTip {
+    description: Description,
+    off_chain: Arc<OffChain>,
+    base: Pose,
+    tool: Pose,
+    bodies: Bodies,
+    pairs: PairRule,
+    may_touch: Vec<[String; 2]>,
+    stances: Vec<Stance>,
+}
+
+impl From<PartsOfOneTip> for Parts {
+    fn from(stored: PartsOfOneTip) -> Self {
+        let PartsOfOneTip { description, off_chain, base, tool, bodies, pairs, may_touch, stances } = stored;
+        Self { description, off_chain, base, tool, bodies, pairs, may_touch, stances, tips: vec![] }
     }
 }

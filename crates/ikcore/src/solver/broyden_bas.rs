@@ -8,9 +8,9 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result, require_positive};
-use crate::math::box_step::{LEAST_DAMPING, ROWS};
-use crate::math::secant::{Secant, antenna};
-use crate::objective::{Point, Residual};
+use crate::math::box_step::LEAST_DAMPING;
+use crate::math::secant::{Secants, antenna};
+use crate::objective::{Point, Residual, TaskResiduals};
 
 /// Broyden's method on antenna differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,8 +63,8 @@ impl BroydenBas {
 pub struct State {
     x: Point,
     value: f64,
-    residual: [f64; ROWS],
-    jacobian: Secant,
+    residual: TaskResiduals,
+    jacobian: Secants,
     damping: f64,
     /// Steps since the last antennae that left more than half of the residual.
     slow: usize,
@@ -77,11 +77,11 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
-        let mut residual = [0.0; ROWS];
+        let mut residual = TaskResiduals::new();
         let value = evaluator.residual(&mut x, &mut residual)?;
         evaluator.before_steps()?;
-        let mut state =
-            State { x, value, residual, jacobian: Secant::default(), damping: LEAST_DAMPING, slow: 0, fresh: false };
+        let jacobian = Secants::new(residual.len());
+        let mut state = State { x, value, residual, jacobian, damping: LEAST_DAMPING, slow: 0, fresh: false };
         state.put_out_antennae(evaluator)?;
         Ok(state)
     }
@@ -92,14 +92,12 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
         }
         let bounds = evaluator.bounds();
         let State { x, value, residual, jacobian, damping, .. } = state;
-        let (mut trial, mut trial_residual) = (x.clone(), [0.0; ROWS]);
+        let (mut trial, mut trial_residual) = (x.clone(), TaskResiduals::new());
         jacobian.step(residual, *damping, x, [bounds.lower(), bounds.upper()], &mut trial);
         let trial_value = evaluator.residual(&mut trial, &mut trial_residual)?;
         if trial_value.is_finite() {
-            let dx = || trial.iter().zip(x.iter()).map(|(to, from)| to - from);
-            let predicted: [f64; ROWS] = jacobian.predict(dx());
-            let surprise: [f64; ROWS] = std::array::from_fn(|k| trial_residual[k] - residual[k] - predicted[k]);
-            jacobian.learn(dx(), &surprise, 1.0);
+            let dx = trial.iter().zip(x.iter()).map(|(to, from)| to - from);
+            jacobian.learn(dx, residual, &trial_residual);
         }
         let reduction = trial_value / *value;
         if reduction < 1.0 {
@@ -128,11 +126,10 @@ impl State {
             if length == 0.0 {
                 continue; // a locked joint
             }
-            let (mut x, mut residual) = (self.x.clone(), [0.0; ROWS]);
+            let (mut x, mut residual) = (self.x.clone(), TaskResiduals::new());
             x[j] += length;
             if evaluator.residual(&mut x, &mut residual)?.is_finite() {
-                let difference = std::array::from_fn(|k| residual[k] - self.residual[k]);
-                self.jacobian.set_column(j, x[j] - self.x[j], &difference);
+                self.jacobian.set_column(j, x[j] - self.x[j], &self.residual, &residual);
             }
         }
         (self.slow, self.fresh) = (0, true);

@@ -47,11 +47,14 @@ impl JacobianTranspose {
         match self.step_size {
             StepSize::Fixed(size) => size,
             StepSize::Auto => {
-                let mut change = [0.0; 6];
-                for (column, slope) in linearization.columns.iter().zip(gradient) {
-                    change.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * slope);
-                }
-                dot(gradient, gradient) / dot(&change, &change)
+                let of_tasks = linearization.blocks().map(|block| {
+                    let mut change = [0.0; 6];
+                    for (column, slope) in block.columns.iter().zip(gradient) {
+                        change.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * slope);
+                    }
+                    dot(&change, &change)
+                });
+                dot(gradient, gradient) / of_tasks.sum::<f64>()
             }
         }
     }

@@ -5,7 +5,6 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result, require_positive};
-use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Levenberg-Marquardt.
@@ -57,8 +56,9 @@ impl LevenbergMarquardt {
 pub struct State {
     x: Point,
     descent: Descent,
-    /// Linearizations at the point and at the trial; `here` is the index of the point's.
-    linearizations: [Linearization; 2],
+    /// Linearizations at the point and at the trial; `here` is the index of the point's. They are large: a state that holds them is
+    /// copied at every start.
+    linearizations: Box<[Linearization; 2]>,
     here: usize,
 }
 
@@ -135,10 +135,11 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
     type State = State;
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let mut x = Point::from_slice(x0);
-        let mut linearizations = [Linearization::default(), Linearization::default()];
-        let value = evaluator.linearize(&mut x, &mut linearizations[0])?;
-        Ok(State { x, descent: self.descent_from(value), linearizations, here: 0 })
+        let linearizations = Box::new([Linearization::default(), Linearization::default()]);
+        let x = Point::from_slice(x0);
+        let mut state = State { x, descent: self.descent_from(f64::INFINITY), linearizations, here: 0 };
+        state.descent.value = evaluator.linearize(&mut state.x, &mut state.linearizations[0])?;
+        Ok(state)
     }
 
     fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
@@ -152,9 +153,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let State { x, descent, linearizations, here } = state;
         let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
-        let Linearization { columns, residual } = &linearizations[*here];
-        let (lower, upper) = (bounds.lower(), bounds.upper());
-        BoxStep { columns, residual, lambda, x, lower, upper }.write(&mut trial);
+        linearizations[*here].write_step(lambda, x, [bounds.lower(), bounds.upper()], &mut trial);
         if trial == *x {
             return Err(Status::Stalled);
         }

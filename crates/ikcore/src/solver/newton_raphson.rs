@@ -5,7 +5,6 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result};
-use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Newton-Raphson by the pseudo-inverse.
@@ -58,10 +57,9 @@ impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
             return Err(Status::Stalled);
         }
         let bounds = evaluator.bounds();
-        let aim = linearization.residual.map(|r| self.step_fraction * r);
+        linearization.blocks_mut().for_each(|block| block.residual = block.residual.map(|r| self.step_fraction * r));
         let mut next = x.clone();
-        let (columns, lower, upper) = (&linearization.columns, bounds.lower(), bounds.upper());
-        BoxStep { columns, residual: &aim, lambda: 0.0, x, lower, upper }.write(&mut next);
+        linearization.write_step(0.0, x, [bounds.lower(), bounds.upper()], &mut next);
         if next == *x {
             return Err(Status::Stalled);
         }

@@ -6,7 +6,7 @@ use super::target::Target;
 use super::tip_error::SquaredError;
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
-use crate::objective::{Linearization, Score};
+use crate::objective::{Score, TaskBlock};
 
 /// The errors of a tip relative to its target, by a criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ impl Criterion {
 
 impl Components {
     /// Rotates residual and columns from base coordinates into the target's frame and weights them.
-    pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut Linearization) {
+    pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut TaskBlock) {
         let weighted = |vector: &[f64; ROWS]| {
             let turned = turned_into_frame(target, vector);
             std::array::from_fn(|k| self.weights[k] * turned[k])

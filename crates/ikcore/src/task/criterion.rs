@@ -40,6 +40,11 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
+    /// Whether it makes `target` fix a whole pose.
+    pub(crate) fn fixes_pose(&self, target: &Target) -> bool {
+        matches!(target, Target::Pose(_)) && self.components.is_none() && self.region.is_none()
+    }
+
     /// Whether components are assessed separately, so that the distance alone does not decide.
     #[inline(always)]
     pub(super) fn is_componentwise(&self) -> bool {

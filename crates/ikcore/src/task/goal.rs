@@ -25,6 +25,8 @@ pub enum Goal {
     Manipulability {
         /// The motion of the tip that counts.
         motion: Motion,
+        /// The tip; None for the only one.
+        tip: Option<String>,
         /// Weight among several goals.
         weight: f64,
     },
@@ -108,6 +110,9 @@ impl Goal {
                           self_collision=True"
                     .into(),
             }),
+            Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
+            Self::Manipulability { tip: None, .. } => robot.require_one_tip("the goal Manipulability without tip="),
+            Self::LinkManipulability { .. } => robot.require_one_tip("the goal LinkManipulability"),
             _ => Ok(()),
         }
     }
@@ -127,8 +132,10 @@ impl Goal {
                 let (stiffness, rest) = springs.unzip();
                 Term::Springs { stiffness, rest }
             }
-            Self::Manipulability { motion, weight } => {
-                Term::Manipulability { measure: Manipulability::of(robot, *motion), of: Part::Tip, weight: *weight }
+            Self::Manipulability { motion, tip, weight } => {
+                let tip = tip.as_ref().and_then(|tip| robot.tip_number(tip).ok()).unwrap_or(0);
+                let measure = Manipulability::of_tip(robot, tip, *motion);
+                Term::Manipulability { measure, of: Part::Tip, weight: *weight }
             }
             Self::LinkManipulability { motion, weight } => Term::Manipulability {
                 measure: Manipulability::of(robot, *motion),

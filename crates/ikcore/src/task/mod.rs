@@ -3,7 +3,7 @@
 //! A [`Task`] turns the caller's target into a [`Target`] and a [`Criterion`], which decides when the target is reached
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target;
 //! `tip_assessment`, `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region
-//! and a robot at q. [`Goals`] are costs in the null space of the task.
+//! and a robot at q; `tip_tasks` to several tips. [`Goals`] are costs in the null space of the task.
 
 mod assessment;
 mod components;
@@ -18,14 +18,17 @@ mod target_motion;
 mod tip_assessment;
 mod tip_error;
 mod tip_task;
+mod tip_tasks;
 
 pub use assessment::Assessment;
 pub use components::Components;
 pub use criterion::Criterion;
 pub use goal::{Goal, Goals};
 pub use region::{Outside, Region};
-pub use target::Target;
+pub use target::{Target, TargetRow};
 pub(crate) use target_motion::TargetMotion;
 pub use target_motion::Twist;
 pub use tip_error::{SquaredError, TipError, Tolerance};
 pub use tip_task::{Task, TaskKind};
+pub use tip_tasks::{Subject, TipTask};
+pub(crate) use tip_tasks::{TipAims, TipCriterion};

@@ -10,7 +10,7 @@ use super::region::{Outside, Region};
 use super::target::Target;
 use crate::math::vector::dot;
 use crate::math::{Frame, MAX_DOF};
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 
 impl Criterion {
     /// Describes the faces that keep the tip from `target`, if even the nearest point of the region is beyond the tolerance.
@@ -38,7 +38,7 @@ impl Target {
         tip: &Frame,
         dof: usize,
         criterion: &Criterion,
-        out: &mut Linearization,
+        out: &mut TaskBlock,
     ) -> Assessment {
         let mut linear = [[0.0; 3]; MAX_DOF];
         for (linear, [x, y, z, ..]) in linear.iter_mut().zip(&out.columns[..dof]) {

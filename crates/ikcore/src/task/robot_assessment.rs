@@ -6,7 +6,7 @@ use super::residual::position;
 use super::target::Target;
 use super::tip_error::SquaredError;
 use crate::math::Frame;
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 use crate::robot::Robot;
 
 impl Target {
@@ -48,7 +48,7 @@ impl Target {
 
     /// Weighted residual and Jacobian at `q`, and the assessment by `criterion`.
     #[inline]
-    pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut Linearization) -> Assessment {
+    pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut TaskBlock) -> Assessment {
         let tip = robot.tip_and_jacobian(q, &mut out.columns);
         self.linearize_tip(&tip, q.len(), criterion, out)
     }
@@ -61,7 +61,7 @@ impl Target {
         tip: &Frame,
         dof: usize,
         criterion: &Criterion,
-        out: &mut Linearization,
+        out: &mut TaskBlock,
     ) -> Assessment {
         match &criterion.region {
             Some(region) => self.linearize_tip_within(region, tip, dof, criterion, out),

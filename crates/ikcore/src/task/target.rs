@@ -1,7 +1,12 @@
 //! Targets of the tip.
 
+use smallvec::SmallVec;
+
 use crate::error::{Result, require_finite};
 use crate::math::{Frame, Pose};
+
+/// The targets of one solve: that of the only tip, or one for each task of several.
+pub type TargetRow = SmallVec<[Target; 1]>;
 
 /// A target of the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]

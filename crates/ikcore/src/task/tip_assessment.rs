@@ -9,7 +9,7 @@ use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::math::real::Real;
 use crate::math::so3::axes_of;
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 
 impl Target {
     /// The assessment of `tip` by `criterion`, ignoring its region.
@@ -30,7 +30,7 @@ impl Target {
         tip: &Frame,
         dof: usize,
         criterion: &Criterion,
-        out: &mut Linearization,
+        out: &mut TaskBlock,
     ) -> Assessment {
         let (error, value) = self.linearize_unweighted(tip, dof, out);
         let Some(components) = &criterion.components else { return criterion.assess_unweighted(error, value) };
@@ -41,7 +41,7 @@ impl Target {
 
     /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
     #[inline]
-    fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
+    fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut TaskBlock) -> (SquaredError, f64) {
         match self {
             Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
             Self::Position(target) => {
@@ -52,7 +52,7 @@ impl Target {
             Self::Orientation(target) => {
                 out.residual[..3].fill(0.0);
                 out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
-                let Linearization { residual, columns } = out;
+                let TaskBlock { residual, columns } = out;
                 let (target, tip) = (axes_of(target), axes_of(tip));
                 let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
                 summed(SquaredError { position: None, rotation: Some(rotation.stored()) })
@@ -76,7 +76,7 @@ impl Target {
     }
 
     fn residual(&self, tip: &Frame) -> [f64; ROWS] {
-        let mut out = Linearization::default();
+        let mut out = TaskBlock::default();
         self.linearize_unweighted(tip, 0, &mut out);
         out.residual
     }

@@ -15,7 +15,7 @@ use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
 use crate::math::row_step::{Row, RowSolver, RowStep};
 use crate::math::vector::{between, dot, norm, squared_size};
-use crate::objective::{Bounds, Linearization, Point};
+use crate::objective::{Bounds, Point, TaskBlock};
 use crate::obstacle::{ChordCheck, ClearSpace, KeptDistance, MOST_ROWS, NearRow, NearRows};
 use crate::robot::Robot;
 use crate::task::{Criterion, Target};
@@ -86,7 +86,7 @@ pub(super) struct ClearMotion {
     rows: Vec<Row>,
     solver: RowSolver,
     check: ChordCheck,
-    linearization: Box<Linearization>,
+    linearization: Box<TaskBlock>,
     /// Rows keep the last goal from its target.
     goal_is_held: bool,
 }
@@ -246,7 +246,7 @@ impl ClearMotion {
             let near = Bounds::from_ranges(near);
             let tip = goal.robot.tip_and_jacobian(&start, &mut self.linearization.columns);
             goal.target.linearize_tip(&tip, n, goal.criterion, &mut self.linearization);
-            let Linearization { columns, residual } = &*self.linearization;
+            let TaskBlock { columns, residual } = &*self.linearization;
             let (lower, upper, lambda) = (near.lower(), near.upper(), damping(&columns[..n]));
             let step = RowStep { columns, residual, lambda, start: &start, lower, upper, rows: &self.rows };
             self.solver.write(&step, sample);

@@ -50,8 +50,9 @@ impl KinematicPlant {
     /// A plant whose sensor has this standard deviation (m) on each axis.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for noise that is negative or not finite.
+    /// [`Error::OutOfRange`] for noise that is negative or not finite; [`Error::SeveralTips`].
     pub fn new(robot: Robot, noise: f64, seed: u64) -> Result<Self> {
+        robot.require_one_tip("KinematicPlant")?;
         require_noise("noise", noise)?;
         // The controller uses stream 0 of the same seed.
         Ok(Self { robot, noise, rotation_noise: None, rng: rng::stream(seed, 1) })

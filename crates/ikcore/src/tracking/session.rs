@@ -65,6 +65,7 @@ impl Session {
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker does not
     /// support, a time step that is not positive.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        robot.require_one_tip("Tracker")?;
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;

@@ -27,6 +27,7 @@ pub fn track(
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Record> {
+    robot.require_one_tip("track")?;
     let stopwatch = Stopwatch::start();
     let limits = options.limits_for(robot);
     limits.validate(reference.dt(), reference.len() - 1)?;
@@ -160,5 +161,5 @@ fn first_configuration(
 /// Default goals of the start: away from singularities and limits.
 fn start_goals(target: &Target) -> Vec<Goal> {
     let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
-    vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
+    vec![Goal::Manipulability { motion, tip: None, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
 }

@@ -1,13 +1,17 @@
 //! Reading of the ends of a motion.
 
-use ikcore::planning::Endpoint;
-use ikcore::task::Target;
+use ikcore::ik::SolveOptions;
+use ikcore::planning::{Endpoint, TipsEndpoint};
+use ikcore::task::{Target, Tolerance};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
 use crate::convert::{Numbers, array, rigid_rows, shape_text, vector};
 use crate::error::invalid;
 use crate::ik::read_target;
+use crate::robot::PyRobot;
+use crate::tips::{Asked, TaskArguments, ToleranceArgument};
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
@@ -64,6 +68,53 @@ fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
             shape_text(shape)
         ))),
     }
+}
+
+/// Reads the start of a motion of several tips, given as a dict of targets or as joint positions.
+pub fn read_tips_start(
+    robot: &PyRobot,
+    target: Argument<'_, '_>,
+    q: Argument<'_, '_>,
+    task: Argument<'_, '_>,
+) -> PyResult<TipsEndpoint> {
+    match one_of("start", target, q)? {
+        Given::Target(target) => read_tips("start", robot, target, task),
+        Given::Configuration(q) => vector("start_q", q).map(TipsEndpoint::Configuration),
+    }
+}
+
+/// Reads the ends of a motion of several tips: a dict of targets, a list of dicts, or joint positions.
+pub fn read_tips_ends(
+    robot: &PyRobot,
+    target: Argument<'_, '_>,
+    q: Argument<'_, '_>,
+    task: Argument<'_, '_>,
+) -> PyResult<Vec<TipsEndpoint>> {
+    match one_of("end", target, q)? {
+        Given::Target(several) if several.is_instance_of::<PyList>() => {
+            let ends = several.try_iter()?.enumerate();
+            ends.map(|(i, end)| read_tips(&format!("end[{i}]"), robot, &end?, task)).collect()
+        }
+        Given::Target(target) => Ok(vec![read_tips("end", robot, target, task)?]),
+        Given::Configuration(q) => {
+            let configuration = |end| match end {
+                Endpoint::Configuration(q) => Some(TipsEndpoint::Configuration(q)),
+                Endpoint::Target(_) => None,
+            };
+            Ok(read_configurations(q)?.into_iter().filter_map(configuration).collect())
+        }
+    }
+}
+
+/// The targets of several tips.
+fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argument<'_, '_>) -> PyResult<TipsEndpoint> {
+    let asked = Asked::read(name, robot, target, read_target)?;
+    let mut options = SolveOptions::default();
+    let Tolerance { position, rotation } = options.tolerance;
+    let tolerances = [position, rotation].map(ToleranceArgument::All);
+    let tasks = TaskArguments { task, position_tolerance: &tolerances[0], rotation_tolerance: &tolerances[1] };
+    tasks.write(robot, &asked, &mut options)?;
+    Ok(TipsEndpoint::Targets(options.tips.into_iter().zip(asked.values().iter().copied()).collect()))
 }
 
 enum Given<'a, 'py> {

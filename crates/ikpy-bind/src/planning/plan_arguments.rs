@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use ikcore::planning::{Endpoint, PointToPointOptions};
+use ikcore::planning::{Endpoint, PointToPointOptions, TipsEndpoint};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::endpoints::{read_ends, read_start};
+use super::endpoints::{read_ends, read_start, read_tips_ends, read_tips_start};
 use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
@@ -35,6 +35,12 @@ impl EndArguments<'_> {
     pub fn read(&self) -> PyResult<(Endpoint, Vec<Endpoint>)> {
         let start = read_start(self.start.as_ref(), self.start_q.as_ref())?;
         Ok((start, read_ends(self.end.as_ref(), self.end_q.as_ref())?))
+    }
+
+    /// The same for a robot with several tips.
+    pub fn read_tips(&self, robot: &PyRobot, task: &Argument<'_>) -> PyResult<(TipsEndpoint, Vec<TipsEndpoint>)> {
+        let start = read_tips_start(robot, self.start.as_ref(), self.start_q.as_ref(), task.as_ref())?;
+        Ok((start, read_tips_ends(robot, self.end.as_ref(), self.end_q.as_ref(), task.as_ref())?))
     }
 }
 
@@ -97,7 +103,8 @@ impl PlanArguments<'_> {
             approach: read_line("approach", self.approach.as_ref())?,
             retreat: read_line("retreat", self.retreat.as_ref())?,
             free_start: extracted("free_start", self.free_start.as_ref())?.unwrap_or(false),
-            task: read_task(self.task.as_ref())?,
+            // That of several tips goes with their targets.
+            task: if robot.core.tip_count() > 1 { None } else { read_task(self.task.as_ref())? },
             method: read_method(self.method.as_ref())?,
             objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
             obstacles: obstacles.core,

@@ -1,6 +1,6 @@
 //! `plan_point_to_point`.
 
-use ikcore::planning;
+use ikcore::planning::{self, plan_point_to_point_tips};
 use pyo3::prelude::*;
 
 use super::plan::PyPlan;
@@ -15,6 +15,7 @@ use crate::robot::PyRobot;
 ///     robot: the arm.
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
 ///         (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
+///         For a robot with several `tips` dicts of them, as for `solve`; several ends are a list of dicts.
 ///     start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
 ///     start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
 ///         rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
@@ -75,7 +76,7 @@ pub fn plan_point_to_point<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let (start, ends) = EndArguments { start, end, start_q, end_q }.read()?;
+    let ends = EndArguments { start, end, start_q, end_q };
     let asked = PlanArguments {
         start_qd,
         approach,
@@ -92,8 +93,15 @@ pub fn plan_point_to_point<'py>(
         seed,
     };
     let options = asked.read(py, robot.get())?;
-    let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
-    let plan = watched(py, progress, call)?;
+    let plan = if arm.tip_count() > 1 {
+        let (start, ends) = ends.read_tips(robot.get(), &asked.task)?;
+        let call = |watcher: &mut Watcher| plan_point_to_point_tips(&arm, &start, &ends, &options.core, watcher);
+        watched(py, progress, call)?
+    } else {
+        let (start, ends) = ends.read()?;
+        let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
+        watched(py, progress, call)?
+    };
     python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
     PyPlan::new(plan, robot, options.limits, options.obstacles)
 }

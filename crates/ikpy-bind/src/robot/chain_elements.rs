@@ -68,6 +68,7 @@ fn append(chain: &mut ChainBuilder, element: &Bound<'_, PyTuple>) -> PyResult<()
 impl PyRobot {
     /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
     fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.core.require_one_tip("interop").map_err(raise)?;
         let [base, tool] = ends(py, &self.core)?;
         (base, elements(py, &self.core)?, tool).into_pyobject(py)
     }

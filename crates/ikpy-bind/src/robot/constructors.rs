@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use ikcore::load::{CollisionShapes, Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
 use pyo3::prelude::*;
-use pyo3::types::IntoPyDict;
+use pyo3::types::{IntoPyDict, PyString};
 
 use super::PyRobot;
 use super::modified_copies::{per_joint, read_hold};
-use crate::convert::{path_or_text, rigid, summary, vector};
+use crate::convert::{path_or_text, rigid, summary, text, vector};
 use crate::error::{invalid, raise};
 use crate::monitor::on_a_thread;
 use crate::python_calls;
@@ -23,7 +23,8 @@ impl PyRobot {
     ///     path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
     ///         extra "robots".
     ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
-    ///     tip: link at the end of the chain; None: the only leaf.
+    ///     tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
+    ///         several, q holds the joints of one chain after another, shared ones once.
     ///     hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
     ///         the limit nearest to it.
     ///     srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
@@ -48,7 +49,7 @@ impl PyRobot {
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+        tip: Option<&Bound<'_, PyAny>>,
         hold: Option<&Bound<'_, PyAny>>,
         srdf: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
@@ -63,7 +64,7 @@ impl PyRobot {
         }
         let options = UrdfOptions {
             base: base.map(str::to_owned),
-            tip: tip.map(str::to_owned),
+            tips: tip.map_or(Ok(vec![]), read_tips)?,
             hold: hold.map_or(Ok(vec![]), read_hold)?,
             srdf: srdf.map(|srdf| path_or_text("srdf", srdf)).transpose()?,
             collision: read_collision(collision)?,
@@ -78,7 +79,7 @@ impl PyRobot {
     /// Args:
     ///     model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
     ///     base: body whose frame is the reference frame; None: "world".
-    ///     tip: body or site at the end of the chain; None: the only leaf body.
+    ///     tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
     ///     hold, collision: as in `from_urdf`.
     ///
     /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
@@ -95,11 +96,12 @@ impl PyRobot {
     fn from_mjcf<'py>(
         model: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+        tip: Option<&Bound<'py, PyAny>>,
         hold: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         read_collision(collision)?;
+        let tip = tip.map_or(Ok(vec![]), read_tips)?;
         python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision))
     }
 
@@ -149,7 +151,7 @@ impl PyRobot {
         d: &Bound<'_, PyAny>,
         theta: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_texts)] kinds: Option<Vec<String>>,
-        #[pyo3(from_py_with = crate::convert::text)] convention: &str,
+        #[pyo3(from_py_with = text)] convention: &str,
         lower: Option<&Bound<'_, PyAny>>,
         upper: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
@@ -233,6 +235,18 @@ fn read_collision(name: Option<&str>) -> PyResult<CollisionShapes> {
         Some(other) => {
             Err(invalid(format!("collision must be one of 'primitives', 'fit', 'hulls' or None, got '{other:.60}'")))
         }
+    }
+}
+
+/// Reads the names of tips: a list, or one.
+fn read_tips(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    if value.is_instance_of::<PyString>() {
+        return text(value).map(|name| vec![name.to_owned()]);
+    }
+    match value.extract::<Vec<String>>() {
+        Ok(names) if !names.is_empty() => Ok(names),
+        Ok(_) => Err(invalid("tip: the list is empty; name one link at least, or leave it out".into())),
+        Err(_) => Err(invalid(format!("tip must be the name of a link, or a list of them, got {}", summary(value)))),
     }
 }
 

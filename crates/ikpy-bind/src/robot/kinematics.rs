@@ -2,6 +2,7 @@
 
 use ikcore::math::pose;
 use ikcore::rng;
+use ikcore::robot::Robot;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -12,8 +13,9 @@ use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
-    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. With `link`, that of any link
-    /// of the robot; `all_link_names` lists them.
+    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. Of a robot with several tips
+    /// those of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`, that of any link of the robot;
+    /// `all_link_names` lists them.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -25,6 +27,9 @@ impl PyRobot {
         #[pyo3(from_py_with = crate::convert::optional_text)] link: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robot = &*self.core;
+        if robot.tip_count() > 1 && link.is_none() {
+            return self.of_all_tips(py, q, &[4, 4], Robot::tips_fk_all).map(Bound::into_any);
+        }
         match rows("joint angles", robot.name(), robot.dof(), q)? {
             Rows::One(q) => {
                 let q = q.as_slice()?;
@@ -71,8 +76,8 @@ impl PyRobot {
     }
 
     /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-    /// then angular rows, along the axes of the base. With `link`, that of the origin of any link of the robot;
-    /// `all_link_names` lists them.
+    /// then angular rows, along the axes of the base. Of a robot with several tips those of all, (tips, 6, n) or (m, tips, 6, n).
+    /// With `link`, that of the origin of any link of the robot; `all_link_names` lists them.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -84,6 +89,9 @@ impl PyRobot {
         #[pyo3(from_py_with = crate::convert::optional_text)] link: Option<&str>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (robot, n) = (&*self.core, self.core.dof());
+        if robot.tip_count() > 1 && link.is_none() {
+            return self.of_all_tips(py, q, &[6, n], Robot::tips_jacobian_all);
+        }
         let jacobians = |q: &[f64]| match link {
             None => robot.jacobian_all(q),
             Some(link) => robot.link_jacobian_all(link, q),
@@ -108,5 +116,28 @@ impl PyRobot {
         let (m, seed) = (count("m", m)?, count("seed", seed)?);
         let drawn = long_call(py, || self.core.random_configurations(m, &mut rng::stream(seed, 0)))?;
         table(py, drawn, &[m, self.core.dof()])
+    }
+}
+
+impl PyRobot {
+    /// Matrices of this `shape`, one for each of several tips, at one configuration or many.
+    fn of_all_tips<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        shape: &[usize; 2],
+        each: impl Fn(&Robot, &[f64]) -> ikcore::Result<Vec<f64>> + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (robot, n, tips) = (&*self.core, self.core.dof(), self.core.tip_count());
+        match rows("joint angles", robot.name(), n, q)? {
+            Rows::One(q) => {
+                robot.check("joint angles", q.as_slice()?).map_err(raise)?;
+                table(py, each(robot, q.as_slice()?).map_err(raise)?, &[tips, shape[0], shape[1]])
+            }
+            Rows::Many(q, m) => {
+                let all = in_pieces(py, q.as_slice()?, n, QUICK_ROWS / tips, |q| each(robot, q))?;
+                table(py, all, &[m, tips, shape[0], shape[1]])
+            }
+        }
     }
 }

@@ -19,20 +19,23 @@ use crate::monitor::on_a_thread;
 use crate::obstacle::wrapped;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
+use crate::tips::TipKeys;
 
 /// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
-/// A robot arm: the chain of joints from a base link to a tip link, and the links that branch off it. Immutable; made by
-/// `from_urdf`, `from_dh`, `planar` or `named`.
+/// A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
+/// Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
 ///
-/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them, and joints beside the chain
-/// are held. Poses are 4x4 matrices in the frame of the robot's base.
+/// Joint vectors hold the n independent joints in chain order (rad, m), those of several chains one chain after another, shared ones
+/// once; mimic joints follow them, and joints beside the chains are held. Poses are 4x4 matrices in the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
     /// Made on first use: most results only store it. Holds numbers alone, so that no cycle can pass through it.
     limits: PyOnceLock<Py<PyLimits>>,
+    /// Its tips, for results.
+    pub tips: TipKeys,
 }
 
 impl PartialEq for PyRobot {
@@ -43,7 +46,7 @@ impl PartialEq for PyRobot {
 
 impl From<Robot> for PyRobot {
     fn from(robot: Robot) -> Self {
-        Self { core: Arc::new(robot), limits: PyOnceLock::new() }
+        Self { tips: TipKeys::of(&robot), core: Arc::new(robot), limits: PyOnceLock::new() }
     }
 }
 
@@ -80,7 +83,19 @@ impl PyRobot {
         self.core.joints().iter().map(|joint| joint.kind.name()).collect()
     }
 
-    /// Names of the links along the chain, base first, tip last.
+    /// Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of
+    /// results.
+    #[getter]
+    fn tips(&self) -> Vec<&str> {
+        self.core.tips().collect()
+    }
+
+    /// For drawings: the names of the links from the base to each tip.
+    fn _links_to_tips(&self) -> Vec<Vec<&str>> {
+        self.core.links_to_tips()
+    }
+
+    /// Names of the links along the chain (of several, that to the first tip), base first, tip last.
     #[getter]
     fn link_names(&self) -> Vec<&str> {
         self.core.link_names().collect()
@@ -208,13 +223,13 @@ impl PyRobot {
 
     fn __repr__(&self) -> String {
         let (name, joints) = (self.core.name(), counted(self.core.dof(), "joint"));
-        let mut links = self.core.link_names();
-        let base = links.next().unwrap_or_default();
+        let base = self.core.link_names().next().unwrap_or_default();
+        let tips = self.core.tips().collect::<Vec<_>>().join(" and ");
         let held = match self.core.held_joints() {
             [] => String::new(),
             held => format!(", {} held", counted(held.len(), "joint")),
         };
-        format!("<Robot '{name}': {joints}, {base} to {}{held}>", links.last().unwrap_or(base))
+        format!("<Robot '{name}': {joints}, {base} to {tips}{held}>")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

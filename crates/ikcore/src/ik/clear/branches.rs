@@ -22,8 +22,8 @@ pub(super) type BranchOutcome = Option<Result<Point, Exhausted>>;
 impl ClearSearch<'_, '_, '_> {
     /// The preferred one of the clear branches; of a redundant arm one at the first value of its parameter that has one.
     pub(super) fn by_branches(&mut self, preference: &Preference) -> BranchOutcome {
-        let (context, target) = (self.attempt.context, self.attempt.problem.target());
-        let Target::Pose(pose) = target else { return None };
+        let context = self.attempt.context;
+        let (target @ Target::Pose(pose), _) = self.attempt.problem.only_target()? else { return None };
         if !context.asks_for_pose(target) || self.attempt.budget.left() < LEAST_BUDGET {
             return None;
         }

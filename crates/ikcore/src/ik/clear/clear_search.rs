@@ -65,8 +65,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
 
     fn blocked_for_good(&self) -> Option<&Blocked> {
         let q = self.blocked.first()?;
-        let fixes_pose = self.attempt.context.fixes_pose(self.attempt.problem.target());
-        let found = || if fixes_pose { self.space.blocked_at_tip(q) } else { self.space.blocked_anywhere(q) };
+        let found = || self.space.blocked_at(q, &self.attempt.problem.fixed_frames());
         self.hopeless.get_or_init(found).as_ref()
     }
 

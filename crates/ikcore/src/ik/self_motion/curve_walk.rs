@@ -7,7 +7,7 @@ use crate::ik::goal_descent::difference;
 use crate::math::MAX_DOF;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::{distance, dot, norm};
-use crate::objective::{LeastSquares, Linearization, Point};
+use crate::objective::{LeastSquares, Linearization, Point, TaskBlock};
 use crate::problem::Problem;
 
 /// Longest step (rad, m), unless asked otherwise.
@@ -58,13 +58,16 @@ pub(in crate::ik) struct Walk<'w, 'p> {
 
 impl<'w, 'p> Walk<'w, 'p> {
     /// At `q`, a solution, on the only curve through it; None where the task leaves no freedom, or more than that of a curve,
-    /// or where no evaluation is left to tell.
+    /// or where no evaluation is left to tell; None for several tips.
     pub fn enter(problem: &'w mut Problem<'p>, q: &[f64], max_evaluations: usize, longest: f64) -> Option<Self> {
         if max_evaluations == 0 {
             return None;
         }
         let mut at = Linearization::default();
         problem.linearize(q, &mut at);
+        if !at.more.is_empty() {
+            return None;
+        }
         let mut along = Point::new();
         let (mut freedom, mut most_free) = (0.0, 0.0);
         for j in 0..q.len() {
@@ -165,7 +168,7 @@ fn back_to_task(at: &Linearization, from: &[f64], q: &mut [f64]) {
 
 /// The step from `x` without limits.
 fn unbounded<'a>(at: &'a Linearization, x: &'a [f64]) -> BoxStep<'a> {
-    let (n, Linearization { columns, residual }) = (x.len(), at);
+    let (n, TaskBlock { columns, residual }) = (x.len(), &at.first);
     let lambda = least_damping(&columns[..n]);
     BoxStep { columns, residual, lambda, x, lower: &NOWHERE[..n], upper: &ANYWHERE[..n] }
 }

@@ -65,6 +65,7 @@ pub fn self_motion(
     options: &SelfMotionOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<SelfMotion>> {
+    robot.require_one_tip("self_motion")?;
     let SelfMotionOptions { start, spacing, limits, seed } = options;
     let [least, most] = SPACINGS;
     if !(least..=most).contains(spacing) {
@@ -72,10 +73,10 @@ pub fn self_motion(
     }
     let each = SolveOptions { limits: limits.clone(), seed: *seed, ..SolveOptions::default() };
     let context = SolveContext::new(robot, &each)?;
-    let target = context.read(target)?;
-    require_curves(robot, &target)?;
+    let targets = context.read(std::slice::from_ref(target))?;
+    require_curves(robot, &targets[0])?;
     start.as_ref().map_or(Ok(()), |q| robot.check("start", q))?;
-    let mut problem = context.problem(&target);
+    let mut problem = context.problem(&targets);
     let mut rng = rng::stream(*seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let limits = WrappedLimits::new(robot, context.bounds());

@@ -13,7 +13,7 @@ pub(super) struct Seeds {
 
 /// Configurations of every branch at `count` values of the parameter, limits aside; None without a closed form.
 pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count: usize) -> Option<Seeds> {
-    let Target::Pose(pose) = attempt.problem.target() else { return None };
+    let (Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
     let family = robot.family(pose)?;
     let bounds = attempt.context.bounds();
     // Curves are traced beyond the limits of joints that turn.

@@ -7,19 +7,26 @@ use super::document::{Document, UrdfKind};
 use super::mimic::{self, Coupling, Couplings};
 use super::off_chain;
 use super::step;
-use super::tree::Tree;
+use super::tree::{Tree, TreeStep};
 use crate::error::{Error, Result};
 use crate::robot::{ChainBuilder, Robot, require_supported};
 
-/// Builds the robot whose chain leads from link `base` to link `tip`; all other links branch off it.
-pub(super) fn build(document: &Document, tree: &Tree, base: &str, tip: &str) -> Result<Robot> {
+/// Builds the robot whose chain leads from link `base` to the first of `tips`; all other links branch off it, those to further tips
+/// with their joints.
+pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, tips: &[&'a str]) -> Result<Robot> {
+    let Some((tip, further)) = tips.split_first() else {
+        return Err(Error::Urdf { line: None, problem: "no tip".into() });
+    };
     let path = tree.path(base, tip)?;
     let joints = &document.joints;
-    let moving: Vec<usize> =
-        path.iter().map(|step| step.joint).filter(|joint| joints[*joint].kind != UrdfKind::Fixed).collect();
+    let mut moving = moving_on(document, &path);
     if moving.is_empty() {
         let problem = format!("no joint moves between base '{base}' and tip '{tip}'");
         return Err(Error::Urdf { line: None, problem });
+    }
+    for tip in further {
+        let beside = moving_on(document, &tree.path(base, tip)?);
+        moving.extend(beside.into_iter().filter(|joint| !moving.contains(joint)).collect::<Vec<_>>());
     }
     require_supported(&document.name, moving.len())?;
     let mut chain = ChainBuilder::new(&document.name, base);
@@ -37,11 +44,16 @@ pub(super) fn build(document: &Document, tree: &Tree, base: &str, tip: &str) -> 
         chain.link(step::far_link(document, *at));
     }
     let robot = chain.build()?;
-    let off_chain = off_chain::of(document, tree, &robot, couplings, &index_in_q)?;
-    robot.with_off_chain(off_chain)
+    let off_chain = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
+    robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())
 }
 
-/// Adds the independent joints in chain order, with limits narrowed by their mimic joints, and returns the index in q
+/// The joints of a path that move.
+fn moving_on(document: &Document, path: &[TreeStep]) -> Vec<usize> {
+    path.iter().map(|step| step.joint).filter(|joint| document.joints[*joint].kind != UrdfKind::Fixed).collect()
+}
+
+/// Adds the independent joints in the order of the chains, with limits narrowed by their mimic joints, and returns the index in q
 /// of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
 fn add_joints(
     chain: &mut ChainBuilder,

@@ -9,20 +9,20 @@ use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
-/// The links that branch off the chain of `robot`, whose joints are `index_in_q`. Joints beside the chain are held at zero, or at
-/// the limit nearest to it; those that cannot move about or along one axis stay in their origin.
+/// The links that branch off the chain of `robot`, whose joints are `index_in_q`; those in `moving` lead to a tip. Joints beside the
+/// chains are held at zero, or at the limit nearest to it; those that cannot move about or along one axis stay in their origin.
 pub(super) fn of(
     document: &Document,
     tree: &Tree,
     robot: &Robot,
     mut couplings: Couplings,
-    index_in_q: &HashMap<usize, usize>,
+    (index_in_q, moving): (&HashMap<usize, usize>, &[usize]),
 ) -> Result<OffChain> {
     let chain: Vec<&str> = robot.link_names().collect();
     let mut off_chain = OffChain::default();
     let mut drivers = index_in_q.clone();
     for (parent, at) in tree.off_chain(&chain) {
-        let moved = match moves(document, at) {
+        let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
             true => {
                 let coupling = couplings.of_bystander(at.joint);

@@ -17,8 +17,8 @@ use crate::robot::Robot;
 pub struct UrdfOptions {
     /// Link at the start of the chain; `None`: the root.
     pub base: Option<String>,
-    /// Link at the end of the chain; `None`: the only leaf below the base.
-    pub tip: Option<String>,
+    /// Links at the ends of the chains, one for a robot with one tip; none: the only leaf below the base.
+    pub tips: Vec<String>,
     /// Values of joints beside the chain (rad, m); the others are held at zero or at the limit nearest to it.
     pub hold: Vec<(String, f64)>,
     /// What becomes of the collision shapes.
@@ -60,11 +60,13 @@ impl Robot {
     /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; those of
     /// [`ChainBuilder::build`](crate::robot::ChainBuilder::build) for impossible limits.
     pub fn from_urdf(path_or_xml: &str, base: Option<&str>, tip: Option<&str>) -> Result<Self> {
-        let owned = |name: Option<&str>| name.map(str::to_owned);
-        Self::from_urdf_with(path_or_xml, &UrdfOptions { base: owned(base), tip: owned(tip), ..UrdfOptions::default() })
+        let tips = tip.into_iter().map(str::to_owned).collect();
+        let options = UrdfOptions { base: base.map(str::to_owned), tips, ..UrdfOptions::default() };
+        Self::from_urdf_with(path_or_xml, &options)
     }
 
-    /// [`from_urdf`](Self::from_urdf) with further options.
+    /// [`from_urdf`](Self::from_urdf) with further options. With several tips the independent joints are those of all chains, one
+    /// chain after another, shared ones once.
     ///
     /// # Errors
     /// Those of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
@@ -75,11 +77,11 @@ impl Robot {
             Some(name) => tree.link(name)?,
             None => tree.root(),
         };
-        let tip = match &options.tip {
-            Some(name) => tree.link(name)?,
-            None => tree.only_leaf_below(base)?,
+        let tips = match &options.tips[..] {
+            [] => vec![tree.only_leaf_below(base)?],
+            names => names.iter().map(|name| tree.link(name)).collect::<Result<_>>()?,
         };
-        let robot = chain::build(&document, &tree, base, tip)?;
+        let robot = chain::build(&document, &tree, base, &tips)?;
         let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
         let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
         let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);

@@ -42,8 +42,8 @@ impl Layers<'_> {
             format!("link '{}' is {} {}", contact.link, contact.depth(space.margin()), contact.other)
         };
         let fixes_pose = matches!(tip_path.target(share), Target::Pose(_));
-        let hopeless =
-            postures.first().and_then(|q| if fixes_pose { space.blocked_at_tip(q) } else { space.blocked_anywhere(q) });
+        let hands = if fixes_pose { vec![passage.problem.robot.frame_of_tip(0)] } else { vec![] };
+        let hopeless = postures.first().and_then(|q| space.blocked_at(q, &hands));
         let what = match hopeless {
             Some(Blocked::Hand(contact)) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(&contact))

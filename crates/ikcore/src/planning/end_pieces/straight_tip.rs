@@ -7,7 +7,7 @@ use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
 use crate::math::so3::norm;
 use crate::math::vector::distance;
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 use crate::planning::MotionLimits;
 use crate::planning::collision_checks::configuration_at;
 use crate::planning::retime::scaled;
@@ -105,7 +105,7 @@ impl<'a> StraightTip<'a> {
     fn solved(&self, q: &[f64], along: [f64; 3], intervals: usize, place: &str) -> Result<Vec<f64>, Hindrance> {
         let mut rows = q.to_vec();
         let mut here = q.to_vec();
-        let mut linearization = Linearization::default();
+        let mut linearization = TaskBlock::default();
         for i in 1..=intervals {
             let share = i as f64 / intervals as f64;
             let target = self.target(q, along, share);
@@ -116,7 +116,7 @@ impl<'a> StraightTip<'a> {
                     solved = true;
                     break;
                 }
-                let Linearization { columns, residual } = &linearization;
+                let TaskBlock { columns, residual } = &linearization;
                 let lambda = least_damping(&columns[..here.len()]);
                 let (lower, upper) = (&self.limits.lower, &self.limits.upper);
                 let from = here.clone();

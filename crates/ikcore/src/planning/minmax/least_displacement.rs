@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::end_pair::EndPair;
 use crate::error::Result;
 use crate::math::box_step::ROWS;
-use crate::objective::{Linearization, Point};
+use crate::objective::{Point, TaskBlock};
 use crate::planning::MotionLimits;
 use crate::robot::Robot;
 use crate::task::{Criterion, Target, Task, Tolerance};
@@ -65,7 +65,7 @@ pub(super) fn shorten(freedom: &Freedom, free: [Option<&Target>; 2], pair: &mut 
         return 0;
     }
     let mut weights = vec![1.0 / n as f64; n];
-    let mut linearizations = vec![Linearization::default(); free_ends.len()];
+    let mut linearizations = vec![TaskBlock::default(); free_ends.len()];
     for _ in 0..ROUNDS {
         for ((end, target), linearization) in free_ends.iter().zip(&mut linearizations) {
             let q = if *end == 0 { &pair.start } else { &pair.end };
@@ -98,7 +98,7 @@ fn weighted_step(
     scales: &[f64],
     weights: &[f64],
     free: &[(usize, Target)],
-    linearizations: &[Linearization],
+    linearizations: &[TaskBlock],
 ) -> Option<DVector<f64>> {
     let n = displacement.len();
     let unknowns = n * free.len();

@@ -1,7 +1,6 @@
 //! The nearest configuration that reaches a target.
 
 use crate::math::MAX_DOF;
-use crate::math::box_step::BoxStep;
 use crate::objective::{Bounds, LeastSquares, Linearization};
 use crate::problem::Problem;
 use crate::robot::Robot;
@@ -33,9 +32,7 @@ pub(in crate::planning) fn project(
             return 0.0;
         }
         let next = &mut next[..q.len()];
-        let Linearization { columns, residual } = &*scratch;
-        let (lower, upper) = (bounds.lower(), bounds.upper());
-        BoxStep { columns, residual, lambda: DAMPING * value, x: q, lower, upper }.write(next);
+        scratch.write_step(DAMPING * value, q, [bounds.lower(), bounds.upper()], next);
         q.copy_from_slice(next);
     }
     value.sqrt()

@@ -239,7 +239,7 @@ impl<'a> RedundantMotion<'a> {
             let q = &self.nominal.rows[point * n..(point + 1) * n];
             let mut problem = Problem::new(self.robot, &self.targets[point], Tolerance::default());
             problem.linearize(q, &mut self.linearization);
-            let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.columns[joint][row]);
+            let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.first.columns[joint][row]);
             let null = null_space(&jacobian);
             bases.push(match bases.first() {
                 None => null,

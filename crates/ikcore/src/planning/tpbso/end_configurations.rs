@@ -134,7 +134,12 @@ fn solutions(
     let mut found: Vec<Vec<f64>> = vec![];
     let mut nearest: Option<Solution> = None;
     for (i, start) in starts.chunks_exact(robot.dof()).enumerate() {
-        let query = Query { target: *target, start: Some(start), stream: i as u64 + 1, stopwatch: Stopwatch::start() };
+        let query = Query {
+            targets: std::slice::from_ref(target),
+            start: Some(start),
+            stream: i as u64 + 1,
+            stopwatch: Stopwatch::start(),
+        };
         let solution = solve_query(&context, &query, monitor);
         if solution.status == Status::Solved {
             if found.iter().all(|other| distance(other, &solution.q) > DISTINCT) {

@@ -3,17 +3,18 @@
 use std::mem;
 
 use super::budgeted::Evaluator;
-use crate::math::box_step::ROWS;
-use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, SmoothScore};
+use crate::objective::{
+    Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, SmoothScore, TaskResiduals,
+};
 use crate::solver::status::Status;
 
 impl<O: Residual + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box and returns the value; writes the residual.
+    /// Clips `x` to the box and returns the value; writes the residuals.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     #[inline]
-    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Status> {
+    pub fn residual(&mut self, x: &mut [f64], out: &mut TaskResiduals) -> Result<f64, Status> {
         self.spend(1)?;
         self.admit(x);
         let score = self.objective.residual(x, out);
@@ -22,7 +23,7 @@ impl<O: Residual + ?Sized> Evaluator<'_, O> {
 }
 
 impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box and returns the value; writes residual and Jacobian. Counts as one evaluation.
+    /// Clips `x` to the box and returns the value; writes residuals and Jacobians. Counts as one evaluation.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).

@@ -8,7 +8,7 @@ use super::position;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{cross, norm};
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle between the axes, and the sum of squares r'r.
@@ -24,7 +24,7 @@ pub(crate) fn linearize(
     axis: &[f64; 3],
     tip: &Frame,
     dof: usize,
-    out: &mut Linearization,
+    out: &mut TaskBlock,
 ) -> (SquaredError, f64) {
     let a = tip.turn::<NoFma>(axis);
     for column in &mut out.columns[..dof] {

@@ -4,7 +4,7 @@ use super::{orientation, position};
 use crate::math::Frame;
 use crate::math::real::Real;
 use crate::math::so3::axes_of;
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle.
@@ -18,9 +18,9 @@ pub(crate) fn error(target: &Frame, tip: &Frame) -> SquaredError {
 
 /// Residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
-pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut TaskBlock) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
-    let Linearization { residual, columns } = out;
+    let TaskBlock { residual, columns } = out;
     let rotation = orientation::linearize(&axes_of(target), &axes_of(tip), residual, &mut columns[..dof]).stored();
     SquaredError { position: Some(position::error(&target.origin, &tip.origin)), rotation: Some(rotation) }
 }

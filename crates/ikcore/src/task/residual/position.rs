@@ -1,6 +1,6 @@
 //! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
 
-use crate::objective::Linearization;
+use crate::objective::TaskBlock;
 
 /// p - p_d (m).
 #[inline(always)]
@@ -17,7 +17,7 @@ pub(crate) fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
 
 /// Residual and derivative from the tip's geometric Jacobian, given in `out`; sets the angular rows to zero.
 #[inline]
-pub(crate) fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut Linearization) {
+pub(crate) fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut TaskBlock) {
     let [x, y, z] = residual(target, tip);
     out.residual = [x, y, z, 0.0, 0.0, 0.0];
     for column in &mut out.columns[..dof] {

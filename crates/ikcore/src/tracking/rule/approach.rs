@@ -10,7 +10,7 @@ use super::tick::Tick;
 use crate::kinematics::Columns;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
-use crate::objective::{Linearization, Point};
+use crate::objective::{Point, TaskBlock};
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 
@@ -88,7 +88,7 @@ impl Approach {
 /// descent from `q`, since far from the target the linearisation gives little more than a direction.
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();
-    let mut at = Linearization { columns: *columns, ..Linearization::default() };
+    let mut at = TaskBlock { columns: *columns, ..TaskBlock::default() };
     let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
     let (mut lower, mut upper) = ([0.0; MAX_DOF], [0.0; MAX_DOF]);
     for j in 0..n {
@@ -96,7 +96,7 @@ fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick:
     }
     let lambda = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
     let mut end = Point::from_slice(q);
-    let Linearization { columns, residual } = &at;
+    let TaskBlock { columns, residual } = &at;
     BoxStep { columns, residual, lambda, x: q, lower: &lower[..n], upper: &upper[..n] }.write(&mut end);
     end
 }

@@ -8,7 +8,7 @@
 use super::tick::{Tick, TickResult};
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
-use crate::objective::{Bounds, Differentiable, Linearization, Point};
+use crate::objective::{Bounds, Differentiable, Point, TaskBlock};
 use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
 use crate::tracking::clear_motion::GoalToClear;
@@ -39,7 +39,7 @@ pub(crate) struct GoalPursuit {
     sample: Point,
     /// Samples since obstacles changed one.
     since_held: Option<usize>,
-    linearization: Box<Linearization>,
+    linearization: Box<TaskBlock>,
 }
 
 impl GoalPursuit {
@@ -127,7 +127,7 @@ impl GoalPursuit {
             }
             (lowest, begin) = (value, self.sample.clone());
             let preferred = (i == 0).then(|| self.preferred(time, positions, tick));
-            let Linearization { columns, residual } = &*self.linearization;
+            let TaskBlock { columns, residual } = &*self.linearization;
             let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
             let (lower, upper) = (positions.lower(), positions.upper());
             let step = BoxStep { columns, residual, lambda, x: &begin, lower, upper };

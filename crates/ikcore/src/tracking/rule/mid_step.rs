@@ -13,7 +13,7 @@ use crate::math::{
     Frame, MAX_DOF,
     box_step::{BoxStep, least_damping},
 };
-use crate::objective::{Differentiable, Linearization, Point};
+use crate::objective::{Differentiable, Point, TaskBlock};
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
@@ -33,7 +33,7 @@ pub(crate) struct MidStepState {
     before_known: bool,
     here: Box<Kinematics>,
     trial: Box<Kinematics>,
-    linearization: Box<Linearization>,
+    linearization: Box<TaskBlock>,
 }
 
 /// The linear model of a step: where its tip and Jacobian are taken.
@@ -179,7 +179,7 @@ impl MidStepState {
             Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
-        let Linearization { columns, residual } = &*self.linearization;
+        let TaskBlock { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         let lambda = least_damping(&columns[..n]);
         let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };

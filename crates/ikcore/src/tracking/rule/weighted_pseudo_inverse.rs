@@ -16,7 +16,7 @@ use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
 use crate::math::box_step::BoxStep;
 use crate::math::vector::norm;
-use crate::objective::{Linearization, Point};
+use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
 use crate::wording::words;
@@ -110,9 +110,9 @@ impl WeightedPseudoInverse {
 /// Scratch of a tick; holds no state between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    linearization: Box<Linearization>,
+    linearization: Box<TaskBlock>,
     /// Linearisations of the target one tick later and one earlier.
-    neighbours: [Box<Linearization>; 2],
+    neighbours: [Box<TaskBlock>; 2],
 }
 
 pub(super) fn advance(
@@ -161,7 +161,7 @@ fn displacement(
     let gain = rule.gain.unwrap_or(SHARE_A_TICK / tick.dt);
     let drift = linearize(scratch, from, share, tick);
     let null_space_step = null_space_step(rule, from, share, tick);
-    let Linearization { columns, residual } = &mut *scratch.linearization;
+    let TaskBlock { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
     // Scaled so that the norm of W becomes the Euclidean norm: y = W^(1/2) q.
     let units = units(rule, tick.velocity_limit);

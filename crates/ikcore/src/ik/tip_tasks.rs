@@ -1,0 +1,93 @@
+//! The tasks of several tips: their validation, the parts of their targets that count, and the errors of each.
+
+use super::solve_options::SolveOptions;
+use crate::error::{Error, Result};
+use crate::interrupt::checkpoint_at;
+use crate::robot::Robot;
+use crate::task::{Subject, Target, TargetRow, TipAims, TipCriterion, TipError, TipTask};
+
+/// The tasks of several tips, validated; none for a robot with one.
+pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec<TipCriterion>> {
+    let tips: Vec<&str> = robot.tips().collect();
+    if options.tips.is_empty() {
+        robot.require_one_tip("a plain target")?;
+        return Ok(vec![]);
+    }
+    if options.task.is_some() {
+        let problem = "task= of several tips is a dict, such as {tip: tasks.Position()}".into();
+        return Err(Error::Contradiction { problem });
+    }
+    for (i, task) in options.tips.iter().enumerate() {
+        let numbers = match task.subject {
+            Subject::Tip(tip) => [tip; 2],
+            Subject::Pair { from, of } => [from, of],
+        };
+        if let Some(number) = numbers.into_iter().find(|number| *number >= tips.len()) {
+            let expected = format!("the number of one of {} tips, from 0 on", tips.len());
+            return Err(Error::out_of_range("tip", &expected, number as f64));
+        }
+        if matches!(task.subject, Subject::Pair { .. }) && numbers[0] == numbers[1] {
+            let problem = format!("tip '{}' cannot be seen from itself: name two tips", tips[numbers[0]]);
+            return Err(Error::Contradiction { problem });
+        }
+        let same = |other: &TipTask| other.subject == task.subject || other.subject == turned(task.subject);
+        if options.tips[..i].iter().any(same) {
+            let [from, of] = numbers.map(|number| tips[number]);
+            let problem = match task.subject {
+                Subject::Tip(_) => format!("tip '{of}' has two targets"),
+                Subject::Pair { .. } => format!("the pair of tips '{from}' and '{of}' has two targets: leave one out"),
+            };
+            return Err(Error::Contradiction { problem });
+        }
+    }
+    options.tips.iter().map(TipTask::validated).collect()
+}
+
+/// The same pair, seen from the other tip.
+fn turned(subject: Subject) -> Subject {
+    match subject {
+        Subject::Tip(_) => subject,
+        Subject::Pair { from, of } => Subject::Pair { from: of, of: from },
+    }
+}
+
+/// Reduces targets to the parts that their tasks use.
+///
+/// # Errors
+/// [`Error::WrongLength`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets that contradict each other.
+pub(super) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
+    if tasks.len() != targets.len() {
+        let expected = format!("{} targets, one for each task", tasks.len().max(1));
+        return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });
+    }
+    for (task, target) in tasks.iter().zip(&mut *targets) {
+        *target = task.part_used(target)?;
+    }
+    TipAims { tasks, targets }.require_consistent(robot)
+}
+
+/// The errors of each task of several tips at each of the configurations `qs` (m, n), row-major; NaN where a configuration or a
+/// target is not finite. `targets` returns those of a row.
+///
+/// # Errors
+/// Those of wrong tasks.
+pub fn tip_errors(
+    robot: &Robot,
+    targets: impl Fn(usize) -> TargetRow,
+    options: &SolveOptions,
+    qs: &[f64],
+) -> Result<Vec<TipError>> {
+    let tasks = tasks_of_tips(robot, options)?;
+    let mut errors = Vec::with_capacity(tasks.len() * qs.len() / robot.dof());
+    for (row, q) in qs.chunks_exact(robot.dof()).enumerate() {
+        checkpoint_at(row)?;
+        let mut targets = targets(row);
+        match reduce(robot, &tasks, &mut targets) {
+            Ok(()) if q.iter().all(|value| value.is_finite()) => {
+                errors.extend(TipAims { tasks: &tasks, targets: &targets }.errors(robot, q));
+            }
+            _ => errors.extend(tasks.iter().map(|_| TipError { position: f64::NAN, rotation: f64::NAN })),
+        }
+    }
+    Ok(errors)
+}

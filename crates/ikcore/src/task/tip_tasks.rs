@@ -1,0 +1,327 @@
+//! Tasks of several tips: each tip has a target of its own, or is to be seen from another in a given pose.
+
+use smallvec::SmallVec;
+
+use super::assessment::Assessment;
+use super::criterion::Criterion;
+use super::target::Target;
+use super::tip_error::{SquaredError, TipError, Tolerance};
+use super::tip_task::Task;
+use crate::error::{Error, Result};
+use crate::kinematics::Columns;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::cross;
+use crate::math::{Frame, MAX_DOF};
+use crate::objective::{Linearization, Score, TaskBlock};
+use crate::robot::Robot;
+
+/// The pose that a target is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// That of the tip of this number.
+    Tip(usize),
+    /// That of tip `of`, seen from tip `from`.
+    Pair {
+        /// Number of the tip that it is seen from.
+        from: usize,
+        /// Number of the tip that is seen.
+        of: usize,
+    },
+}
+
+/// A task of one of several tips, or of a pair of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipTask {
+    /// The pose that counts.
+    pub subject: Subject,
+    /// The part of it that matters. `None` means all of it.
+    pub task: Option<Task>,
+    /// Tolerances within which its target counts as reached.
+    pub tolerance: Tolerance,
+}
+
+/// A validated task.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TipCriterion {
+    pub subject: Subject,
+    task: Option<Task>,
+    pub criterion: Criterion,
+    /// The tool of the task, in the frame of the tip that is moved.
+    tool: Option<Frame>,
+}
+
+impl TipTask {
+    /// Checks the task.
+    ///
+    /// # Errors
+    /// Those of [`Task::validate`] and of the tolerances.
+    pub(crate) fn validated(&self) -> Result<TipCriterion> {
+        let Self { subject, task, tolerance } = *self;
+        task.map_or(Ok(()), |task| task.validate())?;
+        let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
+        criterion.validate()?;
+        let tool = task.and_then(|task| task.tool).map(|tool| Frame::from(&tool));
+        Ok(TipCriterion { subject, task, criterion, tool })
+    }
+}
+
+impl TipCriterion {
+    /// The part of `wanted` that its task uses.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`].
+    pub fn part_used(&self, wanted: &Target) -> Result<Target> {
+        self.task.as_ref().map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// Where the tip itself is to be for a target of its tool.
+    pub fn without_tool(&self, target: &Target) -> Target {
+        match (self.tool, target) {
+            (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
+            _ => *target,
+        }
+    }
+
+    /// The frame that counts at `q`.
+    fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
+        let tip = |tip: usize| robot.tip_of(tip, q);
+        let at_tool = |frame: Frame| self.tool.map_or(frame, |tool| frame.then::<NoFma>(&tool));
+        match self.subject {
+            Subject::Tip(of) => at_tool(tip(of)),
+            Subject::Pair { from, of } => tip(from).inverse().then::<NoFma>(&at_tool(tip(of))),
+        }
+    }
+
+    /// The frame that counts at `q`, and its geometric Jacobian.
+    fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
+        let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
+        let mut frame = robot.tip_and_jacobian_of(of, q, columns);
+        if let Some(tool) = self.tool {
+            let moved = frame.then::<NoFma>(&tool);
+            let lever = std::array::from_fn(|k| moved.origin[k] - frame.origin[k]);
+            columns[..q.len()].iter_mut().for_each(|column| add_moment(column, &lever, 1.0));
+            frame = moved;
+        }
+        match self.subject {
+            Subject::Tip(_) => frame,
+            Subject::Pair { from, .. } => {
+                let mut own: Columns = [[0.0; 6]; MAX_DOF];
+                let base = robot.tip_and_jacobian_of(from, q, &mut own);
+                seen_from(&base, &mut own[..q.len()], &frame, &mut columns[..q.len()]);
+                base.inverse().then::<NoFma>(&frame)
+            }
+        }
+    }
+}
+
+/// Adds the velocity of a point at `lever` from the column's own to its linear rows, times `factor`.
+fn add_moment(column: &mut [f64; 6], lever: &[f64; 3], factor: f64) {
+    let moment = cross(&[column[3], column[4], column[5]], lever);
+    (0..3).for_each(|k| column[k] += factor * moment[k]);
+}
+
+/// Turns `columns`, the Jacobian of `frame`, into that of the frame as seen from `base`, whose Jacobian is `own`: with p the
+/// vector between them, v = R'(v_frame - v_base - w_base x p) and w = R'(w_frame - w_base).
+fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[f64; 6]]) {
+    let lever = std::array::from_fn(|k| frame.origin[k] - base.origin[k]);
+    for (column, own) in columns.iter_mut().zip(own) {
+        add_moment(own, &lever, 1.0);
+        let relative: [f64; 6] = std::array::from_fn(|k| column[k] - own[k]);
+        let along = |half: usize| base.axes.map(|axis| (0..3).map(|k| axis[k] * relative[3 * half + k]).sum::<f64>());
+        column[..3].copy_from_slice(&along(0));
+        column[3..].copy_from_slice(&along(1));
+    }
+}
+
+/// Tasks and their targets, in the same order.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TipAims<'a> {
+    pub tasks: &'a [TipCriterion],
+    pub targets: &'a [Target],
+}
+
+impl<'a> TipAims<'a> {
+    /// Each task with its target.
+    pub fn iter(&self) -> impl Iterator<Item = (&'a TipCriterion, &'a Target)> + use<'a> {
+        self.tasks.iter().zip(self.targets)
+    }
+
+    /// The assessment of `q`: the sum of the values, solved where all are; the largest errors.
+    pub fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
+        let assess =
+            |(task, target): (&TipCriterion, &Target)| target.assess_tip(&task.frame(robot, q), &task.criterion);
+        self.iter().map(assess).fold(nothing_asked(), together)
+    }
+
+    /// The assessment of `q`, with residuals and Jacobians. Calls `solved` with the number of each task that is solved.
+    pub fn linearize(
+        &self,
+        robot: &Robot,
+        q: &[f64],
+        out: &mut Linearization,
+        mut solved: impl FnMut(usize),
+    ) -> Assessment {
+        out.more.resize_with(self.tasks.len().saturating_sub(1), TaskBlock::default);
+        let mut all = nothing_asked();
+        for (number, ((task, target), block)) in self.iter().zip(out.blocks_mut()).enumerate() {
+            let frame = task.frame_and_jacobian(robot, q, &mut block.columns);
+            let one = target.linearize_tip(&frame, q.len(), &task.criterion, block);
+            if one.score.solved {
+                solved(number);
+            }
+            all = together(all, one);
+        }
+        all
+    }
+
+    /// The residual of each task at `q`, and the assessment.
+    pub fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
+        let mut block = TaskBlock::default();
+        let residual = |(task, target): (&TipCriterion, &Target)| {
+            let assessment = target.linearize_tip(&task.frame(robot, q), 0, &task.criterion, &mut block);
+            keep(block.residual);
+            assessment
+        };
+        self.iter().map(residual).fold(nothing_asked(), together)
+    }
+
+    /// The errors of each task at `q`.
+    pub fn errors(&self, robot: &Robot, q: &[f64]) -> SmallVec<[TipError; 4]> {
+        let error = |(task, target): (&TipCriterion, &Target)| {
+            TipError::from(target.assess_tip(&task.frame(robot, q), &task.criterion).error)
+        };
+        self.iter().map(error).collect()
+    }
+
+    /// Err for targets of two tips and of the pair of them that contradict each other.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`].
+    pub fn require_consistent(&self, robot: &Robot) -> Result<()> {
+        let pose_of = |tip: usize| {
+            self.iter().find_map(|(task, target)| match (task.subject, task.without_tool(target)) {
+                (Subject::Tip(of), Target::Pose(frame)) if of == tip && task.criterion.fixes_pose(target) => {
+                    Some(frame)
+                }
+                _ => None,
+            })
+        };
+        for (task, target) in self.iter() {
+            let Subject::Pair { from, of } = task.subject else { continue };
+            let (Some(base), Some(frame)) = (pose_of(from), pose_of(of)) else { continue };
+            let at_tool = task.tool.map_or(frame, |tool| frame.then::<NoFma>(&tool));
+            let seen = base.inverse().then::<NoFma>(&at_tool);
+            let Assessment { score, error } = target.assess_tip(&seen, &task.criterion);
+            if !score.solved {
+                let names: Vec<&str> = robot.tips().collect();
+                let (from, of) = (names[from], names[of]);
+                let problem = format!(
+                    "the targets of '{from}' and '{of}' contradict that of ('{from}', '{of}'), from which they are {} away: leave one out",
+                    TipError::from(error)
+                );
+                return Err(Error::Contradiction { problem });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn nothing_asked() -> Assessment {
+    let error = SquaredError { position: None, rotation: None };
+    Assessment { score: Score { value: 0.0, solved: true }, error }
+}
+
+/// Two assessments as one.
+fn together(one: Assessment, other: Assessment) -> Assessment {
+    let larger = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => Some(if a > b { a } else { b }),
+        (a, b) => a.or(b),
+    };
+    let score = Score { value: one.score.value + other.score.value, solved: one.score.solved && other.score.solved };
+    let (one, other) = (one.error, other.error);
+    let error =
+        SquaredError { position: larger(one.position, other.position), rotation: larger(one.rotation, other.rotation) };
+    Assessment { score, error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::UrdfOptions;
+    use crate::math::pose;
+    use crate::task::{Region, TaskKind};
+
+    /// A turning chest with two arms of three joints.
+    fn robot() -> Robot {
+        let mut urdf = String::from(r#"<robot name="pair"><link name="floor"/><link name="chest"/>"#);
+        let mut joint = |name: &str, [parent, child]: [&str; 2], [xyz, axis]: [&str; 2], kind: &str| {
+            urdf += &format!(
+                r#"<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0.1 0.2 0.3"/>
+                <axis xyz="{axis}"/></joint>"#
+            );
+        };
+        joint("yaw", ["floor", "chest"], ["0 0 1", "0 0 1"], "continuous");
+        for side in ["a", "b"] {
+            let link = |i: usize| format!("{side}{i}");
+            joint(
+                &link(1),
+                ["chest", &link(1)],
+                [if side == "a" { "0 0.3 0" } else { "0 -0.3 0.1" }, "1 0 0"],
+                "continuous",
+            );
+            joint(&link(2), [&link(1), &link(2)], ["0.3 0 0.1", "0 1 0"], "prismatic");
+            joint(&link(3), [&link(2), &link(3)], ["0.2 0.1 0", "0.6 0 0.8"], "continuous");
+        }
+        for side in ["a", "b"] {
+            (1..4).for_each(|i| urdf += &format!(r#"<link name="{side}{i}"/>"#));
+        }
+        let tips = vec!["a3".into(), "b3".into()];
+        Robot::from_urdf_with(&(urdf + "</robot>"), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap()
+    }
+
+    #[test]
+    fn derivatives_are_those_of_finite_differences() {
+        let robot = robot();
+        let q = [0.3, -0.4, 0.2, 0.9, 1.3, -0.1, 0.5];
+        let tool = Some(pose::from_rpy([0.1, -0.4, 0.2], [0.05, 0.0, 0.15]));
+        let region = Region::new([-0.1, f64::NEG_INFINITY, 0.0], [0.2, 0.5, f64::INFINITY]).unwrap();
+        let weights = [1.0, 0.0, 2.0, 1.0, 0.5, 0.0];
+        let kinds = [
+            Task { tool, ..TaskKind::Pose.into() },
+            Task::new(TaskKind::Pose, Some(&weights), None, tool).unwrap(),
+            TaskKind::Position.into(),
+            TaskKind::Orientation.into(),
+            TaskKind::Pointing { axis: [0.0, 0.6, 0.8] }.into(),
+            Task::from(TaskKind::Pose).within(region).unwrap(),
+        ];
+        let wanted = Target::from(&pose::from_rpy([0.3, 0.2, -0.4], [0.3, 0.1, 0.8]));
+        for kind in kinds {
+            let subjects = [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }];
+            let tolerance = Tolerance::default();
+            let tasks = subjects.map(|subject| TipTask { subject, task: Some(kind), tolerance }.validated().unwrap());
+            let targets = tasks.map(|task| task.part_used(&wanted).unwrap());
+            let aims = TipAims { tasks: &tasks, targets: &targets };
+            let linearized = |q: &[f64]| {
+                let mut out = Linearization::default();
+                let assessment = aims.linearize(&robot, q, &mut out, |_| ());
+                assert!((assessment.score.value - aims.assess(&robot, q).score.value).abs() < 1e-12, "{kind:?}");
+                out
+            };
+            let here = linearized(&q);
+            let h = 1e-6;
+            for j in 0..q.len() {
+                let moved =
+                    |by: f64| linearized(&std::array::from_fn::<f64, 7, _>(|k| if k == j { q[k] + by } else { q[k] }));
+                let (ahead, behind) = (moved(h), moved(-h));
+                for (i, block) in here.blocks().enumerate() {
+                    let residual = |of: &Linearization| of.blocks().nth(i).unwrap().residual;
+                    for row in 0..6 {
+                        let difference = (residual(&ahead)[row] - residual(&behind)[row]) / (2.0 * h);
+                        let error = (difference - block.columns[j][row]).abs();
+                        assert!(error < 1e-8, "{kind:?}, task {i}, row {row}, joint {j}: off by {error:.1e}");
+                    }
+                }
+            }
+        }
+    }
+}

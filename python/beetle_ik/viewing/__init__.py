@@ -1,0 +1,21 @@
+"""A robot in the browser, to look at and to steer: `beetle_ik.view`, on viser.
+
+    viewer      the public class: joins the parts below, and answers Python
+    checks      its arguments
+    worker      the only thread that moves the arm
+    address     a free port
+    arm         the state of the arm: configuration, target, obstacles, how it follows the target. Without a page
+    start       bodies, speeds and a configuration for robots that come without
+    parts       what the page consists of
+    page        what its parts share
+    surfaces    the robot's links in the scene, and its ghosts
+    handle, joints, obstacles, postures, playback, report
+                the parts of the page: each shows and changes one thing of the state
+    displaced   obstacles, moved
+
+viser calls back in the thread of its server. A part of the page never moves the arm there: it asks the worker.
+"""
+
+from .viewer import Viewer, view
+
+__all__ = ["Viewer", "view"]

@@ -1,0 +1,185 @@
+"""The state that a viewer shows. Draws nothing and knows no threads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from .. import tasks
+from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, nearest, solve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .._core import Nearest, Task
+
+    Array = NDArray[np.float64]
+
+Follow = Literal["track", "solve", "off"]
+Part = Literal["pose", "position", "pointing"]
+FOLLOWS: tuple[Follow, ...] = get_args(Follow)
+PARTS: tuple[Part, ...] = get_args(Part)
+
+DT = 1.0 / 60.0  # s, of a tick
+QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
+_REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
+_ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
+_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived
+_PAUSE = 30  # ticks
+
+
+class Arm:
+    """A robot, its configuration, its target, the obstacles around it, and how it follows the target.
+
+    Attributes:
+        q: the configuration (n,). Set it by `put`.
+        outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
+        moves: whether it is under way to the target.
+    """
+
+    def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
+        """Rests at `q` (n,)."""
+        self.robot = robot
+        self.q = q
+        self.outcome: Step | Solution | None = None
+        self.moves = False
+        self._target = robot.fk(q)
+        self._obstacles = obstacles
+        self._follow: Follow = "track"
+        self._part: Part = "pose" if robot.dof >= 6 else "position"
+        self._keeps_clear = True
+        self._tracker: Tracker | None = None
+        self._escapes = False
+        self._anchor, self._ticks = q, 0
+
+    @property
+    def target(self) -> Array:
+        """The pose (4, 4) that the tip is to reach."""
+        return self._target
+
+    @target.setter
+    def target(self, target: Array) -> None:
+        self._target = target
+        self._set_off()
+
+    @property
+    def obstacles(self) -> list[Obstacle]:
+        """The obstacles, in the frame of the robot's base."""
+        return self._obstacles
+
+    @obstacles.setter
+    def obstacles(self, obstacles: list[Obstacle]) -> None:
+        self._obstacles = obstacles
+        self._set_off()
+        if self._tracker is not None:
+            self._tracker.obstacles = self.avoided
+
+    @property
+    def follow(self) -> Follow:
+        """How the arm follows the target."""
+        return self._follow
+
+    @follow.setter
+    def follow(self, follow: Follow) -> None:
+        self._follow = follow
+        self._restart()
+
+    @property
+    def part(self) -> Part:
+        """The part of the target that counts."""
+        return self._part
+
+    @part.setter
+    def part(self, part: Part) -> None:
+        self._part = part
+        self._restart()
+
+    @property
+    def keeps_clear(self) -> bool:
+        """Whether the arm keeps clear of the obstacles and of itself."""
+        return self._keeps_clear
+
+    @keeps_clear.setter
+    def keeps_clear(self, keeps_clear: bool) -> None:
+        self._keeps_clear = keeps_clear
+        self._restart()
+
+    @property
+    def goal(self) -> Array:
+        """The target as solvers take it: a position (3,) if the orientation is free, otherwise a pose (4, 4)."""
+        return self.target[:3, 3] if self._part == "position" else self.target
+
+    @property
+    def task(self) -> Task | None:
+        """The task that goes with `goal`."""
+        return tasks.Pointing() if self._part == "pointing" else None
+
+    @property
+    def inside(self) -> Array:
+        """The configuration inside the limits where solvers start; a motion that was shown may have left them."""
+        return self.robot.clip(self.q)
+
+    @property
+    def nearest(self) -> Nearest | None:
+        """The nearest two bodies, whether the arm keeps clear of them or not."""
+        return nearest(self.robot, self.q, self._obstacles)
+
+    def put(self, q: Array) -> None:
+        """Puts the arm at `q` (n,), to rest there. The target moves along with the tip, if the arm follows it."""
+        self.q, self.outcome = q, None
+        if self._follow != "off":
+            self._target = self.robot.fk(q)
+        self._tracker, self.moves = None, False
+
+    def advance(self) -> bool:
+        """Moves towards the target for one tick, unless the arm was put somewhere; returns whether it is under way."""
+        if not self.moves:
+            return False
+        if self._follow == "solve":
+            self.solve()
+            return False
+        self._track()
+        if np.abs(self.q - self._anchor).max() > _STILL:
+            self._anchor, self._ticks = self.q, 0
+        self._ticks += 1
+        self.moves = self._ticks < _PAUSE
+        return self.moves
+
+    def solve(self) -> None:
+        """Puts the arm at a solution, or as near to the target as it gets, unless it would collide there."""
+        found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
+        self.outcome = found
+        self._tracker, self.moves = None, False
+        if found.status is not Status.IN_COLLISION:
+            self.q = found.q
+
+    @property
+    def avoided(self) -> list[Obstacle] | None:
+        """What solvers take as `obstacles`."""
+        return self._obstacles if self._keeps_clear else None
+
+    def _track(self) -> None:
+        """Takes a step of the tracker.
+
+        Under acceleration limits an arm follows smoothly and comes to rest beside an obstacle; without them it moves
+        out of one that was moved into it.
+        """
+        if self._tracker is None:
+            limits = None if self._escapes else Limits(acceleration=_ACCELERATION)
+            self._tracker = Tracker(
+                self.robot, self.inside, dt=DT, task=self.task, obstacles=self.avoided, limits=limits, **_REACHED
+            )
+        self.outcome = self._tracker.step(self.goal)
+        self.q = self.outcome.q
+        touches = self.outcome.status is Status.IN_COLLISION
+        if touches != self._escapes:
+            self._escapes, self._tracker = touches, None
+
+    def _restart(self) -> None:
+        self._tracker = None
+        self._set_off()
+
+    def _set_off(self) -> None:
+        self.moves = self._follow != "off"
+        self._anchor, self._ticks = self.q, 0

@@ -1,0 +1,94 @@
+"""Arguments of the viewer, checked and read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import _core
+from .._core import BeetleIkError, InvalidInputError, LimitError, Robot, Trajectory, pose
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .._core import Path
+
+    Array = NDArray[np.float64]
+
+_PATH_POINTS = 500
+
+
+def configuration(robot: Robot, q: ArrayLike) -> Array:
+    """Returns `q` as an array (n,) of finite numbers, of its own."""
+    if robot.fk(q).ndim != 2:
+        raise InvalidInputError(f"q must be one configuration ({robot.dof},), got shape {np.shape(q)}")
+    return _fixed(q)
+
+
+def inside_limits(robot: Robot, q: ArrayLike) -> Array:
+    """Returns `configuration`, if it is inside the position limits."""
+    checked = configuration(robot, q)
+    for name, value, low, high in zip(robot.joint_names, checked, robot.lower, robot.upper, strict=True):
+        if not low <= value <= high:
+            raise LimitError(f"q: joint '{name}' at {value:.6g} is outside its limits [{low:.6g}, {high:.6g}]")
+    return checked
+
+
+def target_pose(target: ArrayLike, present: Array) -> Array:
+    """Returns a pose (4, 4), or a position (3,) with the orientation of the pose `present`."""
+    try:
+        given = np.asarray(target, dtype=float)
+        if given.shape == (3,):
+            return _fixed(pose(given, matrix=present[:3, :3]))
+        if given.shape == (4, 4) and (given[3] == (0, 0, 0, 1)).all():
+            return _fixed(pose(given[:3, 3], matrix=given[:3, :3]))
+    except BeetleIkError as error:
+        raise InvalidInputError(f"target: {error}") from error
+    except (TypeError, ValueError):
+        pass
+    raise InvalidInputError(f"target must be a pose (4, 4) or a position (3,), got {target!r:.60}")
+
+
+def path_points(path: Path | ArrayLike) -> Array:
+    """Returns positions (k, 3) along a path of `bik.paths`, positions (k, 3) or poses (k, 4, 4)."""
+    if isinstance(path, _core.Path):
+        return path.position(np.linspace(0.0, path.duration, _PATH_POINTS))
+    try:
+        points = np.asarray(path, dtype=float)
+    except (TypeError, ValueError):
+        points = np.empty(0)
+    if points.ndim == 3 and points.shape[1:] == (4, 4):
+        points = points[:, :3, 3]
+    if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2 or not np.isfinite(points).all():
+        raise InvalidInputError(f"path must be one of bik.paths, positions (k, 3) or poses (k, 4, 4), got {path!r:.60}")
+    return points
+
+
+def motion_of(result: Any) -> Trajectory | None:
+    """Returns the motion of a result; None if it has none."""
+    if isinstance(result, Trajectory):
+        return result
+    if isinstance(result, _core.Plan | _core.TrackResult):
+        return result.trajectory
+    if isinstance(result, _core.ModelFreeResult):
+        return Trajectory.from_samples(result.time, result.q)
+    return None
+
+
+def postures_of(result: Any) -> Array:
+    """Returns the configurations (k, n) of a result without a motion.
+
+    Raises:
+        InvalidInputError: it has none.
+    """
+    if isinstance(result, _core.Solution | _core.SolutionSet | _core.SelfMotion):
+        return np.atleast_2d(result.q)
+    shown = "Trajectory, Plan, TrackResult, ModelFreeResult, Solution, SolutionSet or SelfMotion"
+    raise InvalidInputError(f"result must be a {shown}, got {result!r:.60}")
+
+
+def _fixed(values: ArrayLike) -> Array:
+    array = np.array(values, dtype=float)
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,137 @@
+"""The obstacles, which are added, moved and taken away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import obstacles as shapes
+from .._core import pose
+from .._style import ORANGE, rgb
+from .displaced import displaced
+from .page import set_value
+from .surfaces import soup, wxyz
+
+if TYPE_CHECKING:
+    import viser
+    from numpy.typing import NDArray
+
+    from .._core import Obstacle
+    from .page import Page
+
+_NONE = "none"
+_SIZE = 0.15  # of a new obstacle and of the handle, as a fraction of the arm
+_BESIDE = np.array([0.4, 0.4, 0.2])  # where a new obstacle appears, as a fraction of the arm
+_OPACITY = 0.7
+_NEW: dict[str, Callable[[NDArray[np.float64], float], Obstacle]] = {
+    "box": lambda center, size: shapes.Box(center, (size, size, size)),
+    "sphere": lambda center, size: shapes.Sphere(center, 0.5 * size),
+    "cylinder": lambda center, size: shapes.Cylinder(center, (0, 0, 1), 0.5 * size, 2 * size),
+}
+
+
+class Obstacles:
+    """Obstacles of the arm in the scene. One of them, clicked or chosen from a list, has a handle."""
+
+    def __init__(self, page: Page) -> None:
+        """Adds the controls; `refresh` draws the obstacles."""
+        self._page = page
+        gui = page.server.gui
+        self._shapes: list[Obstacle] = []
+        self._drawn: list[_Drawn] = []
+        self._handle: viser.TransformControlsHandle | None = None
+        self._list = gui.add_dropdown("chosen", (_NONE,), hint="or click one in the scene")
+        page.on_input(self._list, self._choose_from_list)
+        page.on_input(gui.add_button("Remove"), self._remove)
+        for kind in _NEW:
+            page.on_input(gui.add_button(f"Add {kind}"), lambda kind=kind: self._add(kind))  # type: ignore[misc]
+
+    def refresh(self) -> None:
+        """Draws the obstacles of the arm, if they are not those that are drawn."""
+        if self._page.arm.obstacles is not self._shapes:
+            self._draw(self._page.arm.obstacles)
+
+    def _draw(self, obstacles: list[Obstacle]) -> None:
+        self._choose(None)
+        for drawn in self._drawn:
+            drawn.mesh.remove()
+        self._shapes = obstacles
+        self._drawn = [_Drawn(self._page.server.scene, f"/obstacles/{i}", each) for i, each in enumerate(obstacles)]
+        self._list.options = (_NONE, *(f"{i} {type(each).__name__}" for i, each in enumerate(obstacles)))
+        for i, drawn in enumerate(self._drawn):
+
+            async def clicked(_: object, i: int = i) -> None:
+                self._page.ask(self._list, lambda: self._choose(i))
+
+            drawn.mesh.on_click(clicked)
+
+    def _add(self, kind: str) -> None:
+        scale = self._page.scale
+        made = _NEW[kind](_BESIDE * scale, _SIZE * scale)
+        self._page.arm.obstacles = [*self._page.arm.obstacles, made]
+        self.refresh()
+        self._choose(len(self._drawn) - 1)
+
+    def _remove(self) -> None:
+        if self._chosen is not None:
+            self._page.arm.obstacles = [shape for i, shape in enumerate(self._shapes) if i != self._chosen]
+
+    @property
+    def _chosen(self) -> int | None:
+        name = str(self._list.value)
+        return None if name == _NONE else int(name.split()[0])
+
+    def _choose_from_list(self) -> None:
+        self._choose(self._chosen)
+
+    def _choose(self, i: int | None) -> None:
+        """Gives obstacle `i` the handle; None: no obstacle."""
+        if self._handle is not None:
+            self._handle.remove()
+            self._handle = None
+        set_value(self._list, self._list.options[0 if i is None else i + 1])
+        if i is None or displaced(self._shapes[i], np.eye(4)) is None:
+            return
+        place = self._drawn[i].place
+        handle = self._handle = self._page.server.scene.add_transform_controls(
+            "/obstacle", scale=_SIZE * self._page.scale, depth_test=False, position=place[:3, 3], wxyz=wxyz(place)
+        )
+
+        @handle.on_update
+        async def _(_: object) -> None:  # in the thread of the server, in order
+            target = pose(handle.position, wxyz=handle.wxyz)
+            self._page.ask(handle, lambda: self._move(i, target))
+
+    def _move(self, i: int, place: NDArray[np.float64]) -> None:
+        if i >= len(self._drawn):
+            return  # taken away a moment ago
+        self._drawn[i].move(place)
+        self._shapes = [drawn.shape for drawn in self._drawn]
+        self._page.arm.obstacles = self._shapes
+
+
+class _Drawn:
+    """An obstacle in the scene.
+
+    Attributes:
+        shape: the obstacle where it is now.
+        place: where its handle is now, (4, 4).
+    """
+
+    def __init__(self, scene: viser.SceneApi, name: str, shape: Obstacle) -> None:
+        self._first = self.shape = shape
+        corners = shape.triangles
+        self._home = self.place = pose(0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))))
+        self.mesh = scene.add_mesh_simple(
+            name, *soup(corners - self._home[:3, 3]), position=self._home[:3, 3], color=rgb(ORANGE), opacity=_OPACITY,
+            flat_shading=True, side="double",
+        )  # fmt: skip
+
+    def move(self, place: NDArray[np.float64]) -> None:
+        """Moves the obstacle with its handle."""
+        shape = displaced(self._first, place @ np.linalg.inv(self._home))
+        if shape is not None:
+            self.shape, self.place = shape, place
+            self.mesh.position, self.mesh.wxyz = place[:3, 3], wxyz(place)

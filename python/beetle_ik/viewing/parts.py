@@ -1,0 +1,114 @@
+"""What the page consists of."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
+from .._style import BLACK, rgb
+from .checks import motion_of, postures_of
+from .handle import Handle
+from .joints import Joints
+from .obstacles import Obstacles
+from .playback import Playback
+from .postures import Postures
+from .report import Report
+from .surfaces import Links
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .page import Page
+    from .surfaces import Meshes
+
+    Array = NDArray[np.float64]
+
+_LOOK = np.array([0.15, 0.0, 0.3])  # of the camera, as a fraction of the arm
+_FROM = np.array([1.2, 1.0, 0.75])
+_FIELD = 0.8  # rad
+_REFERENCE = 2.0  # pixels
+_SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
+
+
+class Parts:
+    """The parts of the page, and what they do together."""
+
+    def __init__(self, page: Page, meshes: Meshes, notes: list[str]) -> None:
+        """Fills the page. `meshes` are those of the links, `notes` sentences about the robot."""
+        self._page = page
+        scene, gui = page.server.scene, page.server.gui
+        base = page.arm.robot.link_poses(page.arm.q)[0, :3, 3]
+        camera = page.server.initial_camera
+        camera.look_at, camera.position, camera.fov = base + _LOOK * page.scale, base + _FROM * page.scale, _FIELD
+        gui.configure_theme(show_share_button=False)  # it would show the page to others
+        scene.add_grid("/floor", width=4 * page.scale, height=4 * page.scale, cell_size=0.1, section_size=0.5)
+        self._links = Links(scene, page.arm.robot, meshes)
+        self.report = Report(page, notes)
+        self._playback = Playback(page)
+        tabs = gui.add_tab_group()
+        with tabs.add_tab("Target"):
+            handle = Handle(page)
+        with tabs.add_tab("Joints"):
+            joints = Joints(page)
+        with tabs.add_tab("Obstacles"):
+            obstacles = Obstacles(page)
+            bodies = gui.add_checkbox("bodies around the meshes", initial_value=False)
+            page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
+        with tabs.add_tab("Postures"):
+            self._postures = Postures(page, self._links)
+        self._quick = (handle, obstacles, self._postures)
+        self._slow = (joints, self.report)
+        self._due = 0.0
+        self.refresh()
+
+    def advance(self, elapsed: float) -> bool:
+        """Moves the arm on by a tick, `elapsed` (s) after the last one; returns whether it still moves."""
+        return self._playback.advance(elapsed) or self._page.arm.advance()
+
+    def refresh(self, *, moving: bool = False) -> None:
+        """Shows the state of the arm."""
+        with self._page.server.atomic():
+            self._links.place(self._page.arm.q)
+            for part in self._quick:
+                part.refresh()
+            if not moving or time.monotonic() >= self._due:
+                self._due = time.monotonic() + _SLOW
+                for each in self._slow:
+                    each.refresh()
+
+    def draw_path(self, points: Array) -> None:
+        """Draws a line through points (k, 3), in place of the last one."""
+        segments = np.stack((points[:-1], points[1:]), axis=1)
+        scene = self._page.server.scene
+        scene.add_line_segments("/path", segments, rgb(BLACK), thickness=_REFERENCE, thickness_units="screen")
+
+    def show(self, result: Any) -> None:
+        """Shows a result of this library."""
+        motion = motion_of(result)
+        self._require_fitting(postures_of(result) if motion is None else motion.q)
+        if motion is None:
+            self._show_postures(result)
+            return
+        if isinstance(result, Plan) and result.obstacles:
+            self._page.arm.obstacles = list(result.obstacles)
+        reference = result.reference if isinstance(result, Plan | TrackResult) else None
+        if reference is not None:
+            self.draw_path(reference)
+        self._playback.show(motion)
+
+    def _show_postures(self, result: Any) -> None:
+        postures = postures_of(result)
+        if isinstance(result, SelfMotion):
+            self._postures.show_curve(postures)
+        elif len(postures) > 1:
+            self._postures.show_ghosts(postures, result.message)
+        if len(postures):
+            self._page.arm.put(self._page.arm.robot.clip(postures[0]))
+
+    def _require_fitting(self, q: Array) -> None:
+        robot = self._page.arm.robot
+        if q.shape[1] != robot.dof:
+            raise InvalidInputError(f"result has {q.shape[1]} joints, and robot '{robot.name}' has {robot.dof}")

@@ -1,0 +1,106 @@
+"""A motion that is played back: time bar, trace of the tip, joint velocities."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._style import BLUE, PALETTE, rgb
+from .page import set_value
+
+if TYPE_CHECKING:
+    import viser
+    from numpy.typing import NDArray
+
+    from .._core import Trajectory
+    from .page import Page
+
+_SAMPLES = 400  # of the trace and the plot
+_STEP = 0.01  # s, of the time bar
+_TRACE = 3.0  # pixels
+_ASPECT = 1.5  # of the plot
+
+
+class Playback:
+    """A trajectory and a time on it. It plays, over and over if wanted, until someone stops it or takes the handle."""
+
+    def __init__(self, page: Page) -> None:
+        """Adds the controls, hidden until there is a motion."""
+        self._page = page
+        self._motion: Trajectory | None = None
+        self._playing = False
+        self._drawn: list[viser.SceneNodeHandle | viser.GuiUplotHandle] = []
+        gui = page.server.gui
+        self._folder = gui.add_folder("Motion", visible=False)
+        with self._folder:
+            self._bar = gui.add_slider("time [s]", min=0.0, max=1.0, step=_STEP, initial_value=0.0)
+            self._button = gui.add_button("Play")
+            self._repeat = gui.add_checkbox("repeat", initial_value=True)
+        page.on_input(self._bar, lambda: self._jump(self._bar.value))
+        page.on_input(self._button, lambda: self._play(not self._playing))
+        self._time = 0.0
+        self._left = (page.arm.q, page.arm.target)
+        """What the arm was left with; if it has something else, someone has taken over."""
+
+    def show(self, motion: Trajectory) -> None:
+        """Shows a trajectory in place of the last one, and plays it."""
+        for handle in self._drawn:
+            handle.remove()
+        self._motion, self._time = motion, 0.0
+        self._bar.max = max(round(motion.duration + 0.5 * _STEP, 2), _STEP)
+        self._folder.visible = True
+        times = np.linspace(0.0, motion.duration, _SAMPLES)
+        q, qd, _ = motion.at(times)
+        self._drawn = [self._trace(self._page.arm.robot.fk(q)[:, :3, 3]), self._plot(times, qd)]
+        self._play(True)
+
+    def advance(self, elapsed: float) -> bool:
+        """Moves the arm on by a time (s); returns whether the motion goes on."""
+        arm = self._page.arm
+        if not self._playing or self._motion is None:
+            return False
+        if arm.q is not self._left[0] or arm.target is not self._left[1]:
+            self._play(False)  # someone has taken over
+            return False
+        self._time += elapsed
+        if self._time >= self._motion.duration:
+            self._play(bool(self._repeat.value))
+            self._time = 0.0 if self._playing else self._motion.duration
+        self._put()
+        set_value(self._bar, round(min(self._time, self._bar.max), 2))
+        return self._playing
+
+    def _play(self, playing: bool) -> None:
+        self._playing = playing
+        self._button.label = "Pause" if playing else "Play"
+        if playing and self._motion is not None:
+            self._time = 0.0 if self._time >= self._motion.duration else self._time
+            self._put()
+
+    def _jump(self, time: float) -> None:
+        self._play(False)
+        self._time = time
+        self._put()
+
+    def _put(self) -> None:
+        arm = self._page.arm
+        if self._motion is not None:
+            arm.put(self._motion.at(self._time)[0])
+            self._left = (arm.q, arm.target)
+
+    def _trace(self, points: NDArray[np.float64]) -> viser.LineSegmentsHandle:
+        return self._page.server.scene.add_line_segments(
+            "/trace", np.stack((points[:-1], points[1:]), axis=1), rgb(BLUE), thickness=_TRACE, thickness_units="screen"
+        )
+
+    def _plot(self, times: NDArray[np.float64], qd: NDArray[np.float64]) -> viser.GuiUplotHandle:
+        from viser import uplot
+
+        names = self._page.arm.robot.joint_names
+        series = [uplot.Series(label=name, stroke=PALETTE[j % len(PALETTE)], width=1.5) for j, name in enumerate(names)]
+        with self._folder:
+            return self._page.server.gui.add_uplot(
+                (times, *np.ascontiguousarray(qd.T)), (uplot.Series(label="t [s]"), *series),
+                title="joint velocities [rad/s, m/s]", scales={"x": uplot.Scale(time=False)}, aspect=_ASPECT,
+            )  # fmt: skip

@@ -1,0 +1,298 @@
+"""The viewer as Python sees it."""
+
+from __future__ import annotations
+
+import atexit
+import html
+import logging
+import threading
+import time
+from collections.abc import Callable, Collection, Iterable
+from functools import partial
+from typing import TYPE_CHECKING, Self
+
+from .._arguments import require
+from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
+from .._needs import library
+from .._scene import Scene
+from . import start
+from .address import free_port
+from .arm import DT, FOLLOWS, Arm
+from .checks import configuration, inside_limits, path_points, target_pose
+from .page import Page
+from .parts import Parts
+from .worker import Request, Worker
+
+if TYPE_CHECKING:
+    import numpy as np
+    import viser
+    from numpy.typing import ArrayLike, NDArray
+
+    from .._core import ModelFreeResult, Path, Plan, SelfMotion, Solution, SolutionSet, Step, TrackResult, Trajectory
+    from .arm import Follow
+
+    Array = NDArray[np.float64]
+    Shown = Trajectory | Plan | TrackResult | ModelFreeResult | Solution | SolutionSet | SelfMotion
+
+_log = logging.getLogger(__name__)
+
+_NOTEBOOK_HEIGHT = 600  # pixels
+_LONGEST_TICK = 0.1  # s: after a rest, or on a busy machine, a motion goes on where it was
+_WAKE = 0.1  # s: how often a waiting thread looks for Ctrl-C, which Windows would not wake it for
+
+
+def view(
+    robot: Robot,
+    q: ArrayLike | None = None,
+    *,
+    obstacles: Iterable[Obstacle] | None = None,
+    path: Path | ArrayLike | None = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    block: bool = False,
+) -> Viewer:
+    """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
+
+    The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
+    clear. The page has sliders for the joints, all solutions, the self-motion, and plays motions back. Meshes are those
+    that `robot.collision_meshes()` reads; links without them show their bodies, and a robot without bodies gets
+    capsules along its links. In a notebook the viewer shows inline.
+
+    Args:
+        robot: the robot.
+        q: joint positions (n,) to begin at (rad, m); None: the stance "ready" of an SRDF, or a bent and clear
+            configuration near the middle of the limits.
+        obstacles: obstacles of `bik.obstacles`, or a `Scene`, in the frame of the robot's base.
+        path: a path to draw: one of `bik.paths`, positions (k, 3) (m) or poses (k, 4, 4).
+        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": whoever reaches it.
+        port: the port; if it is in use, the next free one. 0: any.
+        block: whether to wait until Ctrl-C, which closes the viewer.
+
+    Returns:
+        A `Viewer`; `viewer.url` is the address of the page.
+
+    Raises:
+        BeetleIkError: viser is not installed.
+        InvalidInputError: wrong shape, NaN, or a host or port that cannot be used.
+        LimitError: a configuration outside the limits.
+    """
+    require("block", block, bool)
+    viewer = Viewer(robot, q, obstacles=obstacles, path=path, host=host, port=port)
+    if block:
+        viewer.wait()
+    return viewer
+
+
+class Viewer:
+    """A page that shows a robot, made by `view`. What the page changes and what Python sets is the same state.
+
+    It can be used from any thread, and as a context that closes it.
+
+    Attributes:
+        robot: the robot as it is shown: with bodies, and with velocity limits.
+        server: the server of viser, which takes further controls and shapes.
+        url: the address of the page.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        q: ArrayLike | None,
+        *,
+        obstacles: Iterable[Obstacle] | None,
+        path: Path | ArrayLike | None,
+        host: str,
+        port: int,
+    ) -> None:
+        """Serves the page; `view` describes the arguments."""
+        require("robot", robot, Robot)
+        if robot.fk(start.middle(robot)).ndim > 2:
+            raise InvalidInputError(
+                f"robot '{robot.name}' has several tips; the viewer steers one: load it with one tip"
+            )
+        meshes, missing = start.meshes(robot)
+        self.robot, notes = start.shown(robot, has_meshes=bool(meshes))
+        scene = list(Scene(() if obstacles is None else obstacles))
+        begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
+        line = None if path is None else path_points(path)
+        module = library("viser", "viser", "the viewer", extra="view")
+        port = free_port(host, port)
+        self.server: viser.ViserServer = module.ViserServer(host=host, port=port, label=robot.name, verbose=False)
+        self.url = f"http://{f'[{host}]' if ':' in host else host}:{port}"
+        self._lock = threading.RLock()
+        self._closed = threading.Event()
+        self._callbacks: list[Callable[[Array], object]] = []
+        self._arm = Arm(self.robot, begin, scene)
+        self._told = self._arm.target
+        self._moves = False
+        self._last_tick = time.monotonic()
+        self._worker = Worker(self._work, DT)
+        try:
+            page = Page(self.server, self._arm, self._worker.ask, start.length(self.robot))
+            self._parts = Parts(page, meshes, [*missing, *notes])
+            if line is not None:
+                self._parts.draw_path(line)
+            self._worker.start()
+        except BaseException:  # Ctrl-C too
+            self.server.stop()
+            raise
+        atexit.register(self.close)
+
+    @property
+    def q(self) -> Array:
+        """The configuration shown (n,) (rad, m). Setting it puts the arm there, to rest.
+
+        The handle moves along, unless `follow` is "off".
+
+        Raises:
+            InvalidInputError: wrong shape or NaN.
+            LimitError: a configuration outside the limits, unless `follow` is "off".
+        """
+        return self._arm.q
+
+    @q.setter
+    def q(self, q: ArrayLike) -> None:
+        checked = configuration(self.robot, q) if self._arm.follow == "off" else inside_limits(self.robot, q)
+        self._change(lambda: self._arm.put(checked))
+
+    @property
+    def target(self) -> Array:
+        """The pose (4, 4) of the handle, which the arm follows. A position (3,) (m) keeps its orientation."""
+        return self._arm.target
+
+    @target.setter
+    def target(self, target: ArrayLike) -> None:
+        checked = target_pose(target, self._arm.target)
+        self._change(lambda: setattr(self._arm, "target", checked))
+
+    @property
+    def obstacles(self) -> Scene:
+        """The obstacles as they are now, also those that were added or moved on the page."""
+        return Scene(self._arm.obstacles)
+
+    @obstacles.setter
+    def obstacles(self, obstacles: Iterable[Obstacle]) -> None:
+        scene = list(Scene(obstacles))
+        self._change(lambda: setattr(self._arm, "obstacles", scene))
+
+    @property
+    def follow(self) -> Follow:
+        """How the arm follows the handle: "track", "solve" or "off".
+
+        "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
+        and the handle stays where it is.
+        """
+        return self._arm.follow
+
+    @follow.setter
+    def follow(self, follow: Follow) -> None:
+        if follow not in FOLLOWS:
+            raise InvalidInputError(f"follow must be one of {', '.join(map(repr, FOLLOWS))}, got {follow!r:.60}")
+        self._change(lambda: setattr(self._arm, "follow", follow))
+
+    @property
+    def outcome(self) -> Step | Solution | None:
+        """The last `Step` or `Solution` on the way to the target; None after the arm was put somewhere."""
+        return self._arm.outcome
+
+    @property
+    def moves(self) -> bool:
+        """Whether the arm is under way to its target, or a motion is played back."""
+        return self._moves
+
+    def show(self, result: Shown) -> None:
+        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts.
+
+        A `Plan` brings its obstacles along, unless it has none.
+
+        Args:
+            result: a `Trajectory`, `Plan`, `TrackResult`, `ModelFreeResult`, `Solution`, `SolutionSet` or `SelfMotion`.
+
+        Raises:
+            InvalidInputError: something else, or the result of a robot with another number of joints.
+        """
+        self._change(lambda: self._parts.show(result))
+
+    def on_target(self, callback: Callable[[Array], object]) -> None:
+        """Has `callback(target)` called with each new pose (4, 4) of the handle, in the thread of the viewer.
+
+        While it runs, the arm waits; what it raises is logged and shown on the page.
+        """
+        if not callable(callback):
+            raise InvalidInputError(f"callback must be a function of the target, got {callback!r:.60}")
+        self._callbacks.append(callback)
+
+    def wait(self) -> None:
+        """Waits until the viewer is closed. Ctrl-C closes it."""
+        try:
+            while not self._closed.wait(_WAKE):
+                pass
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
+        if self._closed.is_set():
+            return
+        self._closed.set()
+        atexit.unregister(self.close)
+        self._worker.close()
+        self.server.stop()
+
+    def _change(self, change: Callable[[], None]) -> None:
+        """Changes the state from Python, and shows it."""
+        if self._closed.is_set():
+            raise BeetleIkError(f"the viewer of '{self.robot.name}' is closed: bik.view opens another one")
+        with self._lock:
+            change()
+            self._moves = True  # until the next tick knows better
+            self._parts.refresh()
+        self._worker.ask("changed", lambda: None)
+
+    def _work(self, requests: Collection[Request]) -> bool:
+        """Carries out requests, moves the arm on by a tick, and shows the result; returns whether it still moves."""
+        with self._lock:
+            now = time.monotonic()
+            elapsed, self._last_tick = min(now - self._last_tick, _LONGEST_TICK), now
+            if requests:
+                self._parts.report.problem = ""
+            for request in requests:
+                self._guarded(request)
+            self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
+            self._parts.refresh(moving=self._moves)
+            target = self._arm.target
+        if target is not self._told:
+            self._told = target
+            for callback in self._callbacks:
+                self._guarded(partial(callback, target))
+        return self._moves
+
+    def _guarded(self, action: Callable[[], object]) -> object:
+        """Carries out an action; what it raises is shown on the page, and does not end the thread."""
+        try:
+            return action()
+        except BeetleIkError as error:
+            problem = str(error)
+        except Exception as error:  # of a callback
+            _log.exception("an error in the viewer of '%s'", self.robot.name)
+            problem = f"{type(error).__name__}: {error}"
+        self._parts.report.problem = problem
+        return None
+
+    def _repr_html_(self) -> str:
+        """Shows the page inline in a notebook."""
+        place = html.escape(self.url)
+        return f'<iframe src="{place}" width="100%" height="{_NOTEBOOK_HEIGHT}" style="border:0"></iframe>'
+
+    def __repr__(self) -> str:
+        """Names the robot and the address."""
+        state = "closed" if self._closed.is_set() else f"at {self.url}"
+        return f"<Viewer of '{self.robot.name}', {state}>"
+
+    def __enter__(self) -> Self:
+        """Returns the viewer."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Closes the viewer."""
+        self.close()

@@ -1,0 +1,57 @@
+"""The thread of a viewer."""
+
+import threading
+import time
+from collections.abc import Callable, Collection
+
+Request = Callable[[], None]
+
+
+class Worker:
+    """A thread that works off requests, at most once a tick, and goes on ticking while there is motion.
+
+    Args:
+        work: carries out the requests that have come since the last tick, and returns whether anything still moves.
+        dt: time between two ticks (s).
+    """
+
+    def __init__(self, work: Callable[[Collection[Request]], bool], dt: float) -> None:
+        """Waits for `start`."""
+        self._work = work
+        self._dt = dt
+        self._requests: dict[int, tuple[object, Request]] = {}
+        self._closed = False
+        self._changed = threading.Condition()
+        self._thread = threading.Thread(target=self._run, name="beetle-ik viewer", daemon=True)
+
+    def start(self) -> None:
+        """Starts the thread."""
+        self._thread.start()
+
+    def ask(self, source: object, request: Request) -> None:
+        """Has the thread carry out `request`, instead of one of the same source that still waits. Never blocks."""
+        with self._changed:
+            self._requests.pop(id(source), None)  # the order is that of the newest
+            self._requests[id(source)] = (source, request)
+            self._changed.notify()
+
+    def close(self) -> None:
+        """Ends the thread, and waits for it unless it is the caller. Requests that still wait are dropped."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+
+    def _run(self) -> None:
+        due, moving = time.monotonic(), False
+        while True:
+            with self._changed:
+                if not moving:
+                    self._changed.wait_for(lambda: self._closed or self._requests)
+                self._changed.wait_for(lambda: self._closed, timeout=max(0.0, due - time.monotonic()))
+                if self._closed:
+                    return
+                requests, self._requests = self._requests, {}
+            due = max(due, time.monotonic() - self._dt) + self._dt
+            moving = self._work([request for _, request in requests.values()])

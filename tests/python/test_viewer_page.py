@@ -1,0 +1,146 @@
+"""The viewer in a real browser: what a mouse does, what the page says, and what Python sees."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+sys.path.append(str(Path(__file__).parents[2] / "tools"))
+from viewer_pictures import Visitor, chromium, visits
+
+pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
+pytestmark = [
+    pytest.mark.skipif(chromium() is None, reason="no chromium or chrome on this machine"),
+    pytest.mark.timeout(180),
+]
+
+START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
+TABLE = bik.obstacles.Box((0.5, 0.0, 0.15), (0.5, 0.8, 0.1))
+MARGIN = 1e-3  # m, the library's own
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with visits() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[bik.Viewer]:
+    with bik.view(bik.Robot.named("panda"), START, obstacles=[TABLE], port=0) as viewer:
+        viewer.server.scene.configure_default_lights(cast_shadow=False)  # without a graphics card they take long
+        yield viewer
+
+
+@pytest.fixture(scope="module")
+def visitor(browser: Any, viewer: bik.Viewer) -> Visitor:
+    return Visitor(browser, viewer, width=900, height=420)
+
+
+@pytest.fixture(autouse=True)
+def _at_start(viewer: bik.Viewer) -> None:
+    viewer.follow = "track"
+    viewer.obstacles = [TABLE]
+    viewer.q = START
+
+
+def clearance(viewer: bik.Viewer) -> float:
+    return float(bik.obstacles.clearance(viewer.robot, viewer.q, viewer.obstacles))
+
+
+def test_the_page_tells_how_the_arm_stands(viewer: bik.Viewer, visitor: Visitor) -> None:
+    visitor.until(lambda: visitor.text() == "at rest")
+    assert float(visitor.text("clearance")) == pytest.approx(1e3 * clearance(viewer), abs=0.06)
+
+
+def test_the_arm_follows_a_dragged_handle(viewer: bik.Viewer, visitor: Visitor) -> None:
+    before = viewer.target
+    visitor.drag("/target", 2, 0.1)
+    visitor.until(lambda: visitor.text().startswith("reached: 0.0 mm"))
+    moved = viewer.target[:3, 3] - before[:3, 3]
+    assert moved @ before[:3, 2] == pytest.approx(0.1, abs=0.02)
+    np.testing.assert_allclose(viewer.robot.fk(viewer.q), viewer.target, atol=1e-4)
+    assert float(visitor.text("clearance")) == pytest.approx(1e3 * clearance(viewer), abs=0.06)
+
+
+def test_the_arm_stays_clear_of_what_the_handle_is_in(viewer: bik.Viewer, visitor: Visitor) -> None:
+    seen: list[float] = []
+    viewer.on_target(lambda _: seen.append(clearance(viewer)))
+    viewer.target = (0.5, 0.0, 0.4)
+    visitor.until(lambda: not viewer.moves)
+    visitor.drag("/target", 2, 0.3)  # down to the table, and into it
+    visitor.until(lambda: visitor.text().startswith("held by an obstacle"))
+    assert viewer.target[2, 3] < 0.2
+    assert len(seen) > 2
+    assert min([*seen, clearance(viewer)]) >= MARGIN - 1e-6
+    assert float(visitor.text("clearance")) >= 1e3 * MARGIN
+
+
+def test_numbers_and_choices_of_the_page_move_the_arm(viewer: bik.Viewer, visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.open_tab("Joints")
+    number = page.locator("input[type=text]:visible").first
+    number.fill("0.5")
+    number.press("Enter")
+    visitor.until(lambda: viewer.q[0] == 0.5)
+    np.testing.assert_allclose(viewer.target, viewer.robot.fk(viewer.q), atol=1e-12)
+    visitor.open_tab("Target")
+
+
+def test_obstacles_are_added_dragged_and_removed(viewer: bik.Viewer, visitor: Visitor) -> None:
+    visitor.open_tab("Obstacles")
+    visitor.press("Add sphere")
+    visitor.until(lambda: len(viewer.obstacles) == 2)
+    before = viewer.obstacles[1].center
+    visitor.drag("/obstacle", 2, 0.15)
+    visitor.until(lambda: viewer.obstacles[1].center[2] > before[2] + 0.1)
+    visitor.until(lambda: not viewer.moves)
+    assert clearance(viewer) >= MARGIN - 1e-6
+    visitor.press("Remove")
+    visitor.until(lambda: viewer.obstacles == bik.Scene([TABLE]))
+    visitor.open_tab("Target")
+
+
+def test_all_solutions_and_the_self_motion_are_shown(viewer: bik.Viewer, visitor: Visitor) -> None:
+    visitor.open_tab("Postures")
+    visitor.press("Show all solutions")
+    visitor.page.wait_for_selector("text=/[0-9]+ solutions/")
+    visitor.press("Find the self-motion")
+    visitor.page.wait_for_selector("text=/self-motion curve/")
+    target = viewer.target
+    slider = visitor.page.get_by_role("slider").last
+    slider.press("ArrowRight")
+    visitor.until(lambda: np.abs(viewer.q - START).max() > 1e-3)
+    np.testing.assert_allclose(viewer.robot.fk(viewer.q), target, atol=1e-6)
+    visitor.press("Hide them")
+    visitor.open_tab("Target")
+
+
+def test_a_motion_is_played_and_paused(viewer: bik.Viewer, visitor: Visitor) -> None:
+    motion = bik.Trajectory.from_samples([0.0, 60.0], [START, START + 0.1])
+    viewer.show(motion)
+    visitor.until(lambda: viewer.q[0] > START[0] + 1e-4)
+    visitor.press("Pause")
+    visitor.page.get_by_role("button", name="Play", exact=True).wait_for()
+    paused = viewer.q
+    visitor.page.wait_for_timeout(100)
+    np.testing.assert_array_equal(viewer.q, paused)
+    time = visitor.page.locator("input[type=text]:visible").first
+    time.fill("30")
+    time.press("Enter")
+    visitor.until(lambda: np.abs(viewer.q - START - 0.05).max() < 1e-9)
+
+
+def test_visitors_see_the_same_and_may_leave(browser: Any, viewer: bik.Viewer, visitor: Visitor) -> None:
+    second = Visitor(browser, viewer, width=320, height=240)
+    second.page.mouse.move(*second.pixel(viewer.target[:3, 3]))
+    second.page.mouse.down()
+    second.page.close()  # with the handle in the hand
+    visitor.until(lambda: len(viewer.server.get_clients()) == 1)
+    viewer.target = viewer.target[:3, 3] - [0.0, 0.0, 0.1]
+    visitor.until(lambda: visitor.text().startswith("reached: 0.0 mm"))

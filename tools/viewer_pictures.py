@@ -1,0 +1,195 @@
+"""Draws the pictures of `docs/viewer.md`: python tools/viewer_pictures.py docs/images.
+
+Needs the extras `view` and `zoo`, playwright and Chromium. The tests of the viewer use the same visitor of the page.
+"""
+
+import argparse
+import shutil
+import sysconfig
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+Array = NDArray[np.float64]
+
+_SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+_WIDTH, _HEIGHT = 1050, 660  # of the pictures, in pixels
+_REDRAWS = 10  # until the resolution is full again
+_GRIP = 0.5  # where an arrow of a handle is taken, as a fraction of the size of the handle
+_MOVES = 8  # of the mouse, in a drag
+_DELIVERY = 100  # ms: messages to a page are sent a few times a second or more often
+_PATIENCE = 20_000  # ms: a page takes seconds to appear where other programs run
+
+
+def chromium() -> str | None:
+    """Returns the browser of the system, if there is one."""
+    return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+class Visitor:
+    """Someone who looks at a viewer and uses it, with a mouse."""
+
+    def __init__(self, browser: Any, viewer: bik.Viewer, *, width: int = 800, height: int = 500) -> None:
+        """Opens the page, and waits until it shows the state of the arm."""
+        known = set(viewer.server.get_clients())
+        self.viewer = viewer
+        self.page = browser.new_page(viewport={"width": width, "height": height})
+        self.page.set_default_timeout(_PATIENCE)
+        self.page.goto(viewer.url)
+        self.page.wait_for_selector("[data-beetle-ik=status]")
+        self.until(lambda: set(viewer.server.get_clients()) - known)
+        (self._client,) = set(viewer.server.get_clients()) - known
+        self._dismiss_warning()
+
+    def _dismiss_warning(self) -> None:
+        """Closes the note that this browser draws without a graphics card."""
+        note = self.page.locator(".mantine-Notification-root", has_text="Software WebGL")
+        if note.count():
+            note.locator("button").click()
+            note.wait_for(state="detached")
+
+    def until(self, happened: Callable[[], object]) -> None:
+        """Waits until something has happened.
+
+        Raises:
+            TimeoutError: it has not.
+        """
+        for _ in range(_PATIENCE // 20):
+            if happened():
+                return
+            self.page.wait_for_timeout(20)
+        raise TimeoutError(f"still {self.text()!r}, {self.viewer.outcome}")
+
+    def picture(self, file: Path) -> None:
+        """Writes what the page shows, once it has drawn all of it, and leaves."""
+        for _ in range(_REDRAWS):
+            self.settle()
+        self.page.mouse.move(1, 1)
+        self.page.screenshot(path=file)
+        self.page.close()
+
+    def settle(self) -> None:
+        """Waits until the page has drawn what it was sent."""
+        self.page.wait_for_timeout(_DELIVERY)
+        self.page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def text(self, what: str = "status") -> str:
+        """Returns a text of the page: "status" or "clearance"."""
+        return str(self.page.inner_text(f"[data-beetle-ik={what}]"))
+
+    def open_tab(self, name: str) -> None:
+        """Opens one of the tabs."""
+        self.page.get_by_role("tab", name=name).click()
+
+    def press(self, name: str) -> None:
+        """Presses a button."""
+        self.page.get_by_role("button", name=name, exact=True).click()
+
+    def pixel(self, point: Array) -> Array:
+        """Returns where on the page a point (3,) of the scene is (2,)."""
+        import viser.transforms
+
+        camera = self.viewer.server.get_clients()[self._client].camera
+        seen = viser.transforms.SO3(camera.wxyz).as_matrix().T @ (point - camera.position)
+        focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
+        center = 0.5 * np.array([camera.image_width, camera.image_height])
+        return np.asarray(center + focal * seen[:2] / seen[2])
+
+    def drag(self, name: str, axis: int, distance: float) -> None:
+        """Drags an arrow of a handle, such as "/target", by a distance along its axis (m)."""
+        self.settle()  # until the handle is where the server put it
+        handle: Any = self.viewer.server.scene.get_handle_by_name(name)
+        place = bik.pose(handle.position, wxyz=handle.wxyz)
+        along = place[:3, axis]
+        grip = place[:3, 3] + _GRIP * handle.scale * along
+        self.page.mouse.move(*self.pixel(grip))
+        self.settle()  # until the arrow lights up
+        self.page.mouse.down()
+        for i in range(1, _MOVES + 1):
+            self.page.mouse.move(*self.pixel(grip + distance * i / _MOVES * along))
+            self.page.wait_for_timeout(20)
+        self.page.mouse.up()
+
+
+@contextmanager
+def visits() -> Iterator[Any]:
+    """Yields a headless browser, which draws without a graphics card."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium(), args=_SOFTWARE)
+        yield browser
+        browser.close()
+
+
+ROBOTS = Path(sysconfig.get_path("purelib"), "cmeel.prefix", "share", "example-robot-data", "robots")
+START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
+
+
+def panda() -> bik.Robot:
+    """Returns a Panda with meshes."""
+    return bik.Robot.from_urdf(ROBOTS / "panda_description/urdf/panda.urdf", tip="panda_hand_tcp", collision="hulls")
+
+
+def dragged(browser: Any, file: Path) -> None:
+    """Pictures an arm beside a box, after its handle was dragged."""
+    board = bik.obstacles.Box((0.5, 0.0, 0.1), (0.4, 1.0, 0.02))
+    box = bik.obstacles.Box((0.5, 0.25, 0.23), (0.2, 0.15, 0.24))
+    with bik.view(panda(), START, obstacles=[board, box], port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        visitor.drag("/target", 2, 0.2)
+        visitor.until(lambda: not viewer.moves)
+        visitor.picture(file)
+
+
+def solved(browser: Any, file: Path) -> None:
+    """Pictures all solutions of a pose."""
+    robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
+    with bik.view(robot, port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        viewer.follow = "solve"
+        viewer.target = bik.pose([0.3, 0.35, 0.45], rpy=[np.pi / 2, 0.0, 2.0])
+        visitor.until(lambda: not viewer.moves)
+        visitor.open_tab("Postures")
+        visitor.press("Show all solutions")
+        visitor.page.get_by_label("velocity ellipsoid").check()
+        visitor.picture(file)
+
+
+def played(browser: Any, file: Path) -> None:
+    """Pictures a plan around a post, in the middle of its motion."""
+    robot = panda()
+    post = bik.obstacles.Box((0.5, 0.0, 0.25), (0.06, 0.06, 0.5))
+    ends = [START + side * np.array([0.7, 0, 0, 0, 0, 0, 0]) for side in (-1, 1)]
+    limits = bik.Limits(acceleration=5.0)
+    plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], obstacles=[post], limits=limits)
+    with bik.view(robot, START, port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        viewer.show(plan)
+        visitor.press("Pause")
+        visitor.settle()
+        middle = visitor.page.locator("input[type=text]:visible").first
+        middle.fill(f"{0.5 * plan.trajectory.duration:.2f}")
+        middle.press("Enter")
+        visitor.until(lambda: not viewer.moves)
+        visitor.picture(file)
+
+
+def main() -> None:
+    """Writes the pictures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path)
+    out: Path = parser.parse_args().out
+    with visits() as browser:
+        for draw in (dragged, solved, played):
+            draw(browser, out / f"viewer_{draw.__name__}.png")
+
+
+if __name__ == "__main__":
+    main()
