@@ -232,9 +232,10 @@ class Viewer:
 
     def close(self) -> None:
         """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
-        if self._closed.is_set():
-            return
-        self._closed.set()
+        with self._lock:
+            if self._closed.is_set():
+                return
+            self._closed.set()
         atexit.unregister(self.close)
         self._worker.close()
         self.server.stop()
@@ -259,7 +260,7 @@ class Viewer:
             for request in requests:
                 self._guarded(request)
             self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
-            self._parts.refresh(moving=self._moves)
+            self._guarded(partial(self._parts.refresh, moving=self._moves))
             target = self._arm.target
         if target is not self._told:
             self._told = target
