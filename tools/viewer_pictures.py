@@ -18,7 +18,13 @@ import beetle_ik as bik
 
 Array = NDArray[np.float64]
 
-_SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+_SOFTWARE = [
+    "--no-sandbox",
+    "--disable-dev-shm-usage",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
 _WIDTH, _HEIGHT = 1050, 660  # of the pictures, in pixels
 _REDRAWS = 10  # until the resolution is full again
 _GRIP = 0.5  # where an arrow of a handle is taken, as a fraction of the size of the handle

@@ -348,9 +348,11 @@ def test_results_are_shown(viewer: bik.Viewer) -> None:
     assert viewer.obstacles == bik.Scene([TABLE])
 
 
-def test_results_of_another_robot_are_refused(viewer: bik.Viewer) -> None:
+def test_results_without_anything_to_show_change_nothing(viewer: bik.Viewer) -> None:
     with pytest.raises(bik.InvalidInputError, match="result has 6 joints, and robot 'panda' has 7"):
         viewer.show(bik.solve(bik.Robot.named("ur5"), np.eye(4)))
+    viewer.show(bik.solve_all(PANDA, [3.0, 0.0, 0.0]))  # none: the page says why
+    np.testing.assert_array_equal(viewer.q, START)
     with pytest.raises(bik.InvalidInputError, match=r"result must be a Trajectory, Plan, TrackResult, .*, got 1"):
         viewer.show(1)  # type: ignore[arg-type]
 

@@ -1,7 +1,9 @@
 """The viewer in a real browser: what a mouse does, what the page says, and what Python sees."""
 
 import sys
+import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +28,13 @@ MARGIN = 1e-3  # m, the library's own
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with visits() as browser:
+    from playwright.sync_api import Error
+
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(visits())
+        except Error as error:
+            pytest.skip(f"the browser does not start: {error}")
         yield browser
 
 
@@ -136,11 +144,14 @@ def test_a_motion_is_played_and_paused(viewer: bik.Viewer, visitor: Visitor) -> 
     visitor.until(lambda: np.abs(viewer.q - START - 0.05).max() < 1e-9)
 
 
-def test_visitors_see_the_same_and_may_leave(browser: Any, viewer: bik.Viewer, visitor: Visitor) -> None:
-    second = Visitor(browser, viewer, width=320, height=240)
-    second.page.mouse.move(*second.pixel(viewer.target[:3, 3]))
-    second.page.mouse.down()
-    second.page.close()  # with the handle in the hand
-    visitor.until(lambda: len(viewer.server.get_clients()) == 1)
+def test_a_visitor_may_leave_with_the_handle_in_the_hand(viewer: bik.Viewer, visitor: Visitor) -> None:
+    visitor.page.mouse.move(*visitor.pixel(viewer.target[:3, 3]))
+    visitor.page.mouse.down()
+    visitor.page.close()  # the last test of this page: to open another takes seconds
     viewer.target = viewer.target[:3, 3] - [0.0, 0.0, 0.1]
-    visitor.until(lambda: visitor.text().startswith("reached: 0.0 mm"))
+    for _ in range(1000):
+        if not viewer.moves and not viewer.server.get_clients():
+            break
+        time.sleep(0.01)
+    assert viewer.outcome is not None
+    assert viewer.outcome.success

@@ -51,7 +51,7 @@ class Arm:
         self._keeps_clear = True
         self._tracker: Tracker | None = None
         self._escapes = False
-        self._anchor, self._ticks = q, 0
+        self._anchor, self._ticks, self._tries_again = q, 0, True
 
     @property
     def target(self) -> Array:
@@ -139,11 +139,17 @@ class Arm:
         if self._follow == "solve":
             self.solve()
             return False
-        self._track()
+        self.outcome = self._track()
+        self.q = self.outcome.q
         if np.abs(self.q - self._anchor).max() > _STILL:
             self._anchor, self._ticks = self.q, 0
         self._ticks += 1
-        self.moves = self._ticks < _PAUSE
+        if self._ticks == _PAUSE:
+            if self._tries_again and not self.outcome.success:
+                # The tracker takes a shaky hand for noise, and averages. This one has seen the hand at rest only.
+                self._tracker, self._tries_again, self._ticks = None, False, 0
+            else:
+                self.moves = False
         return self.moves
 
     def solve(self) -> None:
@@ -159,8 +165,8 @@ class Arm:
         """What solvers take as `obstacles`."""
         return self._obstacles if self._keeps_clear else None
 
-    def _track(self) -> None:
-        """Takes a step of the tracker.
+    def _track(self) -> Step:
+        """Returns a step of the tracker.
 
         Under acceleration limits an arm follows smoothly and comes to rest beside an obstacle; without them it moves
         out of one that was moved into it.
@@ -170,11 +176,11 @@ class Arm:
             self._tracker = Tracker(
                 self.robot, self.inside, dt=DT, task=self.task, obstacles=self.avoided, limits=limits, **_REACHED
             )
-        self.outcome = self._tracker.step(self.goal)
-        self.q = self.outcome.q
-        touches = self.outcome.status is Status.IN_COLLISION
+        step = self._tracker.step(self.goal)
+        touches = step.status is Status.IN_COLLISION
         if touches != self._escapes:
             self._escapes, self._tracker = touches, None
+        return step
 
     def _restart(self) -> None:
         self._tracker = None
@@ -182,4 +188,4 @@ class Arm:
 
     def _set_off(self) -> None:
         self.moves = self._follow != "off"
-        self._anchor, self._ticks = self.q, 0
+        self._anchor, self._ticks, self._tries_again = self.q, 0, True

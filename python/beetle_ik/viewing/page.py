@@ -26,9 +26,12 @@ class Page:
     """Length of the arm (m)."""
 
     def on_input(self, handle: Any, change: Callable[[], None]) -> None:
-        """Has `change` carried out when someone uses an input or a button of the page, but not when Python sets it."""
+        """Has `change` carried out when someone uses an input or a button of the page, but not when Python sets it.
 
-        async def asked(event: Any) -> None:
+        viser calls back in any of several threads, in any order: `change` must read the input when it is carried out.
+        """
+
+        def asked(event: Any) -> None:
             if event.client_id is not None:
                 self.ask(handle, change)
 

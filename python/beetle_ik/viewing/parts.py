@@ -103,7 +103,7 @@ class Parts:
         postures = postures_of(result)
         if isinstance(result, SelfMotion):
             self._postures.show_curve(postures)
-        elif len(postures) > 1:
+        elif len(postures) != 1:
             self._postures.show_ghosts(postures, result.message)
         if len(postures):
             self._page.arm.put(self._page.arm.robot.clip(postures[0]))

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Self
 
-from .._arguments import require
+from .._arguments import require, require_one_tip
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from .._needs import library
 from .._scene import Scene
@@ -106,10 +106,7 @@ class Viewer:
     ) -> None:
         """Serves the page; `view` describes the arguments."""
         require("robot", robot, Robot)
-        if robot.fk(start.middle(robot)).ndim > 2:
-            raise InvalidInputError(
-                f"robot '{robot.name}' has several tips; the viewer steers one: load it with one tip"
-            )
+        require_one_tip("view", robot)
         meshes, missing = start.meshes(robot)
         self.robot, notes = start.shown(robot, has_meshes=bool(meshes))
         scene = list(Scene(() if obstacles is None else obstacles))
@@ -232,9 +229,10 @@ class Viewer:
 
     def close(self) -> None:
         """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
-        if self._closed.is_set():
-            return
-        self._closed.set()
+        with self._lock:
+            if self._closed.is_set():
+                return
+            self._closed.set()
         atexit.unregister(self.close)
         self._worker.close()
         self.server.stop()
@@ -259,7 +257,7 @@ class Viewer:
             for request in requests:
                 self._guarded(request)
             self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
-            self._parts.refresh(moving=self._moves)
+            self._guarded(partial(self._parts.refresh, moving=self._moves))
             target = self._arm.target
         if target is not self._told:
             self._told = target
