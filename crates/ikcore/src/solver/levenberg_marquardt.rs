@@ -56,9 +56,8 @@ impl LevenbergMarquardt {
 pub struct State {
     x: Point,
     descent: Descent,
-    /// Linearizations at the point and at the trial; `here` is the index of the point's. They are large: a state that holds them is
-    /// copied at every start.
-    linearizations: Box<[Linearization; 2]>,
+    /// Linearizations at the point and at the trial; `here` is the index of the point's.
+    linearizations: [Linearization; 2],
     here: usize,
 }
 
@@ -135,7 +134,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
     type State = State;
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let linearizations = Box::new([Linearization::default(), Linearization::default()]);
+        let linearizations = [Linearization::default(), Linearization::default()];
         let x = Point::from_slice(x0);
         let mut state = State { x, descent: self.descent_from(f64::INFINITY), linearizations, here: 0 };
         state.descent.value = evaluator.linearize(&mut state.x, &mut state.linearizations[0])?;
