@@ -4,7 +4,7 @@ use super::certified_timing::{TimedPath, Timing};
 use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
 use super::pair_search::PairSearch;
-use super::refinement::{BlendedPath, Measure};
+use super::refinement::{BlendedPath, PathMeasure};
 use super::rrt_connect::{Connection, Route, TreeSearch};
 use super::straight_line_plan::straight;
 use crate::error::Result;
@@ -208,9 +208,9 @@ impl<'a> PathSearch<'_, 'a> {
     }
 
     /// What makes one path better than another.
-    pub(super) fn measure(&self) -> Measure<'a> {
+    pub(super) fn measure(&self) -> PathMeasure<'a> {
         let PairSearch { robot, limits, .. } = self.search;
-        Measure { robot, limits, objective: self.objective }
+        PathMeasure { robot, limits, objective: self.objective }
     }
 
     /// A timed path and its cost.

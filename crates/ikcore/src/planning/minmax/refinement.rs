@@ -34,13 +34,13 @@ const OF_TIP: f64 = 0.02; // m/s, in a tip travel
 
 /// What makes one path better than another.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Measure<'a> {
+pub(super) struct PathMeasure<'a> {
     pub robot: &'a Robot,
     pub limits: &'a MotionLimits,
     pub objective: Cost,
 }
 
-impl Measure<'_> {
+impl PathMeasure<'_> {
     /// The cost of a motion along a path with these blends, but for what they cut off; infinite if there is none.
     fn of(&self, path: &JointPolyline, shares: &[f64]) -> f64 {
         let by_lines =
@@ -82,7 +82,7 @@ pub(super) struct BlendedPath {
 
 impl BlendedPath {
     /// A clear path with blends as wide as seems clear.
-    pub(super) fn new(path: JointPolyline, measure: &Measure, check: &mut LineCheck) -> Self {
+    pub(super) fn new(path: JointPolyline, measure: &PathMeasure, check: &mut LineCheck) -> Self {
         let mut shares = vec![1.0; path.0.len()];
         for (i, share) in shares.iter_mut().enumerate().skip(1).take(path.0.len() - 2) {
             *share = clear_share(&path, i, measure.limits, check);
@@ -140,7 +140,7 @@ impl Variation {
     }
 
     /// The path with blends as wide as seems clear, if it is clear and better than `best`.
-    fn improvement_of(self, best: &BlendedPath, measure: &Measure, check: &mut LineCheck) -> Option<BlendedPath> {
+    fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut LineCheck) -> Option<BlendedPath> {
         let mut shares = self.shares(&best.shares);
         // Narrower blends only cost more.
         if measure.of(&self.path, &shares) >= best.cost {
@@ -163,7 +163,7 @@ impl TreeSearch<'_> {
     pub(super) fn refine(
         &mut self,
         best: &mut BlendedPath,
-        (measure, tries): (&Measure, usize),
+        (measure, tries): (&PathMeasure, usize),
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) {
@@ -200,4 +200,84 @@ fn displaced(mut q: Vec<f64>, step: f64, limits: &MotionLimits, rng: &mut LazyRn
         *q = (*q + distance * direction[j]).clamp(limits.lower[j], limits.upper[j]);
     }
     q
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Field, Limits, Profile};
+    use crate::obstacle::Scene;
+    use crate::planning::deadline::Deadline;
+    use crate::rng;
+    use crate::shape::Shape;
+    use crate::solver::Unattended;
+
+    const START: [f64; 2] = [-0.8, 0.0];
+    const END: [f64; 2] = [0.8, 0.0];
+
+    fn limits(robot: &Robot) -> MotionLimits {
+        let limits = Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(1.0)]).unwrap();
+        let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
+        MotionLimits::new(robot, Some(&limits), "this test").unwrap()
+    }
+
+    /// Refines a path that bends more than it has to, past a sphere; returns both.
+    fn refined(objective: Cost, tries: usize) -> [BlendedPath; 2] {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
+        let obstacles = [Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap()];
+        let limits = limits(&robot);
+        let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
+        let mut search = TreeSearch::new(&scene, &limits, 0.01, 1_000_000, Deadline::start(None));
+        let corners = [[-0.8, -2.2], [2.2, -2.2], [2.2, -0.5]];
+        let points = [START, corners[0], corners[1], corners[2], END];
+        let path = JointPolyline(points.iter().map(|q| q.to_vec()).collect());
+        let measure = PathMeasure { robot: &robot, limits: &limits, objective };
+        let first = BlendedPath::new(path, &measure, &mut search.check);
+        let mut best = first.clone();
+        search.refine(&mut best, (&measure, tries), &mut rng::stream(1, 0), &mut Unattended);
+        for line in best.path.0.windows(2) {
+            assert!(search.check.is_clear(&line[0], &line[1]), "{line:?}");
+        }
+        [first, best]
+    }
+
+    #[test]
+    fn refinement_makes_every_cost_smaller_and_keeps_ends_and_obstacles() {
+        for objective in [Cost::Time, Cost::JointTravel, Cost::TipTravel] {
+            let [first, best] = refined(objective, 2000);
+            assert!(best.cost < 0.95 * first.cost, "{objective:?}: {} of {}", best.cost, first.cost);
+            let points = &best.path.0;
+            assert_eq!((&points[0][..], &points[points.len() - 1][..]), (&START[..], &END[..]));
+            assert_eq!(best.shares.len(), points.len());
+        }
+    }
+
+    #[test]
+    fn refined_shares_are_those_that_seem_clear() {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let limits = limits(&robot);
+        let [_, best] = refined(Cost::JointTravel, 500);
+        let mut rng = rng::stream(3, 0);
+        for _ in 0..200 {
+            let variation = best.varied(&limits, &mut rng);
+            let shares = variation.shares(&best.shares);
+            assert_eq!(shares.len(), variation.path.0.len());
+            for (i, share) in shares.iter().enumerate().filter(|(i, _)| !variation.touched().contains(i)) {
+                let same = best.path.0.iter().position(|q| *q == variation.path.0[i]);
+                assert_eq!(same.map(|at| best.shares[at]), Some(*share), "point {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_motion_costs_less_than_the_least() {
+        for objective in [Cost::Time, Cost::JointTravel, Cost::TipTravel] {
+            let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+            let limits = limits(&robot);
+            let measure = PathMeasure { robot: &robot, limits: &limits, objective };
+            let path = JointPolyline(vec![START.to_vec(), vec![0.3, 1.0], END.to_vec()]);
+            let least: f64 = path.0.windows(2).map(|line| measure.least(&line[0], &line[1])).sum();
+            assert!(least <= measure.of(&path, &[1.0; 3]), "{objective:?}");
+        }
+    }
 }
