@@ -50,8 +50,8 @@ class Scene:
         """The margin (m)."""
         return DEFAULT_MARGIN if self.margin is None else self.margin
 
-    def plan(self) -> bik.Plan:
-        """Plans from start to end."""
+    def plan(self, stop: bik.Stop | None = None) -> bik.Plan:
+        """Plans from start to end; with a budget the plan is improved until it is spent."""
         end = {"end": self.robot.fk(self.end)} if self.to_pose else {"end_q": self.end}
         return bik.plan_point_to_point(
             self.robot,
@@ -60,6 +60,7 @@ class Scene:
             limits=bik.Limits(acceleration=ACCELERATION),
             obstacles=[thing for thing, *_ in self.things],
             margin=self.margin,
+            stop=stop,
         )
 
 
@@ -230,12 +231,12 @@ class Outcome:
     wrong: list[str] = field(default_factory=list)  # called clear, and not
 
 
-def run(numbers: Iterable[int]) -> Outcome:
+def run(numbers: Iterable[int], stop: bik.Stop | None = None) -> Outcome:
     """Plans in the scenes of these numbers and judges every plan that is called solved."""
     outcome = Outcome()
     for number in numbers:
         each = scene(number)
-        plan = each.plan()
+        plan = each.plan(stop)
         outcome.scenes += 1
         if plan.success:
             outcome.solved += 1
