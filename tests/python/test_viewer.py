@@ -265,14 +265,23 @@ def test_an_error_of_a_callback_is_logged(viewer: bik.Viewer, caplog: pytest.Log
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to a single process")
 def test_ctrl_c_ends_a_viewer_that_blocks() -> None:
-    program = "import beetle_ik as bik; bik.view(bik.Robot.named('panda'), port=0, block=True)"
+    # Jobs in the background of a shell begin with SIGINT ignored, and so do their children.
+    program = """
+import signal
+import beetle_ik as bik
+signal.signal(signal.SIGINT, signal.default_int_handler)
+bik.view(bik.Robot.named("panda"), port=0, block=True)
+"""
     running = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert running.stdout is not None
     while b"http://127.0.0.1" not in running.stdout.readline():
         assert running.poll() is None
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    _, errors = running.communicate(timeout=20)
+    try:
+        _, errors = running.communicate(timeout=20)
+    finally:
+        running.kill()
     assert errors.decode().strip().endswith("KeyboardInterrupt")
 
 
