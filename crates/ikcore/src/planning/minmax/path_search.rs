@@ -29,7 +29,7 @@ const QUICK: Effort = Effort { paths: 2, more: 2000 };
 /// Where the ends leave a choice: to find them takes longer anyway.
 const THOROUGH: Effort = Effort { paths: 4, more: 20_000 };
 /// Number of shortcuts tried on each path, and of other changes on the first paths.
-pub(super) const SHORTCUTS: usize = 20;
+const SHORTCUTS: usize = 20;
 const CHANGES: usize = 60;
 /// How often all paths are searched again, with more distance, because none could be certified.
 const ROUNDS: u32 = 4;
