@@ -143,7 +143,7 @@ impl GoalDescent<'_, '_> {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
         let mut out = preferred.clone();
-        at.write_step_near(&preferred, &here.q, self.box_of(), &mut out);
+        at.write_step_near(&preferred, at.least_damping(here.q.len()), &here.q, self.box_of(), &mut out);
         out
     }
 

@@ -34,4 +34,5 @@ pub use solve::{solve, solve_tips};
 pub use solve_all::{AllOptions, SolutionSet, nearest_miss, solve_all, solve_all_tips};
 pub use solve_options::{Prefer, SolveOptions};
 pub use tip_tasks::tip_errors;
+pub(crate) use tip_tasks::{checked_tasks, reduce};
 pub(crate) use whole_turns::bring_near;

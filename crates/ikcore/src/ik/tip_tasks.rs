@@ -8,7 +8,6 @@ use crate::task::{Subject, Target, TargetRow, TipAims, TipCriterion, TipError, T
 
 /// The tasks of several tips, validated; none for a robot with one.
 pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec<TipCriterion>> {
-    let tips: Vec<&str> = robot.tips().collect();
     if options.tips.is_empty() {
         robot.require_one_tip("a plain target")?;
         return Ok(vec![]);
@@ -17,7 +16,17 @@ pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec
         let problem = "task= of several tips is a dict, such as {tip: tasks.Position()}".into();
         return Err(Error::Contradiction { problem });
     }
-    for (i, task) in options.tips.iter().enumerate() {
+    checked_tasks(robot, &options.tips)
+}
+
+/// These tasks, validated.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a tip that the robot has not, [`Error::Contradiction`] for a tip or pair that is named twice; those of
+/// wrong tasks and tolerances.
+pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipCriterion>> {
+    let tips: Vec<&str> = robot.tips().collect();
+    for (i, task) in tasks.iter().enumerate() {
         let numbers = match task.subject {
             Subject::Tip(tip) => [tip; 2],
             Subject::Pair { from, of } => [from, of],
@@ -31,7 +40,7 @@ pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec
             return Err(Error::Contradiction { problem });
         }
         let same = |other: &TipTask| other.subject == task.subject || other.subject == turned(task.subject);
-        if options.tips[..i].iter().any(same) {
+        if tasks[..i].iter().any(same) {
             let [from, of] = numbers.map(|number| tips[number]);
             let problem = match task.subject {
                 Subject::Tip(_) => format!("tip '{of}' has two targets"),
@@ -40,7 +49,7 @@ pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec
             return Err(Error::Contradiction { problem });
         }
     }
-    options.tips.iter().map(TipTask::validated).collect()
+    tasks.iter().map(TipTask::validated).collect()
 }
 
 /// The same pair, seen from the other tip.
@@ -55,7 +64,7 @@ fn turned(subject: Subject) -> Subject {
 ///
 /// # Errors
 /// [`Error::WrongLength`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets that contradict each other.
-pub(super) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
+pub(crate) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
     if tasks.len() != targets.len() {
         let expected = format!("{} targets, one for each task", tasks.len().max(1));
         return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });

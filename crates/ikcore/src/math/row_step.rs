@@ -1,12 +1,12 @@
 //! The bounded step beside rows: damped least squares in a box, with linear inequalities.
 //!
-//! Minimises |residual + J (x - start)|^2 + lambda |x - start|^2 over `lower` <= x <= `upper` and rows g'x >= least. The dual is a
-//! least-squares problem in the multipliers, none of them negative, which the active-set method of Lawson and Hanson ("Solving
-//! Least Squares Problems", 1974, chapter 23) solves in finitely many exchanges. Rows are a little soft: if no point of the box keeps
-//! them all, each falls short by as little as the others allow.
+//! Minimises |residual + J (x - start)|^2 + lambda |x - start|^2 over `lower` <= x <= `upper`, rows g'x >= least and held rows g'x = least.
+//! The dual is a least-squares problem in the multipliers, none of them negative but those of held rows, which the active-set method of
+//! Lawson and Hanson ("Solving Least Squares Problems", 1974, chapter 23) solves in finitely many exchanges. Rows are a little soft: if
+//! no point of the box keeps them all, each falls short by as little as the others allow.
 
 use super::MAX_DOF;
-use super::box_step::ROWS;
+use super::block_step::TaskRows;
 use super::vector::dot;
 
 /// Violations below this (rad, m) count as rounding.
@@ -18,7 +18,7 @@ const SOFTNESS: f64 = 1e-9;
 /// Exchanges of the active set per constraint; a few are enough.
 const EXCHANGES: usize = 3;
 
-/// A linear inequality: `gradient`'x >= `least`.
+/// A linear inequality, `gradient`'x >= `least`, or, held, the equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// One entry per joint; further ones do not count.
@@ -30,10 +30,8 @@ pub struct Row {
 /// A step of damped least squares in a box, beside rows.
 #[derive(Debug, Clone, Copy)]
 pub struct RowStep<'a> {
-    /// Columns of J, at least one per entry of `start`.
-    pub columns: &'a [[f64; ROWS]],
-    /// Residual to be removed by the step.
-    pub residual: &'a [f64; ROWS],
+    /// Jacobians and residuals to be removed by the step; J has their rows one after another.
+    pub tasks: &'a [TaskRows<'a>],
     /// The damping, positive.
     pub lambda: f64,
     /// The current point.
@@ -44,6 +42,8 @@ pub struct RowStep<'a> {
     pub upper: &'a [f64],
     /// The inequalities.
     pub rows: &'a [Row],
+    /// The equations.
+    pub held: &'a [Row],
 }
 
 /// A constraint in use.
@@ -52,6 +52,7 @@ enum Constraint {
     Lower(usize),
     Upper(usize),
     Row(usize),
+    Held(usize),
 }
 
 /// A constraint of the active set.
@@ -82,15 +83,17 @@ impl RowStep<'_> {
             Constraint::Lower(j) => x[j] - self.lower[j],
             Constraint::Upper(j) => self.upper[j] - x[j],
             Constraint::Row(i) => dot(&self.rows[i].gradient, x) - self.rows[i].least,
+            Constraint::Held(i) => dot(&self.held[i].gradient, x) - self.held[i].least,
         }
     }
 
     /// a'x of a constraint a'x >= b.
-    fn product(constraint: Constraint, rows: &[Row], x: &[f64]) -> f64 {
+    fn product(&self, constraint: Constraint, x: &[f64]) -> f64 {
         match constraint {
             Constraint::Lower(j) => x[j],
             Constraint::Upper(j) => -x[j],
-            Constraint::Row(i) => dot(&rows[i].gradient, x),
+            Constraint::Row(i) => dot(&self.rows[i].gradient, x),
+            Constraint::Held(i) => dot(&self.held[i].gradient, x),
         }
     }
 
@@ -128,26 +131,38 @@ impl RowSolver {
         self.factorize(step);
         self.free.clear();
         self.free.resize(n, 0.0);
-        for (free, column) in self.free.iter_mut().zip(step.columns) {
-            *free = -dot(column, step.residual);
+        for task in step.tasks {
+            for (free, column) in self.free.iter_mut().zip(task.columns) {
+                *free -= dot(column, task.residual);
+            }
         }
         solve_factored(&self.factor, &mut self.free);
         self.free.iter_mut().zip(step.start).for_each(|(free, start)| *free += start);
         out.copy_from_slice(&self.free);
         self.active.clear();
+        if !step.held.is_empty() {
+            (0..step.held.len()).for_each(|i| self.add(step, Constraint::Held(i)));
+            self.settle(step);
+            self.write_point(out);
+        }
         for _ in 0..EXCHANGES * (2 * n + step.rows.len()) {
             let Some(worst) = step.most_violated(out, &self.active) else { break };
             self.add(step, worst);
             self.settle(step);
-            out.copy_from_slice(&self.free);
-            for Active { multiplier, along, .. } in &self.active {
-                out.iter_mut().zip(along).for_each(|(out, along)| *out += multiplier * along);
-            }
+            self.write_point(out);
         }
         for (j, out) in out.iter_mut().enumerate() {
             *out = out.max(step.lower[j]).min(step.upper[j]);
         }
         self.active.iter().any(|active| matches!(active.constraint, Constraint::Row(_)))
+    }
+
+    /// Writes the point of the multipliers.
+    fn write_point(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.free);
+        for Active { multiplier, along, .. } in &self.active {
+            out.iter_mut().zip(along).for_each(|(out, along)| *out += multiplier * along);
+        }
     }
 
     /// H = L L'.
@@ -158,7 +173,8 @@ impl RowSolver {
         for i in 0..n {
             for j in 0..=i {
                 let damping = if i == j { step.lambda } else { 0.0 };
-                let mut entry = dot(&step.columns[i], &step.columns[j]) + damping;
+                let products = step.tasks.iter().map(|task| dot(&task.columns[i], &task.columns[j]));
+                let mut entry = products.sum::<f64>() + damping;
                 for k in 0..j {
                     entry -= self.factor[i * n + k] * self.factor[j * n + k];
                 }
@@ -175,12 +191,13 @@ impl RowSolver {
             Constraint::Lower(j) => along[j] = 1.0,
             Constraint::Upper(j) => along[j] = -1.0,
             Constraint::Row(i) => along[..n].copy_from_slice(&step.rows[i].gradient[..n]),
+            Constraint::Held(i) => along[..n].copy_from_slice(&step.held[i].gradient[..n]),
         }
         solve_factored(&self.factor, &mut along[..n]);
         self.active.push(Active { constraint, multiplier: 0.0, along });
     }
 
-    /// Moves the multipliers to where all constraints in use hold exactly; those that would become negative leave.
+    /// Moves the multipliers to where all constraints in use hold exactly; those that would become negative leave, but held ones.
     fn settle(&mut self, step: &RowStep<'_>) {
         while !self.active.is_empty() {
             self.solve_for_multipliers(step);
@@ -188,7 +205,8 @@ impl RowSolver {
             let mut first = (1.0, None);
             for (i, (active, trial)) in self.active.iter().zip(&self.trial).enumerate() {
                 let share = active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE);
-                if *trial <= 0.0 && share < first.0 {
+                let leaves = !matches!(active.constraint, Constraint::Held(_));
+                if leaves && *trial <= 0.0 && share < first.0 {
                     first = (share, Some(i));
                 }
             }
@@ -213,9 +231,9 @@ impl RowSolver {
             let constraint = self.active[i].constraint;
             self.trial.push(-step.slack(constraint, &self.free));
             for j in 0..=i {
-                let mut entry = RowStep::product(constraint, step.rows, &self.active[j].along[..n]);
+                let mut entry = step.product(constraint, &self.active[j].along[..n]);
                 if i == j {
-                    let softness = if matches!(constraint, Constraint::Row(_)) { SOFTNESS } else { 1e-14 };
+                    let softness = if matches!(constraint, Constraint::Row(_) | Constraint::Held(_)) { SOFTNESS } else { 1e-14 };
                     entry *= 1.0 + softness;
                 }
                 for k in 0..j {
@@ -255,14 +273,20 @@ mod tests {
         lower: Vec<f64>,
         upper: Vec<f64>,
         rows: Vec<Row>,
+        held: Vec<Row>,
     }
 
     const LAMBDA: f64 = 0.05;
 
     impl Case {
-        fn step<'a>(&'a self, start: &'a [f64]) -> RowStep<'a> {
-            let Self { columns, residual, lower, upper, rows } = self;
-            RowStep { columns, residual, lambda: LAMBDA, start, lower, upper, rows }
+        fn tasks(&self) -> [TaskRows<'_>; 1] {
+            [TaskRows { columns: &self.columns, residual: &self.residual }]
+        }
+
+        fn solve(&self, start: &[f64], x: &mut [f64]) -> bool {
+            let Self { lower, upper, rows, held, .. } = self;
+            let tasks = &self.tasks();
+            RowSolver::default().write(&RowStep { tasks, lambda: LAMBDA, start, lower, upper, rows, held }, x)
         }
 
         fn cost(&self, x: &[f64]) -> f64 {
@@ -281,16 +305,18 @@ mod tests {
             all
         }
 
-        /// The least cost over all points at which some set of constraints is met exactly: tries each set of up to n.
+        /// The least cost over all points at which the held rows and some set of constraints are met exactly: tries each set of up to n.
         fn by_enumeration(&self) -> Option<f64> {
             let n = self.columns.len();
-            let all = self.constraints();
+            let (all, held) = (self.constraints(), self.held.iter().map(|row| (row.gradient[..n].to_vec(), row.least)));
+            let held: Vec<(Vec<f64>, f64)> = held.collect();
             let j = DMatrix::from_fn(6, n, |k, j| self.columns[j][k]);
             let hessian = j.transpose() * &j + DMatrix::identity(n, n) * LAMBDA;
             let slope = j.transpose() * DVector::from_row_slice(&self.residual);
             let mut best: Option<f64> = None;
             for set in 0_u32..1 << all.len() {
-                let chosen: Vec<_> = (0..all.len()).filter(|i| set & (1 << i) != 0).map(|i| &all[i]).collect();
+                let chosen = (0..all.len()).filter(|i| set & (1 << i) != 0).map(|i| &all[i]);
+                let chosen: Vec<_> = held.iter().chain(chosen).collect();
                 let m = chosen.len();
                 if m > n {
                     continue;
@@ -317,49 +343,51 @@ mod tests {
         }
     }
 
-    fn case(n: usize, rows: usize) -> impl Strategy<Value = Case> {
-        let row = (prop::collection::vec(-1.0..1.0, n), -0.6_f64..0.3);
+    fn rows(n: usize, count: usize) -> impl Strategy<Value = Vec<Row>> {
+        let row = (prop::collection::vec(-1.0..1.0, n), -0.6_f64..0.3).prop_map(move |(entries, least)| {
+            let mut gradient = [0.0; MAX_DOF];
+            gradient[..n].copy_from_slice(&entries);
+            Row { gradient, least }
+        });
+        prop::collection::vec(row, count)
+    }
+
+    fn case(n: usize, [count, held]: [usize; 2]) -> impl Strategy<Value = Case> {
         (
             prop::collection::vec(prop::array::uniform6(-1.0..1.0), n),
             prop::array::uniform6(-1.0..1.0),
             prop::collection::vec(0.05_f64..1.0, n),
-            prop::collection::vec(row, rows),
+            rows(n, count),
+            rows(n, held),
         )
-            .prop_map(move |(columns, residual, width, rows)| Case {
-                columns,
-                residual,
-                lower: width.iter().map(|width| -width).collect(),
-                upper: width,
-                rows: rows
-                    .into_iter()
-                    .map(|(entries, least)| {
-                        let mut gradient = [0.0; MAX_DOF];
-                        gradient[..n].copy_from_slice(&entries);
-                        Row { gradient, least }
-                    })
-                    .collect(),
+            .prop_map(|(columns, residual, width, rows, held)| {
+                let lower = width.iter().map(|width| -width).collect();
+                Case { columns, residual, lower, upper: width, rows, held }
             })
     }
 
     proptest! {
         #[test]
-        fn it_is_the_best_of_all_active_sets(case in case(3, 4)) {
-            let start = [0.0; 3];
+        fn it_is_the_best_of_all_active_sets(
+            case in prop_oneof![case(3, [4, 0]), case(3, [4, 1]), case(3, [1, 2])],
+        ) {
             let mut x = [0.0; 3];
-            RowSolver::default().write(&case.step(&start), &mut x);
+            case.solve(&[0.0; 3], &mut x);
             if let Some(least) = case.by_enumeration() {
                 for (a, b) in case.constraints() {
                     prop_assert!(dot(&a, &x) >= b - 1e-5, "{x:?} {a:?} {b}");
+                }
+                for Row { gradient, least } in &case.held {
+                    prop_assert!((dot(gradient, &x) - least).abs() < 1e-5, "{x:?} {gradient:?} {least}");
                 }
                 prop_assert!((case.cost(&x) - least).abs() < 1e-5 * (1.0 + least), "{} {least}", case.cost(&x));
             }
         }
 
         #[test]
-        fn it_stays_in_the_box_whatever_the_rows(case in case(7, 12)) {
-            let start = [0.0; 7];
+        fn it_stays_in_the_box_whatever_the_rows(case in prop_oneof![case(7, [12, 0]), case(7, [6, 9])]) {
             let mut x = [f64::NAN; 7];
-            RowSolver::default().write(&case.step(&start), &mut x);
+            case.solve(&[0.0; 7], &mut x);
             prop_assert!((0..7).all(|j| case.lower[j] <= x[j] && x[j] <= case.upper[j]), "{x:?}");
         }
     }
@@ -377,9 +405,10 @@ mod tests {
             lower: vec![-1.0; 2],
             upper: vec![1.0; 2],
             rows: vec![row(1.0), row(-1.0)],
+            held: vec![],
         };
         let mut x = [0.3, 0.3];
-        assert!(RowSolver::default().write(&case.step(&[0.3, 0.2]), &mut x));
+        assert!(case.solve(&[0.3, 0.2], &mut x));
         assert!(x[0].abs() < 1e-4 && (x[1] - 0.2).abs() < 1e-12, "{x:?}");
     }
 
@@ -391,9 +420,10 @@ mod tests {
             lower: vec![-9.0],
             upper: vec![9.0],
             rows: vec![],
+            held: vec![],
         };
         let mut x = [0.0];
-        assert!(!RowSolver::default().write(&case.step(&[0.0]), &mut x));
+        assert!(!case.solve(&[0.0], &mut x));
         assert!((x[0] - 1.0 / (1.0 + LAMBDA)).abs() < 1e-15);
     }
 }

@@ -87,6 +87,11 @@ impl ReachableSet {
         if self.varying {
             self.update_braking(time);
         }
+        self.narrow_now(q, state, time, limits, tick)
+    }
+
+    /// [`narrow`](Self::narrow) with the acceleration and jerk limits of the last call of it.
+    pub fn narrow_now(&self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         let mut feasible = true;
         for j in 0..q.len() {
             let braking = self.braking[j];

@@ -86,8 +86,14 @@ impl Linearization {
 
     /// Writes the point in the box \[`lower`, `upper`\] that (nearly) solves r + J (out - x) = 0 and is nearest to `preferred`, which
     /// must be in the box.
-    pub fn write_step_near(&self, preferred: &[f64], x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
-        let lambda = self.least_damping(x.len());
+    pub fn write_step_near(
+        &self,
+        preferred: &[f64],
+        lambda: f64,
+        x: &[f64],
+        [lower, upper]: [&[f64]; 2],
+        out: &mut [f64],
+    ) {
         if self.more.is_empty() {
             let TaskBlock { columns, residual } = &self.first;
             BoxStep { columns, residual, lambda, x, lower, upper }.write_near(preferred, out);

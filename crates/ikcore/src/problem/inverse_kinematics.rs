@@ -69,6 +69,11 @@ impl<'a> Problem<'a> {
         Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts, turns: Turns::Equivalent, space }
     }
 
+    /// The problem of moving several tips on to their targets.
+    pub(crate) fn of_moving_tips(robot: &'a Robot, aims: TipAims<'a>) -> Self {
+        Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
+    }
+
     /// The target of the only tip, and its criterion; None for several tips.
     #[inline]
     pub(crate) fn only_target(&self) -> Option<(&'a Target, &Criterion)> {

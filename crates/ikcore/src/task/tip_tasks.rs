@@ -48,6 +48,8 @@ pub(crate) struct TipCriterion {
     pub criterion: Criterion,
     /// The tool of the task, in the frame of the tip that is moved.
     tool: Option<Frame>,
+    /// Factor on its residual, beside those of the other tasks.
+    weight: f64,
 }
 
 impl TipTask {
@@ -61,11 +63,43 @@ impl TipTask {
         let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
         criterion.validate()?;
         let tool = task.and_then(|task| task.tool).map(|tool| Frame::from(&tool));
-        Ok(TipCriterion { subject, task, criterion, tool })
+        Ok(TipCriterion { subject, task, criterion, tool, weight: 1.0 })
+    }
+}
+
+impl Subject {
+    /// Whether it is a tip as seen from another.
+    pub(crate) fn is_pair(&self) -> bool {
+        matches!(self, Self::Pair { .. })
     }
 }
 
 impl TipCriterion {
+    /// The same task, weighing `weight` beside the others.
+    pub fn weighing(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// The assessment of the frame that counts.
+    fn assess(&self, target: &Target, frame: &Frame) -> Assessment {
+        self.weighted(target.assess_tip(frame, &self.criterion))
+    }
+
+    /// Like [`assess`](Self::assess), with residual and Jacobian, from the geometric Jacobian of `dof` columns in `block`.
+    fn linearize(&self, target: &Target, frame: &Frame, dof: usize, block: &mut TaskBlock) -> Assessment {
+        let assessment = target.linearize_tip(frame, dof, &self.criterion, block);
+        if self.weight != 1.0 {
+            let entries = block.columns[..dof].iter_mut().chain(std::iter::once(&mut block.residual)).flatten();
+            entries.for_each(|entry| *entry *= self.weight);
+        }
+        self.weighted(assessment)
+    }
+
+    fn weighted(&self, mut assessment: Assessment) -> Assessment {
+        assessment.score.value *= self.weight * self.weight;
+        assessment
+    }
+
     /// The part of `wanted` that its task uses.
     ///
     /// # Errors
@@ -148,8 +182,7 @@ impl<'a> TipAims<'a> {
 
     /// The assessment of `q`: the sum of the values, solved where all are; the largest errors.
     pub fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
-        let assess =
-            |(task, target): (&TipCriterion, &Target)| target.assess_tip(&task.frame(robot, q), &task.criterion);
+        let assess = |(task, target): (&TipCriterion, &Target)| task.assess(target, &task.frame(robot, q));
         self.iter().map(assess).fold(nothing_asked(), together)
     }
 
@@ -165,7 +198,7 @@ impl<'a> TipAims<'a> {
         let mut all = nothing_asked();
         for (number, ((task, target), block)) in self.iter().zip(out.blocks_mut()).enumerate() {
             let frame = task.frame_and_jacobian(robot, q, &mut block.columns);
-            let one = target.linearize_tip(&frame, q.len(), &task.criterion, block);
+            let one = task.linearize(target, &frame, q.len(), block);
             if one.score.solved {
                 solved(number);
             }
@@ -174,11 +207,27 @@ impl<'a> TipAims<'a> {
         all
     }
 
+    /// Positions (m) that count for each task at `q`.
+    pub fn positions(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 3])) {
+        self.tasks.iter().for_each(|task| keep(task.frame(robot, q).origin));
+    }
+
+    /// Whether a task is for a pair of tips.
+    pub fn has_pairs(&self) -> bool {
+        self.tasks.iter().any(|task| task.subject.is_pair())
+    }
+
+    /// Whether all pairs of tips are where they are to be at `q`; true without any.
+    pub fn pairs_are_held(&self, robot: &Robot, q: &[f64]) -> bool {
+        let mut pairs = self.iter().filter(|(task, _)| task.subject.is_pair());
+        pairs.all(|(task, target)| task.assess(target, &task.frame(robot, q)).score.solved)
+    }
+
     /// The residual of each task at `q`, and the assessment.
     pub fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
         let mut block = TaskBlock::default();
         let residual = |(task, target): (&TipCriterion, &Target)| {
-            let assessment = target.linearize_tip(&task.frame(robot, q), 0, &task.criterion, &mut block);
+            let assessment = task.linearize(target, &task.frame(robot, q), 0, &mut block);
             keep(block.residual);
             assessment
         };

@@ -48,6 +48,11 @@ impl LimitedMotion {
         self.reachable.narrow(q, &self.state, time, limits, tick)
     }
 
+    /// [`narrow`](Self::narrow) for a later tick, that of an arm at `q` in `state`.
+    pub fn narrow_ahead(&self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
+        self.reachable.narrow_now(q, state, time, limits, tick)
+    }
+
     /// Moves on from `before` to `q`.
     pub fn advance(&mut self, before: &[f64], q: &[f64]) {
         self.state.advance(q.iter().zip(before).map(|(q, before)| q - before));

@@ -16,7 +16,9 @@
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
-//! | `clear_motion`, `stop_motion` | the motion of an arm among obstacles, each command certified with the stop after it |
+//! | `kept_motion`, `stop_motion`, `held_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `row_motion`, `wish`, `tick_aim` | steps beside rows, and what they are found from |
+//! | `tip_order`, `track_tips` | several tips: what is asked of them, and the call for their paths |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
@@ -25,24 +27,30 @@
 //! | `controller` | controllers, which only command and observe |
 
 mod approach_motion;
-mod clear_motion;
 mod commanded_motion;
 mod controller;
+mod held_stop;
+mod kept_motion;
 mod late_sensor;
 mod limited_motion;
 mod model_free;
 mod plant;
 mod record;
 mod repeated_targets;
+mod row_motion;
 mod rule;
 mod session;
 mod step;
 mod stop_motion;
 mod target_filter;
 mod target_stream;
+mod tick_aim;
+mod tip_order;
 mod tip_pose;
 mod track;
 mod track_options;
+mod track_tips;
+mod wish;
 
 pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
@@ -52,7 +60,8 @@ pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
 pub use target_filter::{LowPass, OneEuro, TargetFilter};
-pub use target_stream::Arrival;
+pub use target_stream::{Arrival, TipArrival};
 pub use tip_pose::TipPose;
 pub use track::track;
 pub use track_options::TrackOptions;
+pub use track_tips::{TipTable, TipsRecord, track_tips};

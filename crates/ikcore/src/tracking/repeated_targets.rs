@@ -3,7 +3,7 @@
 //! A camera gives 60 targets a second and the loop runs at 500 Hz: a loop that passes the last target in every tick says
 //! nothing new. Taken for samples, the repetitions would be a target that stops, jumps and stops.
 
-use crate::task::Target;
+use crate::task::{Target, TargetRow};
 
 /// A target that stays this many intervals has stopped.
 const STOPPED: f64 = 2.0;
@@ -15,7 +15,7 @@ const LONGEST_INTERVAL: f64 = 0.1;
 #[derive(Debug)]
 pub(super) struct RepeatedTargets {
     dt: f64,
-    last: Option<Target>,
+    last: TargetRow,
     /// When the target changed (s), and the time between changes.
     changed: f64,
     interval: f64,
@@ -24,18 +24,20 @@ pub(super) struct RepeatedTargets {
 impl RepeatedTargets {
     /// In ticks of `dt` (s).
     pub fn new(dt: f64) -> Self {
-        Self { dt, last: None, changed: f64::NEG_INFINITY, interval: f64::INFINITY }
+        Self { dt, last: TargetRow::new(), changed: f64::NEG_INFINITY, interval: f64::INFINITY }
     }
 
-    /// Whether this target, which came at `time` (s), repeats the last one while the next is still to come.
-    pub fn is_repetition(&mut self, target: &Target, time: f64) -> bool {
+    /// Whether these targets, which came at `time` (s), repeat the last ones while the next are still to come.
+    pub fn is_repetition(&mut self, targets: &[Target], time: f64) -> bool {
         let waited = time - self.changed;
-        if self.last == Some(*target) {
+        if self.last[..] == *targets {
             let stream = self.interval > 1.5 * self.dt && self.interval <= LONGEST_INTERVAL;
             return stream && waited > 0.0 && waited <= STOPPED * self.interval;
         }
         self.interval = if self.interval.is_finite() { 0.5 * (self.interval + waited) } else { waited };
-        (self.last, self.changed) = (Some(*target), time);
+        self.last.clear();
+        self.last.extend_from_slice(targets);
+        self.changed = time;
         false
     }
 
@@ -53,7 +55,7 @@ mod tests {
     fn repetitions(every: usize, stop: usize) -> Vec<bool> {
         let mut targets = RepeatedTargets::new(0.002);
         let target = |tick: usize| Target::Position([(tick.min(stop) / every) as f64, 0.0, 0.0]);
-        (0..300).map(|tick| targets.is_repetition(&target(tick), 0.002 * tick as f64)).collect()
+        (0..300).map(|tick| targets.is_repetition(&[target(tick)], 0.002 * tick as f64)).collect()
     }
 
     #[test]
@@ -76,9 +78,9 @@ mod tests {
     fn after_forgetting_a_target_is_new() {
         let mut targets = RepeatedTargets::new(0.002);
         for tick in 0..20 {
-            targets.is_repetition(&Target::Position([f64::from(tick / 8), 0.0, 0.0]), 0.002 * f64::from(tick));
+            targets.is_repetition(&[Target::Position([f64::from(tick / 8), 0.0, 0.0])], 0.002 * f64::from(tick));
         }
-        let last = Target::Position([2.0, 0.0, 0.0]);
+        let last = [Target::Position([2.0, 0.0, 0.0])];
         assert!(targets.is_repetition(&last, 0.04));
         targets.forget();
         assert!(!targets.is_repetition(&last, 0.042));

@@ -3,14 +3,17 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::clear_motion::{ClearMotion, ObstacleMotion, Wish};
+use super::kept_motion::{Kept, KeptMotion, ObstacleMotion};
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::repeated_targets::RepeatedTargets;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::step::Step;
-use super::target_stream::{Arrival, TargetStream};
+use super::target_stream::{Arrival, Arriving, TargetStream, TipArrival};
+use super::tick_aim::TickAim;
+use super::tip_order::TipOrder;
 use super::track_options::TrackOptions;
+use super::wish::Wish;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -22,7 +25,7 @@ use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::shape::Shape;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goals, Target, Task};
+use crate::task::{Assessment, Criterion, Goals, Target, TargetRow, Task, TipAims, TipError, TipTask};
 
 /// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
@@ -37,6 +40,8 @@ pub struct Session {
     running: RunningRule,
     task: Option<Task>,
     criterion: Criterion,
+    /// What was last asked of several tips; `None` for one.
+    tips: Option<Box<TipOrder>>,
     goals: Goals,
     dt: f64,
     ticks: usize,
@@ -50,8 +55,8 @@ pub struct Session {
     /// Under acceleration or jerk limits.
     limited: Option<LimitedMotion>,
     surroundings: Surroundings,
-    /// Where something is to be kept clear of.
-    clear: Option<Box<ClearMotion>>,
+    /// Where something is to be kept clear of, or pairs of tips may be held.
+    kept: Option<Box<KeptMotion>>,
     /// The arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -65,7 +70,8 @@ impl Session {
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker does not
     /// support, a time step that is not positive.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        robot.require_one_tip("Tracker")?;
+        let several_tips = robot.tip_count() > 1;
+        options.require_tips(robot)?;
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
@@ -75,7 +81,7 @@ impl Session {
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
         let limited = LimitedMotion::new(&limits, dt);
-        let running = options.rule.start(limited.is_some());
+        let running = options.rule.start(limited.is_some(), several_tips);
         let repeated = running.extrapolates().then(|| RepeatedTargets::new(dt));
         let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
         if criterion.region.is_some() {
@@ -88,10 +94,12 @@ impl Session {
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
         let surroundings = options.surroundings.clone();
-        let clear = clear_space(&surroundings, &robot)?.map(|space| ClearMotion::new(space, &limits).map(Box::new));
-        let clear = clear.transpose()?;
+        let space = clear_space(&surroundings, &robot)?;
+        let keeps = several_tips || space.is_some();
+        let kept = if keeps { Some(Box::new(KeptMotion::new(space, &limits)?)) } else { None };
         Ok(Self {
-            clear,
+            kept,
+            tips: several_tips.then(Box::default),
             surroundings,
             robot,
             tick_box: TickBox::around(start, &limits),
@@ -155,6 +163,26 @@ impl Session {
         self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
     }
 
+    /// What is to be achieved, once a target has arrived.
+    fn aim(&self) -> Option<TickAim<'_>> {
+        aim(&self.targets, self.tips.as_deref(), &self.criterion)
+    }
+
+    /// Tasks and targets of several tips, once they have arrived.
+    pub fn tip_errors(&self) -> Vec<TipError> {
+        let aim = self.aim();
+        aim.as_ref().and_then(TickAim::tips).map_or(vec![], |aims| aims.errors(&self.robot, &self.q).to_vec())
+    }
+
+    /// Positions (m) of the tips that have targets, in the order of these; of pairs as seen from the first tip.
+    pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
+        let mut positions = vec![];
+        if let Some(TickAim::Tips(aims)) = self.aim() {
+            aims.positions(&self.robot, &self.q, |position| positions.push(position));
+        }
+        positions
+    }
+
     /// Returns how far `wanted` is provably out of reach within `bounds`.
     ///
     /// # Errors
@@ -162,6 +190,20 @@ impl Session {
     pub(super) fn reach_shortfall(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
         let target = self.read(wanted)?;
         Ok(Problem::new(&self.robot, &target, self.criterion).reach_shortfall(bounds))
+    }
+
+    /// [`reach_shortfall`](Self::reach_shortfall) for several tips.
+    ///
+    /// # Errors
+    /// As [`advance_tips`](Self::advance_tips).
+    pub(super) fn reach_shortfall_of_tips(
+        &mut self,
+        wanted: &[(TipTask, Target)],
+        bounds: &Bounds,
+    ) -> Result<Option<ReachShortfall>> {
+        let targets = self.read_tips(wanted)?;
+        let tasks = self.tips.as_ref().map_or(&[][..], |tips| tips.tasks());
+        Ok(Problem::of_moving_tips(&self.robot, TipAims { tasks, targets: &targets }).reach_shortfall(bounds))
     }
 
     /// Configuration and box of the last tick.
@@ -183,18 +225,43 @@ impl Session {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
+        self.robot.require_one_tip("a plain target")?;
         let target = self.read(target)?;
-        self.targets.place(*target, velocity);
-        let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
+        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
+        Ok(self.beginning())
+    }
+
+    /// [`begin`](Self::begin) for several tips.
+    ///
+    /// # Errors
+    /// As [`advance_tips`](Self::advance_tips).
+    pub fn begin_tips(&mut self, targets: &[(TipTask, Target)]) -> Result<Step> {
+        let targets = self.read_tips(targets)?;
+        self.targets.place(targets, None);
+        Ok(self.beginning())
+    }
+
+    /// The start as a step.
+    fn beginning(&mut self) -> Step {
+        let assessment = self.aim().map(|aim| aim.assess(&self.robot, &self.q));
+        let Assessment { score, error } = assessment.unwrap_or(TickResult::at(&self.q).assessment);
         self.last_value = Some(score.value);
         let status = match score.solved {
-            true if self.criterion.blocked_by_region(&target).is_some() => Status::HeldInRegion,
+            true if self.is_blocked_by_region() => Status::HeldInRegion,
             true => Status::Solved,
             false => Status::Improved,
         };
         let status = if self.is_clear(&self.q) { status } else { Status::InCollision };
         let (position, error) = (self.robot.tip_position(&self.q), error.into());
-        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
+        Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
+    }
+
+    /// Whether the region keeps the tip from its target.
+    fn is_blocked_by_region(&self) -> bool {
+        match self.aim() {
+            Some(TickAim::Tip { target, criterion }) => criterion.blocked_by_region(target).is_some(),
+            _ => false,
+        }
     }
 
     /// Moves by one tick towards `target`, inside the limits. Time advances whether or not the target is reached.
@@ -229,8 +296,25 @@ impl Session {
     /// As [`step`](Self::step), and [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
     /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use.
     pub fn advance(&mut self, arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let arrival = arrival.map(|arrival| self.read_arrival(&arrival)).transpose()?;
+        self.tick(arrival, monitor)
+    }
+
+    /// [`advance`](Self::advance) for several tips, each with a target or free. Pairs that are where they are to be are held there,
+    /// before anything else.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance), and [`Error::Contradiction`](crate::Error::Contradiction) for targets that contradict each other.
+    pub fn advance_tips(&mut self, arrival: Option<TipArrival>, monitor: &mut dyn Monitor) -> Result<Step> {
+        let arrival = arrival.map(|TipArrival { targets, stamp }| {
+            self.check_stamp(stamp)?;
+            Ok(Arriving { targets: self.read_tips(&targets)?, velocity: None, stamp })
+        });
+        self.tick(arrival.transpose()?, monitor)
+    }
+
+    fn tick(&mut self, arrival: Option<Arriving>, monitor: &mut dyn Monitor) -> Result<Step> {
+        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let sampled_ago = self.targets.take(arrival, to)?.map(|ago| ago / self.dt);
         self.update_stopping(sampled_ago.is_some(), to);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
@@ -241,12 +325,9 @@ impl Session {
         } else {
             self.run_rule(sampled_ago, monitor)
         };
-        let held = !found.interrupted && self.keep_clear(&mut found);
-        let target = self.targets.last().copied();
-        if let Some(target) = &target {
-            self.keep_in_region(target, &mut found);
-        }
-        let status = self.status(target.as_ref(), &found, held);
+        let held = !found.interrupted && self.keep(&mut found);
+        self.keep_in_region(&mut found);
+        let status = self.status(&found, held);
         if !found.interrupted {
             self.accept(&found.q, found.assessment.score.value);
         }
@@ -256,13 +337,35 @@ impl Session {
     }
 
     /// Reduces an arrival to the part that the task uses, validated.
-    fn read_arrival(&self, arrival: &Arrival) -> Result<Arrival> {
-        if arrival.stamp.is_some() && !self.running.extrapolates() {
+    fn read_arrival(&self, arrival: &Arrival) -> Result<Arriving> {
+        self.robot.require_one_tip("a plain target")?;
+        self.check_stamp(arrival.stamp)?;
+        Ok(Arriving::of_one(*self.read(&arrival.target)?, arrival.velocity, arrival.stamp))
+    }
+
+    /// The parts of targets of several tips that their tasks use, validated. Other tasks than before begin anew.
+    fn read_tips(&mut self, asked: &[(TipTask, Target)]) -> Result<TargetRow> {
+        let Some(tips) = &mut self.tips else {
+            let problem = format!("robot '{}' has one tip: give a plain target", self.robot.name());
+            return Err(Error::Contradiction { problem });
+        };
+        let (targets, are_new) = tips.read(&self.robot, asked)?;
+        if are_new {
+            self.targets.begin_anew();
+            self.running.forget();
+            self.last_value = None;
+        }
+        Ok(targets)
+    }
+
+    /// Err for a stamp that the rule cannot use.
+    fn check_stamp(&self, stamp: Option<f64>) -> Result<()> {
+        if stamp.is_some() && !self.running.extrapolates() {
             let problem = "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or \
                            leave stamp out";
             return Err(Error::Contradiction { problem: problem.into() });
         }
-        Ok(Arrival { target: *self.read(&arrival.target)?, ..*arrival })
+        Ok(())
     }
 
     /// The arm brakes after the timeout, and moves on when a target arrives.
@@ -281,11 +384,13 @@ impl Session {
     }
 
     fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
-        let Some(target) = self.targets.last() else { return TickResult::at(&self.q) };
+        let tips = self.tips.as_deref();
+        let Some([target, ..]) = self.targets.last() else { return TickResult::at(&self.q) };
         let tick = Tick {
             robot: &self.robot,
             target,
             criterion: &self.criterion,
+            tips: tips.zip(self.targets.last()).map(|(tips, targets)| TipAims { tasks: tips.tasks(), targets }),
             goals: &mut self.goals,
             velocity: self.targets.velocity(),
             before: self.targets.before(),
@@ -294,7 +399,7 @@ impl Session {
             limits: &self.limits,
             velocity_limit: &self.tick_box.velocity,
             limited: self.limited.as_ref(),
-            clear: self.clear.as_deref_mut(),
+            kept: self.kept.as_deref_mut(),
             sampled_ago,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
@@ -311,69 +416,69 @@ impl Session {
             found.q = limited.stopping(&self.q);
         }
         self.tick_box.bounds.clip(&mut found.q);
-        let tip = self.robot.tip(&found.q);
-        found.evaluations = 1;
-        match self.targets.last() {
-            Some(target) => found.set_tip(&tip, target, &self.criterion),
-            None => found.position = tip.origin,
-        }
+        self.assess(&mut found);
         found
     }
 
-    fn status(&self, target: Option<&Target>, found: &TickResult, held: bool) -> Status {
+    /// Assesses what has been found, with one evaluation.
+    fn assess(&self, found: &mut TickResult) {
+        found.evaluations += 1;
+        match self.aim() {
+            Some(aim) => found.assess(&self.robot, &aim),
+            None => found.position = self.robot.tip_position(&found.q),
+        }
+    }
+
+    fn status(&self, found: &TickResult, held: bool) -> Status {
         let Score { value, solved } = found.assessment.score;
         match self.last_value {
             _ if !self.is_clear(&found.q) => Status::InCollision,
-            _ if solved && target.is_some_and(|target| self.criterion.blocked_by_region(target).is_some()) => {
-                Status::HeldInRegion
-            }
+            _ if solved && self.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
-            _ if held || self.clear.as_ref().is_some_and(|clear| clear.goal_is_held()) => Status::HeldByObstacle,
+            _ if held || self.kept.as_ref().is_some_and(|kept| kept.goal_is_held()) => Status::HeldByObstacle,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         }
     }
 
-    /// Changes what the rule has `found` to a command that keeps the arm clear. Returns whether it had to.
-    fn keep_clear(&mut self, found: &mut TickResult) -> bool {
-        let Some(clear) = &mut self.clear else { return false };
+    /// Changes what the rule has `found` to a command that keeps the arm clear and pairs of tips held. Returns whether it had to, because
+    /// of what is around the arm.
+    fn keep(&mut self, found: &mut TickResult) -> bool {
+        let Some(kept) = &mut self.kept else { return false };
         let wish = Wish {
             robot: &self.robot,
             q: &self.q,
-            bounds: &self.tick_box.bounds,
+            tick_box: &self.tick_box,
+            limits: &self.limits,
+            limit_at: self.limit_at,
             limited: self.limited.as_ref(),
-            target: self.targets.last(),
-            criterion: &self.criterion,
+            aim: aim(&self.targets, self.tips.as_deref(), &self.criterion),
+            time: self.ticks as f64 * self.dt,
             dt: self.dt,
         };
-        if !clear.keep(&wish, &mut found.q) {
-            return false;
+        let Kept { changed, by_obstacles } = kept.keep(&wish, &mut found.q);
+        if changed {
+            self.assess(found);
+            if self.limited.is_none() {
+                self.running.forget();
+            }
         }
-        let tip = self.robot.tip(&found.q);
-        found.evaluations += 1;
-        match self.targets.last() {
-            Some(target) => found.set_tip(&tip, target, &self.criterion),
-            None => found.position = tip.origin,
-        }
-        if self.limited.is_none() {
-            self.running.forget();
-        }
-        true
+        by_obstacles
     }
 
     /// Whether everything keeps the margin at `q`; true if nothing is to be kept clear of.
     fn is_clear(&self, q: &[f64]) -> bool {
-        self.clear.as_ref().is_none_or(|clear| clear.space().holds(q))
+        self.space().is_none_or(|space| space.holds(q))
     }
 
     /// What the arm keeps clear of, if anything.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
-        self.clear.as_ref().map(|clear| clear.space())
+        self.kept.as_ref().and_then(|kept| kept.space())
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
-        self.clear.as_ref().map_or(&[], |clear| clear.velocities())
+        self.kept.as_ref().map_or(&[], |kept| kept.velocities())
     }
 
     /// What is around the arm.
@@ -392,14 +497,14 @@ impl Session {
         // A margin given before is kept for obstacles that may come later.
         let is_asked = surroundings.obstacles.is_some() || surroundings.self_collision == Some(true);
         let space = if is_asked { clear_space(&surroundings, &self.robot)? } else { None };
-        match (space, &mut self.clear) {
-            (Some(space), Some(clear)) => clear.replace(space, motion),
-            (Some(space), none) => {
-                let mut clear = Box::new(ClearMotion::new(space, &self.limits)?);
-                clear.set_motion(motion);
-                *none = Some(clear);
-            }
-            (None, clear) => *clear = None,
+        if space.is_some() || self.tips.is_some() {
+            let kept = match self.kept.take() {
+                Some(kept) => self.kept.insert(kept),
+                None => self.kept.insert(Box::new(KeptMotion::new(None, &self.limits)?)),
+            };
+            kept.replace(space, motion, &self.limits)?;
+        } else {
+            self.kept = None;
         }
         self.surroundings = surroundings;
         Ok(())
@@ -437,16 +542,17 @@ impl Session {
             Some(last) if score.value >= last => Status::Capped,
             _ => Status::Improved,
         };
-        self.targets.place(*target, velocity);
+        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
         self.accept(q, score.value);
-        self.running = self.rule.start(self.limited.is_some());
+        self.start_rule();
         let (position, error) = (self.robot.tip_position(q), error.into());
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
     }
 
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
     /// convex, so any fraction of the tick ends in the box.
-    fn keep_in_region(&mut self, target: &Target, found: &mut TickResult) {
+    fn keep_in_region(&mut self, found: &mut TickResult) {
+        let Some([target]) = self.targets.last() else { return };
         let region = self.criterion.region.as_ref().filter(|region| !region.contains(&found.position));
         let Some(region) = region else { return };
         let (mut kept, mut past) = (0.0, 1.0);
@@ -461,6 +567,11 @@ impl Session {
         found.set_tip(&self.robot.tip(&found.q), target, &self.criterion);
         found.evaluations += BISECTIONS + 1;
         self.running.forget();
+    }
+
+    /// The rule starts anew.
+    fn start_rule(&mut self) {
+        self.running = self.rule.start(self.limited.is_some(), self.tips.is_some());
     }
 
     /// Resets the session to `q` (n,) at t = 0, at rest.
@@ -490,10 +601,26 @@ impl Session {
         self.q.copy_from_slice(q);
         self.before = q.iter().zip(qd).map(|(q, qd)| q - self.dt * qd).collect();
         (self.ticks, self.last_value, self.stopping) = (0, None, false);
-        self.running = self.rule.start(self.limited.is_some());
+        self.start_rule();
         self.targets.clear();
+        if let Some(kept) = &mut self.kept {
+            kept.forget();
+        }
         self.rng = rng::stream(self.seed, 0);
         Ok(())
+    }
+}
+
+/// What is to be achieved, once a target has arrived.
+fn aim<'a>(
+    targets: &'a TargetStream,
+    tips: Option<&'a TipOrder>,
+    criterion: &'a Criterion,
+) -> Option<TickAim<'a>> {
+    match (tips, targets.last()?) {
+        (Some(tips), targets) => Some(TickAim::Tips(TipAims { tasks: tips.tasks(), targets })),
+        (None, [target, ..]) => Some(TickAim::Tip { target, criterion }),
+        (None, []) => None,
     }
 }
 

@@ -85,15 +85,19 @@ impl JointMotion for StopMotion<'_> {
     }
 
     fn middle(&self, from: f64, to: f64) -> Option<f64> {
-        // A spline is known by its control points alone. Of more than one tick, halves of whole ticks: the motion is straight between
-        // ticks alone.
-        let (length, half) = (to - from, 0.5 * (to - from));
-        let shortest = if self.is_spline() { 1.0 } else { SHORTEST };
-        let whole = if half >= 1.0 { half.floor() } else { 1.0 };
-        (length > shortest).then_some(from + if length > 1.0 { whole } else { half })
+        middle(from, to, self.is_spline())
     }
 
     fn is_spline(&self) -> bool {
         !self.stops.is_empty()
     }
+}
+
+/// Where to divide an interval of a motion in ticks. A spline is known by its control points alone. Of more than one tick, halves of
+/// whole ticks: the motion is straight between ticks alone.
+pub(super) fn middle(from: f64, to: f64, is_spline: bool) -> Option<f64> {
+    let (length, half) = (to - from, 0.5 * (to - from));
+    let shortest = if is_spline { 1.0 } else { SHORTEST };
+    let whole = if half >= 1.0 { half.floor() } else { 1.0 };
+    (length > shortest).then_some(from + if length > 1.0 { whole } else { half })
 }

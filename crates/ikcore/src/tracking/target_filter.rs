@@ -86,10 +86,6 @@ impl RunningFilter {
         Self { settings, last: None, twist: Twist { linear: [0.0; 3], angular: [0.0; 3] } }
     }
 
-    pub fn clear(&mut self) {
-        *self = Self::new(self.settings);
-    }
-
     /// The filtered target, `interval` (s) after the last one. The first one is not filtered.
     pub fn filtered(&mut self, target: &Target, interval: f64) -> Target {
         let same_kind = |[raw, _]: &[Target; 2]| std::mem::discriminant(raw) == std::mem::discriminant(target);

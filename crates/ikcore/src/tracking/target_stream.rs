@@ -1,9 +1,11 @@
 //! Targets as they arrive: their ages, the filter, and the timeout.
 
+use smallvec::smallvec;
+
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::task::Target;
+use crate::task::{Target, TargetRow, TipTask};
 
 /// A target is extrapolated over this time (s) at most, however old it is.
 const LONGEST_AGE: f64 = 0.25;
@@ -19,20 +21,52 @@ pub struct Arrival {
     pub stamp: Option<f64>,
 }
 
-/// The targets of a session.
+/// Targets of several tips that have arrived.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TipArrival {
+    /// The tasks and their targets; tips without one are free.
+    pub targets: Vec<(TipTask, Target)>,
+    /// When they were measured (s), on the clock of the session. `None` means at the end of the tick.
+    pub stamp: Option<f64>,
+}
+
+/// Targets with the velocity of the only one (m/s), if known.
+#[derive(Debug, Clone)]
+struct Wanted {
+    targets: TargetRow,
+    velocity: Option<[f64; 3]>,
+}
+
+/// The targets of a session: one, or those of several tips, which arrive together.
 #[derive(Debug)]
 pub(super) struct TargetStream {
-    filter: Option<RunningFilter>,
+    filter: Option<TargetFilter>,
+    /// One for each target.
+    filters: Vec<RunningFilter>,
     timeout: Option<f64>,
     /// For rules that extrapolate.
     repeated: Option<RepeatedTargets>,
-    /// The last target and its velocity.
-    last: Option<(Target, Option<[f64; 3]>)>,
+    last: Option<Wanted>,
     /// Those at the end of the previous tick.
-    before: Option<(Target, Option<[f64; 3]>)>,
-    /// When the last target was measured, and when it arrived (s).
+    before: Option<Wanted>,
+    /// When the last targets were measured, and when they arrived (s).
     measured: f64,
     arrived: f64,
+}
+
+/// Targets on their way into the stream.
+#[derive(Debug)]
+pub(super) struct Arriving {
+    pub targets: TargetRow,
+    pub velocity: Option<[f64; 3]>,
+    pub stamp: Option<f64>,
+}
+
+impl Arriving {
+    /// One target.
+    pub fn of_one(target: Target, velocity: Option<[f64; 3]>, stamp: Option<f64>) -> Self {
+        Self { targets: smallvec![target], velocity, stamp }
+    }
 }
 
 impl TargetStream {
@@ -43,38 +77,38 @@ impl TargetStream {
     pub fn new(filter: Option<TargetFilter>, timeout: Option<f64>, repeated: Option<RepeatedTargets>) -> Result<Self> {
         timeout.map_or(Ok(()), |timeout| require_positive("timeout", timeout))?;
         filter.map_or(Ok(()), |filter| filter.validate())?;
-        let filter = filter.map(RunningFilter::new);
-        Ok(Self { filter, timeout, repeated, last: None, before: None, measured: f64::NEG_INFINITY, arrived: 0.0 })
+        let (filters, measured) = (vec![], f64::NEG_INFINITY);
+        Ok(Self { filter, filters, timeout, repeated, last: None, before: None, measured, arrived: 0.0 })
     }
 
-    /// The last target, filtered.
-    pub fn last(&self) -> Option<&Target> {
-        self.last.as_ref().map(|(target, _)| target)
+    /// The last targets, filtered.
+    pub fn last(&self) -> Option<&[Target]> {
+        self.last.as_ref().map(|wanted| &wanted.targets[..])
     }
 
     /// The velocity of the last target, if known (m/s).
     pub fn velocity(&self) -> Option<[f64; 3]> {
-        self.last.and_then(|(_, velocity)| velocity)
+        self.last.as_ref().and_then(|wanted| wanted.velocity)
     }
 
-    /// Target and velocity at the end of the previous tick.
-    pub fn before(&self) -> Option<&(Target, Option<[f64; 3]>)> {
-        self.before.as_ref()
+    /// Target and velocity at the end of the previous tick; of several the first.
+    pub fn before(&self) -> Option<(&Target, Option<[f64; 3]>)> {
+        self.before.as_ref().and_then(|wanted| Some((wanted.targets.first()?, wanted.velocity)))
     }
 
-    /// Sets the target at t = 0.
-    pub fn place(&mut self, target: Target, velocity: Option<[f64; 3]>) {
-        self.last = Some((target, velocity));
-        self.before = self.last;
+    /// Sets the targets at t = 0.
+    pub fn place(&mut self, targets: TargetRow, velocity: Option<[f64; 3]>) {
+        self.last = Some(Wanted { targets, velocity });
+        self.before.clone_from(&self.last);
     }
 
-    /// Takes the target that arrived in the tick that ends at `time` (s). Returns its age then (s); `None` without a target
-    /// or for one that was measured before the last one or repeats it.
+    /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets
+    /// or for ones that were measured before the last ones or repeat them.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
-    pub fn take(&mut self, arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
-        let Some(Arrival { target, velocity, stamp }) = arrival else { return Ok(None) };
+    pub fn take(&mut self, arrival: Option<Arriving>, time: f64) -> Result<Option<f64>> {
+        let Some(Arriving { mut targets, velocity, stamp }) = arrival else { return Ok(None) };
         if let Some(velocity) = &velocity {
             require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
         }
@@ -89,16 +123,18 @@ impl TargetStream {
         if measured < self.measured || stamp.is_some() && measured == self.measured {
             return Ok(None);
         }
-        if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(&target, time)) {
+        if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(&targets, time)) {
             return Ok(None);
         }
         let interval = measured - self.measured;
         self.measured = measured;
-        let target = match &mut self.filter {
-            Some(filter) if interval > 0.0 => filter.filtered(&target, interval),
-            _ => target,
-        };
-        self.last = Some((target, velocity));
+        if let Some(filter) = self.filter.filter(|_| interval > 0.0) {
+            self.filters.resize_with(targets.len(), || RunningFilter::new(filter));
+            for (target, filter) in targets.iter_mut().zip(&mut self.filters) {
+                *target = filter.filtered(target, interval);
+            }
+        }
+        self.last = Some(Wanted { targets, velocity });
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
     }
 
@@ -109,7 +145,14 @@ impl TargetStream {
 
     /// Ends the tick.
     pub fn accept(&mut self) {
-        self.before = self.last;
+        self.before.clone_from(&self.last);
+    }
+
+    /// The next targets are for other tasks.
+    pub fn begin_anew(&mut self) {
+        (self.last, self.before) = (None, None);
+        self.filters.clear();
+        self.expect_new();
     }
 
     /// The next target is new, even if it equals the last one.
@@ -121,10 +164,7 @@ impl TargetStream {
 
     /// Forgets all targets; the clock starts at zero.
     pub fn clear(&mut self) {
-        (self.last, self.before, self.measured, self.arrived) = (None, None, f64::NEG_INFINITY, 0.0);
-        if let Some(filter) = &mut self.filter {
-            filter.clear();
-        }
-        self.expect_new();
+        (self.measured, self.arrived) = (f64::NEG_INFINITY, 0.0);
+        self.begin_anew();
     }
 }

@@ -112,7 +112,7 @@ fn follow(
 }
 
 /// Returns the target of row `i`: a pose if the reference has orientations, else a position.
-fn target(reference: &Reference, i: usize) -> Target {
+pub(super) fn target(reference: &Reference, i: usize) -> Target {
     match reference.pose(i) {
         Some(pose) => Target::from(&pose),
         None => Target::Position(reference.position(i)),
@@ -132,13 +132,7 @@ fn first_configuration(
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<f64>> {
-    let at_start = |field: Field| -> Vec<Profile> {
-        let profiles = limits.field(field).unwrap_or_default().iter();
-        profiles.map(|profile| Profile::Constant(profile.at(0.0))).collect()
-    };
-    let limits = Limits::of(robot)
-        .replace(Field::Lower, at_start(Field::Lower))?
-        .replace(Field::Upper, at_start(Field::Upper))?;
+    let limits = limits_at_start(robot, limits)?;
     // Tighter than the band, so that the track does not start at its edge.
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
@@ -156,6 +150,15 @@ fn first_configuration(
     }
     let options = SolveOptions { stop: Stop::default(), ..options };
     Ok(solve(robot, &target, &options, monitor)?.q.to_vec())
+}
+
+/// The position limits at t = 0.
+pub(super) fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> {
+    let at_start = |field: Field| -> Vec<Profile> {
+        let profiles = limits.field(field).unwrap_or_default().iter();
+        profiles.map(|profile| Profile::Constant(profile.at(0.0))).collect()
+    };
+    Limits::of(robot).replace(Field::Lower, at_start(Field::Lower))?.replace(Field::Upper, at_start(Field::Upper))
 }
 
 /// Default goals of the start: away from singularities and limits.

@@ -44,6 +44,12 @@ impl TrackOptions {
         criterion.validate().map(|()| criterion)
     }
 
+    /// Checks that rule and task serve this robot's number of tips.
+    pub(super) fn require_tips(&self, robot: &Robot) -> Result<()> {
+        self.rule.require_tips(robot)?;
+        if self.task.is_some() { robot.require_one_tip("task= for all tips") } else { Ok(()) }
+    }
+
     /// Checks that the rule supports the goals, and the robot too.
     pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
         if !self.goals.is_empty() && !self.rule.serves_goals() {

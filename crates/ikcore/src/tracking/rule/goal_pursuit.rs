@@ -6,12 +6,10 @@
 //! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
 
 use super::tick::{Tick, TickResult};
-use crate::math::box_step::{BoxStep, least_damping};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
-use crate::objective::{Bounds, Differentiable, Point, TaskBlock};
-use crate::problem::Problem;
+use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
-use crate::tracking::clear_motion::GoalToClear;
+use crate::tracking::kept_motion::GoalToClear;
 use crate::tracking::limited_motion::LimitedMotion;
 
 /// Steps that Gauss-Newton may take in a tick; they converge quadratically.
@@ -39,7 +37,7 @@ pub(crate) struct GoalPursuit {
     sample: Point,
     /// Samples since obstacles changed one.
     since_held: Option<usize>,
-    linearization: Box<TaskBlock>,
+    linearization: Box<Linearization>,
 }
 
 impl GoalPursuit {
@@ -75,7 +73,7 @@ impl GoalPursuit {
                 tick.tick_box.clip(&mut found.q);
             }
         }
-        found.set_tip(&tick.robot.tip(&found.q), tick.target, tick.criterion);
+        found.assess(tick.robot, &tick.aim());
         found.evaluations += 1;
         found
     }
@@ -90,23 +88,19 @@ impl GoalPursuit {
         motion: &LimitedMotion,
     ) {
         let time = self.now - ago;
-        let positions = positions(tick, tick.velocity_limit.len());
+        let positions = tick.positions();
         if let Some(goal) = &self.goal {
             goal.expected(time, &mut self.expected);
         }
         self.solve(time, &positions, found, tick);
-        if let Some(clear) = &mut tick.clear {
-            let goal = GoalToClear {
-                robot: tick.robot,
-                target: tick.target,
-                criterion: tick.criterion,
-                positions: &positions,
-            };
+        let aim = tick.aim();
+        if let Some(kept) = &mut tick.kept {
+            let goal = GoalToClear { robot: tick.robot, aim, positions: &positions };
             // A goal that obstacles have kept far away may be on the wrong side of one.
             let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
             let from = if away < FAR { &self.expected } else { q };
-            clear.clear_goal(&goal, from, &mut self.sample);
-            self.since_held = if clear.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
+            kept.clear_goal(&goal, from, &mut self.sample);
+            self.since_held = if kept.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
         }
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
@@ -127,13 +121,14 @@ impl GoalPursuit {
             }
             (lowest, begin) = (value, self.sample.clone());
             let preferred = (i == 0).then(|| self.preferred(time, positions, tick));
-            let TaskBlock { columns, residual } = &*self.linearization;
-            let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
-            let (lower, upper) = (positions.lower(), positions.upper());
-            let step = BoxStep { columns, residual, lambda, x: &begin, lower, upper };
+            let least = self.linearization.least_damping(n);
+            let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
+            let ends = [positions.lower(), positions.upper()];
             match preferred {
-                Some(preferred) => step.write_near(&preferred, &mut self.sample),
-                None => step.write(&mut self.sample),
+                Some(preferred) => {
+                    self.linearization.write_step_near(&preferred, lambda, &begin, ends, &mut self.sample);
+                }
+                None => self.linearization.write_step(lambda, &begin, ends, &mut self.sample),
             }
             let longest = self.sample.iter().zip(&begin).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
             if longest <= SHORT {
@@ -148,9 +143,7 @@ impl GoalPursuit {
     fn linearize(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> f64 {
         found.evaluations += 1;
         found.iterations += 1;
-        let tip = tick.robot.tip_and_jacobian(&self.sample, &mut self.linearization.columns);
-        let n = self.sample.len();
-        tick.target.linearize_tip(&tip, n, tick.criterion, &mut self.linearization).score.value
+        tick.aim().linearize(tick.robot, &self.sample, &mut self.linearization).score.value
     }
 
     /// Where the joints should be at `time` as far as the target leaves them free: where the goal was one sample before, moved
@@ -172,7 +165,7 @@ impl GoalPursuit {
 
     /// Lowers the error as far as one tick allows, where Gauss-Newton fails.
     fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
-        let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
+        let mut problem = tick.aim().problem(tick.robot);
         let objective: &mut dyn Differentiable = &mut problem;
         let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
         let mut evaluator = Evaluator::new(objective, positions, stop, tick.rng, tick.monitor);
@@ -181,9 +174,4 @@ impl GoalPursuit {
         found.iterations += evaluator.iterations();
         self.sample.copy_from_slice(&evaluator.best().x);
     }
-}
-
-/// The position limits of the tick.
-fn positions(tick: &Tick<'_>, n: usize) -> Bounds {
-    Bounds::from_ranges((0..n).map(|j| tick.limits.position_range(j, tick.time, tick.time + tick.dt).into()))
 }

@@ -7,6 +7,7 @@
 //! | `mid_step` | the model-based rule, the default |
 //! | `goal_pursuit` | the model-based rule under acceleration and jerk limits |
 //! | `approach` | how that rule approaches a target that one tick cannot reach |
+//! | `tip_step` | the model-based rule for several tips |
 //! | `weighted_pseudo_inverse` | resolved-rate control |
 //! | `any_solver` | any solver, started at the accepted configuration |
 
@@ -16,6 +17,7 @@ mod goal_pursuit;
 mod mid_step;
 mod tick;
 mod tick_rule;
+mod tip_step;
 mod weighted_pseudo_inverse;
 
 pub(super) use tick::{Tick, TickResult};

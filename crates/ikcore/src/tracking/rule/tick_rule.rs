@@ -4,6 +4,7 @@ use super::any_solver;
 use super::goal_pursuit::GoalPursuit;
 use super::mid_step::{self, MidStepState};
 use super::tick::{Tick, TickResult};
+use super::tip_step::TipStep;
 use super::weighted_pseudo_inverse::{self, WeightedPseudoInverse};
 use crate::error::Result;
 use crate::robot::Robot;
@@ -27,6 +28,8 @@ pub(in crate::tracking) enum RunningRule {
     MidStep(MidStepState),
     /// Takes the place of `MidStep` under acceleration or jerk limits.
     GoalPursuit(Box<GoalPursuit>),
+    /// Takes the place of `MidStep` for several tips.
+    TipStep(TipStep),
     Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
@@ -62,10 +65,23 @@ impl TickRule {
         matches!(self, Self::WeightedPseudoInverse(_))
     }
 
-    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without.
-    pub(in crate::tracking) fn start(&self, under_acceleration: bool) -> RunningRule {
+    /// Checks that the rule serves this robot's number of tips.
+    ///
+    /// # Errors
+    /// [`Error::SeveralTips`].
+    pub(in crate::tracking) fn require_tips(&self, robot: &Robot) -> Result<()> {
+        match self {
+            Self::MidStep => Ok(()),
+            Self::Solver(_) => robot.require_one_tip("solver="),
+            Self::WeightedPseudoInverse(_) => robot.require_one_tip("WeightedPseudoInverse"),
+        }
+    }
+
+    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without, with several tips or one.
+    pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
         match self {
             Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
+            Self::MidStep if several_tips => RunningRule::TipStep(TipStep::default()),
             Self::MidStep => RunningRule::MidStep(MidStepState::default()),
             Self::Solver(solver) => RunningRule::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
@@ -81,7 +97,7 @@ impl RunningRule {
         match self {
             Self::MidStep(memory) => memory.forget(),
             Self::GoalPursuit(pursuit) => pursuit.forget(),
-            Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
+            Self::TipStep(_) | Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
         }
     }
 
@@ -95,6 +111,7 @@ impl RunningRule {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::GoalPursuit(pursuit) => pursuit.advance(q, tick),
+            Self::TipStep(step) => step.advance(q, tick),
             Self::Solver(solver) => any_solver::advance(solver, q, tick),
             Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }

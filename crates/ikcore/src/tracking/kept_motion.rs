@@ -1,0 +1,480 @@
+//! The motion of a tracked arm that keeps to what comes first: distances from what is around it, and pairs of tips that are held.
+//!
+//! Where the arm would come to rest if it braked now is known to be clear. Near pairs of bodies there are rows: how far the place of
+//! rest may move towards them. The command is the one nearest to what the rule wants, measured by its effect on the task, that keeps
+//! these rows and the box of the tick. It is sent if the command together with the stop after it is certified clear, between ticks too;
+//! otherwise a part of it is, and in the end the stop goes on that was certified before.
+//!
+//! Pairs of tips that are where they are to be stay there: they are equations beside the rows, and the stop keeps to them as well.
+
+use std::sync::Arc;
+
+use super::held_stop::HeldStop;
+use super::row_motion::{Beside, RowMotion, Towards};
+use super::stop_motion::StopMotion;
+use super::tick_aim::TickAim;
+use super::wish::Wish;
+use crate::error::{Error, Result, require_finite};
+use crate::limits::{Field, Limits};
+use crate::math::MAX_DOF;
+use crate::math::row_step::Row;
+use crate::math::vector::{between, dot, norm};
+use crate::objective::{Bounds, Point};
+use crate::obstacle::{ChordCheck, ClearSpace, JointMotion, KeptDistance, MOST_ROWS, NearRow, NearRows};
+use crate::robot::Robot;
+use crate::task::TipAims;
+
+/// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
+const ROOM: f64 = 2e-4;
+const LEAST_ROOM: f64 = 2e-5;
+
+/// Least distance beyond the margin at which a pair becomes a row (m), and largest.
+const NEAR: [f64; 2] = [0.03, 0.2];
+
+/// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
+const WARNING: f64 = 0.4;
+
+/// Time in which a distance that is wanted, but not needed, comes about (s).
+const PACE: f64 = 0.1;
+
+/// Parts of a command that are tried if the whole is not certified.
+const PARTS: [f64; 2] = [0.5, 0.125];
+
+/// Gauss-Newton steps towards the target along the rows.
+const STEPS: usize = 3;
+
+/// Rows of a goal are trusted for joint motions up to this (rad, m).
+const TRUSTED: f64 = 0.05;
+
+/// What an obstacle may do between two calls that say where it is.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct ObstacleMotion {
+    /// Velocity of each obstacle (m/s); empty if all are at rest.
+    pub velocities: Vec<[f64; 3]>,
+    speeds: Vec<f64>,
+}
+
+/// What a goal configuration is to meet.
+pub(super) struct GoalToClear<'a> {
+    pub robot: &'a Robot,
+    pub aim: TickAim<'a>,
+    pub positions: &'a Bounds,
+}
+
+/// What is around an arm.
+#[derive(Debug)]
+struct Around {
+    space: Arc<ClearSpace<'static>>,
+    obstacles: ObstacleMotion,
+    /// Time since the obstacles were where they are said to be (s).
+    since: f64,
+    /// Near pairs where the arm comes to rest if it brakes now.
+    near: NearRows,
+    /// Where it would come to rest after the command.
+    after: NearRows,
+    check: ChordCheck,
+}
+
+/// Keeps an arm clear and pairs of tips held, tick by tick.
+#[derive(Debug)]
+pub(super) struct KeptMotion {
+    around: Option<Around>,
+    rows: RowMotion,
+    /// The stop of an arm that holds pairs, after its last command; empty if it holds none.
+    stop: HeldStop,
+    /// That of the command in question.
+    next_stop: HeldStop,
+    /// Rows keep the last goal from its target.
+    goal_is_held: bool,
+}
+
+/// What became of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kept {
+    /// Whether it was changed.
+    pub changed: bool,
+    /// Whether it was because of what is around the arm.
+    pub by_obstacles: bool,
+}
+
+impl ObstacleMotion {
+    /// With these velocities (m/s): one for each of the obstacles, of which there are `count`, or none.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub fn new(velocities: Vec<[f64; 3]>, count: usize) -> Result<Self> {
+        if !velocities.is_empty() && velocities.len() != count {
+            let what = "velocities".into();
+            return Err(Error::WrongLength { what, expected: format!("{count} obstacles"), got: velocities.len() });
+        }
+        require_finite("velocities", velocities.as_flattened(), |k| format!("obstacle {}", k / 3))?;
+        let speeds = velocities.iter().map(|velocity| norm(velocity)).collect();
+        Ok(Self { velocities, speeds })
+    }
+
+    fn fastest(&self) -> f64 {
+        self.speeds.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+impl Around {
+    /// # Errors
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
+    /// obstacle.
+    fn new(space: ClearSpace<'static>, limits: &Limits) -> Result<Self> {
+        for field in [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk] {
+            let remedy = "limits that vary can carry the arm into an obstacle; give numbers, or leave obstacles= out";
+            if limits.field(field).is_some() {
+                limits.constants(field, "tracking among obstacles", remedy)?;
+            }
+        }
+        Ok(Self {
+            near: space.near_rows(),
+            after: space.near_rows(),
+            check: space.chord_check(),
+            space: Arc::new(space),
+            obstacles: ObstacleMotion::default(),
+            since: 0.0,
+        })
+    }
+
+    /// How far an obstacle gets until the arm is at rest in `stop_time` (s), and how much nearer it comes while the arm gets out of
+    /// its way (m).
+    fn approach_of(&self, near: &NearRow, stop_time: f64) -> [f64; 2] {
+        let Some(velocity) = near.obstacle().and_then(|i| self.obstacles.velocities.get(i)) else { return [0.0; 2] };
+        let approach = dot(velocity, near.normal.as_slice()).max(0.0);
+        [norm(velocity) * (self.since + stop_time), approach * WARNING]
+    }
+
+    /// Finds the pairs near the place of rest.
+    fn find_near(&mut self, wish: &Wish<'_>, rest: &[f64]) {
+        let reach: f64 = wish.lower().iter().zip(wish.upper()).map(|(lower, upper)| upper - lower).sum();
+        let far = self.obstacles.fastest() * (self.since + WARNING);
+        let up_to = self.space.margin() + reach.clamp(NEAR[0], NEAR[1]) + 2.0 * far;
+        self.space.find_rows(rest, up_to, &mut self.near);
+    }
+
+    /// Whether a motion until `end` (ticks) is certainly clear.
+    fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
+        let kept = KeptDistance {
+            margin: self.space.margin(),
+            speeds: &self.obstacles.speeds,
+            since: self.since,
+            dt,
+            at_rest: self.near.rows(),
+            leeway: ROOM,
+        };
+        self.space.is_kept_by(motion, end, &kept, &mut self.check)
+    }
+
+    /// Sets the rows of a command that ends in `rest` after `stop_ticks`. Returns whether `wanted` breaks one.
+    fn set_rows(
+        &self,
+        wish: &Wish<'_>,
+        (rest, stop_ticks): (&[f64], f64),
+        wanted: &[f64],
+        rows: &mut Vec<Row>,
+    ) -> bool {
+        if self.near.rows().is_empty() {
+            return false;
+        }
+        let response = Response::new(wish, rest);
+        let stop_time = wish.dt * stop_ticks;
+        let pace = (wish.dt / PACE).min(1.0);
+        for near in self.near.rows() {
+            let [until_rest, while_leaving] = self.approach_of(near, stop_time);
+            let missing = self.space.margin() + until_rest - near.distance;
+            let wanted = missing + ROOM + while_leaving;
+            // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
+            // velocity at once also comes nearer in time, so that it can give way.
+            let paced = if wanted > 0.0 || wish.limited.is_some() { pace * wanted } else { wanted };
+            rows.push(response.row(&near.gradient, paced.max(missing + LEAST_ROOM)));
+        }
+        rows.iter().any(|row| dot(&row.gradient, wanted) < row.least)
+    }
+
+    /// Sets the rows of the place where the arm comes to rest after the command `q`: they bend on the way there.
+    fn set_rows_after(&mut self, wish: &Wish<'_>, (rest, stop_ticks): (&[f64], f64), q: &[f64], rows: &mut Vec<Row>) {
+        let slope = Response::new(wish, rest).slope;
+        self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
+        for near in self.after.rows() {
+            let [until_rest, _] = self.approach_of(near, wish.dt * stop_ticks);
+            let mut row =
+                Row { gradient: [0.0; MAX_DOF], least: self.space.margin() + until_rest + LEAST_ROOM - near.distance };
+            (0..q.len()).for_each(|j| row.gradient[j] = near.gradient[j] * slope[j]);
+            row.least += dot(&row.gradient[..q.len()], q);
+            rows.push(row);
+        }
+    }
+
+    /// Sets the rows of a goal configuration at `q`. Returns whether it keeps them.
+    fn set_goal_rows(&mut self, q: &[f64], rows: &mut Vec<Row>) -> bool {
+        let far = self.obstacles.fastest() * (self.since + WARNING);
+        self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
+        rows.clear();
+        for near in self.near.rows() {
+            let kept = self.space.margin() + 2.0 * ROOM + self.approach_of(near, 0.0).iter().sum::<f64>();
+            let least = kept - near.distance + dot(&near.gradient[..q.len()], q);
+            rows.push(Row { gradient: near.gradient, least });
+        }
+        rows.iter().all(|row| dot(&row.gradient, q) >= row.least)
+    }
+}
+
+impl KeptMotion {
+    /// Of an arm with these limits, in `space` if there is something to keep clear of.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
+    /// obstacle.
+    pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
+        Ok(Self {
+            around: space.map(|space| Around::new(space, limits)).transpose()?,
+            rows: RowMotion::with_room(limits.dof(), MOST_ROWS),
+            stop: HeldStop::default(),
+            next_stop: HeldStop::default(),
+            goal_is_held: false,
+        })
+    }
+
+    /// The space to stay in.
+    pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
+        self.around.as_ref().map(|around| &around.space)
+    }
+
+    /// Velocities of the obstacles (m/s); empty if all are at rest.
+    pub fn velocities(&self) -> &[[f64; 3]] {
+        self.around.as_ref().map_or(&[], |around| &around.obstacles.velocities)
+    }
+
+    /// Replaces what is around the arm: `space` with the obstacles where they are now, and how they move.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn replace(
+        &mut self,
+        space: Option<ClearSpace<'static>>,
+        obstacles: ObstacleMotion,
+        limits: &Limits,
+    ) -> Result<()> {
+        match (space, &mut self.around) {
+            (Some(space), Some(around)) => {
+                (around.space, around.obstacles, around.since) = (Arc::new(space), obstacles, 0.0);
+            }
+            (Some(space), none) => *none = Some(Around { obstacles, ..Around::new(space, limits)? }),
+            (None, around) => *around = None,
+        }
+        Ok(())
+    }
+
+    /// Forgets the stop, because the arm is not where it was.
+    pub fn forget(&mut self) {
+        self.stop.clear();
+    }
+
+    /// Changes the command `q` that the rule has found to one that keeps the arm clear and pairs of tips held. Pairs that cannot be held
+    /// are tasks like others, until they are where they are to be.
+    pub fn keep(&mut self, wish: &Wish<'_>, q: &mut Point) -> Kept {
+        let wanted = q.clone();
+        let pairs = wish.aim.as_ref().and_then(TickAim::tips).filter(|aims| aims.has_pairs());
+        let by_obstacles = pairs.and_then(|aims| self.keep_held(wish, aims, q)).unwrap_or_else(|| {
+            self.stop.clear();
+            q.copy_from_slice(&wanted);
+            self.keep_clear(wish, q)
+        });
+        if let Some(around) = &mut self.around {
+            around.since += wish.dt;
+        }
+        Kept { changed: *q != wanted, by_obstacles }
+    }
+
+    /// Changes the command `q` to one that keeps the arm clear. Returns whether it had to.
+    fn keep_clear(&mut self, wish: &Wish<'_>, q: &mut Point) -> bool {
+        if self.around.is_none() {
+            return false;
+        }
+        let brake = braking(wish);
+        let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
+        let stop = StopMotion::new(wish.q, &brake, limited);
+        let rest: Point = (0..wish.q.len()).map(|j| stop.end(j)).collect();
+        let wanted = q.clone();
+        if self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted) {
+            self.step_beside_rows(wish, q);
+        }
+        let certified = self.certifies(wish, q) || {
+            self.correct(wish, q);
+            self.certifies(wish, q)
+        };
+        let best = q.clone();
+        let mut parts = PARTS.into_iter();
+        let certified = certified
+            || parts.any(|part| {
+                between(&brake, &best, part, q);
+                self.certifies(wish, q)
+            });
+        if !certified {
+            q.copy_from_slice(&brake);
+        }
+        *q != wanted
+    }
+
+    /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether what is around the arm made it
+    /// another; None if pairs cannot be held.
+    fn keep_held(&mut self, wish: &Wish<'_>, aims: &TipAims<'_>, q: &mut Point) -> Option<bool> {
+        let mut brake = self.stop.next().cloned().unwrap_or_else(|| braking(wish));
+        wish.tick_box.bounds.clip(&mut brake);
+        let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
+        let wanted = q.clone();
+        let mut blocked = self.set_rows(wish, (&rest, self.stop.ticks_to_stop()), &wanted);
+        if blocked {
+            self.step_beside_rows(wish, q);
+        }
+        let best = q.clone();
+        for part in [1.0].into_iter().chain(PARTS) {
+            between(&brake, &best, part, q);
+            if !(self.rows.hold(&beside(wish, Towards::Start), q) && self.finds_stop(wish, q)) {
+                continue;
+            }
+            let (stop, dt) = (&self.next_stop, wish.dt);
+            let end = 1.0 + stop.ticks_to_stop();
+            if self.around.as_mut().is_none_or(|around| around.certifies(stop, end, dt)) {
+                std::mem::swap(&mut self.stop, &mut self.next_stop);
+                return Some(blocked);
+            }
+            blocked = true;
+        }
+        if !aims.pairs_are_held(wish.robot, &brake) {
+            return None;
+        }
+        q.copy_from_slice(&brake);
+        self.stop.pass();
+        Some(blocked)
+    }
+
+    /// Finds the stop after the command `q`, beside no rows: these are for the command.
+    fn finds_stop(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
+        let Self { rows, next_stop, .. } = self;
+        let near = std::mem::take(&mut rows.rows);
+        let found = next_stop.find(wish, q, rows);
+        rows.rows = near;
+        found
+    }
+
+    /// Whether the command `q` and the stop after it are certainly clear.
+    fn certifies(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
+        let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
+        let motion = StopMotion::new(wish.q, q, limited);
+        self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), wish.dt))
+    }
+
+    /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it.
+    fn correct(&mut self, wish: &Wish<'_>, q: &mut Point) {
+        let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
+        let stop = StopMotion::new(wish.q, q, limited);
+        let rest: Point = (0..q.len()).map(|j| stop.end(j)).collect();
+        self.rows.rows.clear();
+        if let Some(around) = &mut self.around {
+            around.set_rows_after(wish, (&rest, stop.ticks_to_stop()), q, &mut self.rows.rows);
+        }
+        let start = q.clone();
+        // The effect on the tip itself counts, whatever the task.
+        let aim = wish.aim.as_ref().filter(|aim| aim.tips().is_some());
+        self.rows.write(&Beside { aim, ..beside(wish, Towards::Start) }, &start, q);
+    }
+
+    /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
+    /// beside the rows, beginning at `from`.
+    pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, from: &[f64], sample: &mut Point) {
+        let Self { around: Some(around), rows, goal_is_held, .. } = self else { return };
+        *goal_is_held = !around.set_goal_rows(sample, &mut rows.rows);
+        if !*goal_is_held {
+            return;
+        }
+        sample.copy_from_slice(from);
+        goal.positions.clip(sample);
+        for _ in 0..STEPS {
+            around.set_goal_rows(sample, &mut rows.rows);
+            let start = sample.clone();
+            let ends = start.iter().zip(goal.positions.lower().iter().zip(goal.positions.upper()));
+            let near = ends.map(|(q, (lower, upper))| ((q - TRUSTED).max(*lower), (q + TRUSTED).min(*upper)));
+            let near = Bounds::from_ranges(near);
+            let (robot, aim, lower, upper) = (goal.robot, Some(&goal.aim), near.lower(), near.upper());
+            let step = Beside { robot, aim, lower, upper, towards: Towards::Target, holds_pairs: true };
+            rows.write(&step, &start, sample);
+        }
+    }
+
+    /// Whether obstacles changed the last goal.
+    pub fn goal_is_held(&self) -> bool {
+        self.goal_is_held
+    }
+
+    /// Sets the rows of the command. Returns whether `wanted` breaks one.
+    fn set_rows(&mut self, wish: &Wish<'_>, (rest, stop_ticks): (&[f64], f64), wanted: &[f64]) -> bool {
+        let Self { around, rows, .. } = self;
+        rows.rows.clear();
+        around.as_mut().is_some_and(|around| {
+            around.find_near(wish, rest);
+            around.set_rows(wish, (rest, stop_ticks), wanted, &mut rows.rows)
+        })
+    }
+
+    /// Moves `q` to the command that keeps the rows and disturbs the task least.
+    fn step_beside_rows(&mut self, wish: &Wish<'_>, q: &mut Point) {
+        // What the rule wants under acceleration limits is not the target itself, but on the way there.
+        let (towards, steps) = if wish.limited.is_some() { (Towards::Start, 1) } else { (Towards::Target, STEPS) };
+        for _ in 0..steps {
+            let start = q.clone();
+            self.rows.write(&beside(wish, towards), &start, q);
+        }
+    }
+}
+
+/// A step in the box of a tick.
+fn beside<'a>(wish: &'a Wish<'a>, towards: Towards) -> Beside<'a> {
+    let (lower, upper) = (wish.lower(), wish.upper());
+    Beside { robot: wish.robot, aim: wish.aim.as_ref(), lower, upper, towards, holds_pairs: true }
+}
+
+/// The command of the fastest stop.
+fn braking(wish: &Wish<'_>) -> Point {
+    let mut brake = wish.limited.map_or_else(|| Point::from_slice(wish.q), |limited| limited.stopping(wish.q));
+    wish.tick_box.bounds.clip(&mut brake);
+    brake
+}
+
+/// How the place of rest follows the command x: r_j(x) = rest_j + slope_j x_j + offset_j, the secant over the box.
+struct Response {
+    slope: Point,
+    offset: Point,
+}
+
+impl Response {
+    fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
+        let at_once =
+            Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
+        let Some(limited) = wish.limited else { return at_once };
+        let (braking, state) = (limited.braking(), limited.state());
+        let Self { mut slope, mut offset } = at_once;
+        let [lower, upper] = [wish.lower(), wish.upper()];
+        let [low, high] = [lower, upper].map(|command| StopMotion::new(wish.q, command, Some((braking, state))));
+        for j in 0..rest.len() {
+            let width = upper[j] - lower[j];
+            if width > 0.0 && braking[j].acceleration < f64::INFINITY {
+                slope[j] = (high.end(j) - low.end(j)) / width;
+                offset[j] = low.end(j) - slope[j] * lower[j] - rest[j];
+            }
+        }
+        Self { slope, offset }
+    }
+
+    /// The row of the command with which gradient'(r(x) - rest) >= `least`.
+    fn row(&self, gradient: &[f64; MAX_DOF], least: f64) -> Row {
+        let mut row = Row { gradient: [0.0; MAX_DOF], least };
+        for (j, (slope, offset)) in self.slope.iter().zip(&self.offset).enumerate() {
+            row.gradient[j] = gradient[j] * slope;
+            row.least -= gradient[j] * offset;
+        }
+        row
+    }
+}

@@ -1,0 +1,143 @@
+//! Steps beside rows: nearest to where they begin, or to the target, measured by their effect on the task.
+
+use smallvec::SmallVec;
+
+use super::tick_aim::TickAim;
+use crate::math::MAX_DOF;
+use crate::math::block_step::TaskRows;
+use crate::math::box_step::ROWS;
+use crate::math::row_step::{Row, RowSolver, RowStep};
+use crate::math::vector::{dot, squared_size};
+use crate::objective::{Linearization, Point, TaskBlock};
+use crate::robot::Robot;
+use crate::task::TipAims;
+
+/// Damping of the joints beside the task, relative to the squared size of the Jacobian.
+const DAMPING: f64 = 1e-5;
+
+/// Newton steps onto the poses of pairs; they converge quadratically.
+const HOLDING_STEPS: usize = 5;
+
+/// Pairs this near (m, rad) to where they are to be are held.
+const HELD: f64 = 1e-10;
+
+/// Rows that a pair has at most.
+const ROWS_OF_PAIR: usize = ROWS;
+
+/// Solves steps beside rows; owns its scratch.
+#[derive(Debug, Default)]
+pub(super) struct RowMotion {
+    /// Inequalities.
+    pub rows: Vec<Row>,
+    /// Equations: pairs of tips stay where they are to be.
+    held: Vec<Row>,
+    solver: RowSolver,
+    linearization: Box<Linearization>,
+}
+
+/// What a step leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Towards {
+    /// The target.
+    Target,
+    /// Where it begins.
+    Start,
+}
+
+/// The step of a robot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub robot: &'a Robot,
+    /// What the joints are for; None: nothing.
+    pub aim: Option<&'a TickAim<'a>>,
+    /// The box.
+    pub lower: &'a [f64],
+    pub upper: &'a [f64],
+    pub towards: Towards,
+    /// Whether pairs of tips are held.
+    pub holds_pairs: bool,
+}
+
+impl RowMotion {
+    /// With room for steps of `n` joints beside this many rows.
+    pub fn with_room(n: usize, rows: usize) -> Self {
+        Self {
+            rows: Vec::with_capacity(rows),
+            solver: RowSolver::with_room(n, rows + 2 * ROWS_OF_PAIR),
+            ..Self::default()
+        }
+    }
+
+    /// Writes the point after the step from `start` into `out`.
+    pub fn write(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
+        let n = start.len();
+        self.linearize(step, start);
+        let tips = step.aim.and_then(TickAim::tips);
+        self.held.clear();
+        if let Some(aims) = tips.filter(|_| step.holds_pairs) {
+            self.hold_pairs(aims, start);
+        }
+        let Beside { lower, upper, towards, .. } = *step;
+        let counts = |i: usize| tips.is_none_or(|aims| aims.tasks.get(i).is_some_and(|task| !task.subject.is_pair()));
+        let blocks = self.linearization.blocks().enumerate().filter(|(i, _)| counts(*i));
+        let tasks = blocks.map(|(_, TaskBlock { columns, residual })| match towards {
+            Towards::Target => TaskRows { columns, residual },
+            Towards::Start => TaskRows { columns, residual: &[0.0; ROWS] },
+        });
+        let tasks: SmallVec<[TaskRows<'_>; 4]> = tasks.collect();
+        let size: f64 = tasks.iter().map(|task| squared_size(&task.columns[..n])).sum();
+        let lambda = if tasks.is_empty() { 1.0 } else { (DAMPING * size).max(f64::MIN_POSITIVE.sqrt()) };
+        let step = RowStep { tasks: &tasks, lambda, start, lower, upper, rows: &self.rows, held: &self.held };
+        self.solver.write(&step, out);
+    }
+
+    /// Moves `q` to the poses of all pairs, by as little as the task allows. Returns whether they are held there.
+    pub fn hold(&mut self, step: &Beside<'_>, q: &mut Point) -> bool {
+        let Some(aims) = step.aim.and_then(TickAim::tips) else { return true };
+        let step = Beside { towards: Towards::Start, holds_pairs: true, ..*step };
+        for _ in 0..HOLDING_STEPS {
+            let start = q.clone();
+            self.write(&step, &start, q);
+            let missed = self.missed(aims);
+            if missed <= HELD {
+                break;
+            }
+        }
+        aims.pairs_are_held(step.robot, q)
+    }
+
+    /// How far pairs were from where they are to be, at the start of the last step.
+    fn missed(&self, aims: &TipAims<'_>) -> f64 {
+        let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.subject.is_pair());
+        blocks.map(|(block, _)| dot(&block.residual, &block.residual)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Residuals and Jacobians at `start`.
+    fn linearize(&mut self, step: &Beside<'_>, start: &[f64]) {
+        match step.aim {
+            Some(aim) => {
+                aim.linearize(step.robot, start, &mut self.linearization);
+            }
+            None => {
+                self.linearization.more.clear();
+                self.linearization.first.residual = [0.0; ROWS];
+                step.robot.tip_and_jacobian(start, &mut self.linearization.first.columns);
+            }
+        }
+    }
+
+    /// The rows of all pairs: r + J (x - start) = 0.
+    fn hold_pairs(&mut self, aims: &TipAims<'_>, start: &[f64]) {
+        for (block, task) in self.linearization.blocks().zip(aims.tasks) {
+            for k in (0..ROWS).filter(|_| task.subject.is_pair()) {
+                let mut gradient = [0.0; MAX_DOF];
+                let columns = block.columns[..start.len()].iter();
+                gradient.iter_mut().zip(columns).for_each(|(entry, column)| *entry = column[k]);
+                if gradient != [0.0; MAX_DOF] {
+                    let least = dot(&gradient[..start.len()], start) - block.residual[k];
+                    self.held.push(Row { gradient, least });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What a command is found from.
+
+use super::limited_motion::LimitedMotion;
+use super::tick_aim::TickAim;
+use crate::limits::{LimitAt, Limits, TickBox};
+use crate::robot::Robot;
+
+/// The circumstances of a tick.
+pub(super) struct Wish<'a> {
+    pub robot: &'a Robot,
+    pub q: &'a [f64],
+    /// The box of the tick.
+    pub tick_box: &'a TickBox,
+    pub limits: &'a Limits,
+    pub limit_at: LimitAt,
+    /// Under acceleration or jerk limits.
+    pub limited: Option<&'a LimitedMotion>,
+    /// None before the first target.
+    pub aim: Option<TickAim<'a>>,
+    /// Start of the tick, and its length (s).
+    pub time: f64,
+    pub dt: f64,
+}
+
+impl Wish<'_> {
+    /// The lower ends of the box.
+    pub fn lower(&self) -> &[f64] {
+        self.tick_box.bounds.lower()
+    }
+
+    /// The upper ends of the box.
+    pub fn upper(&self) -> &[f64] {
+        self.tick_box.bounds.upper()
+    }
+}
