@@ -12,6 +12,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
+use crate::tips::read_only;
 
 /// A curve of configurations that keep the tip at a target.
 #[pyclass(name = "SelfMotion", module = "beetle_ik", frozen)]
@@ -118,7 +119,8 @@ pub fn self_motion(
     limits: Option<&PyLimits>,
     seed: i128,
 ) -> PyResult<Vec<PySelfMotion>> {
-    let target = read_target("target", target)?;
+    robot.core.require_one_tip("self_motion").map_err(raise)?;
+    let target = read_only("target", robot, target, read_target)?;
     let (_, limits) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = SelfMotionOptions { start, spacing, limits, seed: count("seed", seed)? };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ikcore::ik::SolveOptions;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Subject, TargetRow, TipError, TipTask, Tolerance};
+use ikcore::task::{Subject, TargetRow, Task, TipError, TipTask, Tolerance};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 
@@ -103,6 +103,19 @@ impl<T> Asked<T> {
     }
 }
 
+/// Reads what is for the only tip of a robot: plain, or in a dict with its name.
+pub fn read_only<'py, T>(
+    what: &str,
+    robot: &PyRobot,
+    value: &Bound<'py, PyAny>,
+    read: impl Fn(&str, &Bound<'py, PyAny>) -> PyResult<T>,
+) -> PyResult<T> {
+    match Asked::read(what, robot, value, read)? {
+        Asked::One(one) => Ok(one),
+        Asked::Tips { .. } => Err(invalid(format!("{what}: expected one for the only tip"))),
+    }
+}
+
 /// A tolerance: one for all, or a dict.
 pub enum ToleranceArgument<'py> {
     All(f64),
@@ -163,6 +176,81 @@ impl TaskArguments<'_, '_> {
     }
 }
 
+/// Task and tolerances by tip, of calls whose targets come later.
+#[derive(Debug)]
+pub struct TipSettings {
+    task: Each<Option<Task>>,
+    position: Each<f64>,
+    rotation: Each<f64>,
+}
+
+/// A value for all keys, or the values of some and the one of the others.
+#[derive(Debug)]
+struct Each<T> {
+    keys: Vec<(TipKey, T)>,
+    others: T,
+}
+
+impl<T: Copy> Each<T> {
+    fn of(&self, key: &TipKey) -> T {
+        self.keys.iter().find(|(known, _)| known == key).map_or(self.others, |(_, value)| *value)
+    }
+
+    /// Reads a dict, each value by `read`.
+    fn read<'py>(
+        what: &str,
+        robot: &Robot,
+        dict: &Bound<'py, PyDict>,
+        others: T,
+        read: impl Fn(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> PyResult<Self> {
+        let one = |(key, value): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
+            let key = read_key(what, &key)?;
+            subject(robot, &key)?;
+            Ok((key, read(&value)?))
+        };
+        Ok(Self { keys: dict.iter().map(one).collect::<PyResult<_>>()?, others })
+    }
+}
+
+impl TipSettings {
+    /// Reads them.
+    pub fn read(robot: &PyRobot, arguments: &TaskArguments<'_, '_>) -> PyResult<Self> {
+        let robot = &*robot.core;
+        let task = match arguments.task.map(|task| (task, task.cast::<PyDict>())) {
+            Some((_, Ok(dict))) => Each::read("task", robot, dict, None, |task| read_task(Some(task)))?,
+            Some((task, Err(_))) => Each { keys: vec![], others: read_task(Some(task))? },
+            None => Each { keys: vec![], others: None },
+        };
+        let tolerance = |what: &str, given: &ToleranceArgument<'_>| match given {
+            ToleranceArgument::All(all) => Ok(Each { keys: vec![], others: *all }),
+            ToleranceArgument::Each(dict) => {
+                Each::read(what, robot, dict, Tolerance::default().position, |value| value.extract())
+            }
+        };
+        let position = tolerance("position_tolerance", arguments.position_tolerance)?;
+        let rotation = tolerance("rotation_tolerance", arguments.rotation_tolerance)?;
+        Ok(Self { task, position, rotation })
+    }
+
+    /// Task and tolerance of the only tip of a robot.
+    pub fn of_only(&self, robot: &Robot) -> (Option<Task>, Tolerance) {
+        self.of(&robot.tips().map(str::to_owned).collect())
+    }
+
+    /// The tasks of targets with these keys.
+    pub fn tasks<'a>(&'a self, keys: &'a TipKeys, subjects: &'a [Subject]) -> impl Iterator<Item = TipTask> + 'a {
+        keys.iter().zip(subjects).map(|(key, subject)| {
+            let (task, tolerance) = self.of(key);
+            TipTask { subject: *subject, task, tolerance }
+        })
+    }
+
+    fn of(&self, key: &TipKey) -> (Option<Task>, Tolerance) {
+        (self.task.of(key), Tolerance { position: self.position.of(key), rotation: self.rotation.of(key) })
+    }
+}
+
 fn tolerances(what: &str, given: &ToleranceArgument<'_>, robot: &Robot, keys: &TipKeys) -> PyResult<Vec<f64>> {
     match given {
         ToleranceArgument::All(all) => Ok(vec![*all; keys.0.len()]),
@@ -214,6 +302,13 @@ fn subject(robot: &Robot, key: &TipKey) -> PyResult<Subject> {
     }
 }
 
+fn key_object<'py>(py: Python<'py>, key: &TipKey) -> PyResult<Bound<'py, PyAny>> {
+    match &key[..] {
+        [tip] => Ok(PyString::new(py, tip).into_any()),
+        names => Ok(PyTuple::new(py, names)?.into_any()),
+    }
+}
+
 fn in_words(key: &TipKey) -> String {
     match &key[..] {
         [tip] => format!("'{tip}'"),
@@ -254,6 +349,11 @@ impl TipErrors {
         Self { keys, errors: vec![] }
     }
 
+    /// Those of the only tip of an arm without a model.
+    pub fn unnamed() -> Self {
+        Self::of_one(TipKeys([vec!["tip".to_owned()]].into()))
+    }
+
     /// The rows `rows`.
     pub fn select(&self, rows: &[usize]) -> Self {
         let count = self.keys.0.len();
@@ -273,15 +373,26 @@ impl TipErrors {
     ) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for (i, key) in self.keys.iter().enumerate() {
-            let key = match &key[..] {
-                [tip] => PyString::new(py, tip).into_any(),
-                names => PyTuple::new(py, names)?.into_any(),
-            };
             let value = match self.errors[..] {
                 [] => value(&mut only.clone()),
                 _ => value(&mut self.errors.iter().skip(i).step_by(self.keys.0.len()).copied()),
             };
-            dict.set_item(key, value)?;
+            dict.set_item(key_object(py, key)?, value)?;
+        }
+        Ok(dict)
+    }
+
+    /// A dict with what `value` makes of the rows of each key in `table`, which has a value for each key in each row.
+    pub fn columns<'py, T: Copy, V: IntoPyObject<'py>>(
+        &self,
+        py: Python<'py>,
+        table: &[T],
+        value: impl Fn(&mut dyn Iterator<Item = T>) -> V,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (i, key) in self.keys.iter().enumerate() {
+            let mut rows = table.iter().skip(i).step_by(self.keys.0.len()).copied();
+            dict.set_item(key_object(py, key)?, value(&mut rows))?;
         }
         Ok(dict)
     }
@@ -294,7 +405,7 @@ impl TipErrors {
 
     /// From bytes; before robots had several tips, results were stored without.
     pub fn restored(bytes: Option<&[u8]>) -> PyResult<Self> {
-        let Some(bytes) = bytes else { return Ok(Self::of_one(TipKeys([vec!["tip".to_owned()]].into()))) };
+        let Some(bytes) = bytes else { return Ok(Self::unnamed()) };
         let (keys, errors): (Vec<TipKey>, Vec<TipError>) = from_bytes("errors of tips", bytes).map_err(raise)?;
         Ok(Self { keys: TipKeys(keys.into()), errors })
     }

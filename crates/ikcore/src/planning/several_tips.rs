@@ -5,9 +5,9 @@ use super::endpoint::{EndName, Endpoint, no_usable_end};
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::PointToPointOptions;
-use super::point_to_point::plan_point_to_point;
+use super::point_to_point::{check_point_to_point, plan_point_to_point};
 use crate::error::{Error, Result};
-use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
+use crate::ik::{AllOptions, Solution, SolveOptions, checked_tasks, reduce, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
@@ -20,6 +20,68 @@ pub enum TipsEndpoint {
     Targets(Vec<(TipTask, Target)>),
     /// A configuration (n,) (rad, m).
     Configuration(Vec<f64>),
+}
+
+/// What a motion begins or ends with: that of one tip, or of several.
+pub trait MotionEnd: Sync + Sized {
+    /// Checks the arguments of [`plan`](Self::plan), as far as no planner is needed.
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong input.
+    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()>;
+
+    /// Plans the motion.
+    ///
+    /// # Errors
+    /// As [`plan_point_to_point`].
+    fn plan(
+        robot: &Robot,
+        start: &Self,
+        ends: &[Self],
+        options: &PointToPointOptions,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Plan>;
+}
+
+impl MotionEnd for Endpoint {
+    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()> {
+        check_point_to_point(robot, start, ends, options)
+    }
+
+    fn plan(
+        robot: &Robot,
+        start: &Self,
+        ends: &[Self],
+        options: &PointToPointOptions,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Plan> {
+        plan_point_to_point(robot, start, ends, options, monitor)
+    }
+}
+
+impl MotionEnd for TipsEndpoint {
+    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()> {
+        EndSearch::new(robot, options)?;
+        let names = (0..ends.len()).map(|i| EndName::of(i, ends.len()));
+        std::iter::once((EndName::Start, start)).chain(names.zip(ends)).try_for_each(|(name, end)| match end {
+            Self::Configuration(q) => robot.check(&name.of_configuration(), q),
+            Self::Targets(targets) => {
+                let (tips, mut wanted): (Vec<TipTask>, Vec<Target>) = targets.iter().copied().unzip();
+                wanted.iter().try_for_each(Target::validate)?;
+                reduce(robot, &checked_tasks(robot, &tips)?, &mut wanted)
+            }
+        })
+    }
+
+    fn plan(
+        robot: &Robot,
+        start: &Self,
+        ends: &[Self],
+        options: &PointToPointOptions,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Plan> {
+        plan_point_to_point_tips(robot, start, ends, options, monitor)
+    }
 }
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
 
 use super::plan::PyPlan;
-use super::plan_arguments::{PlanArguments, ReadOptions, read_problem};
+use super::plan_arguments::{EndArguments, PlanArguments, ReadOptions, read_problem};
 use crate::convert::{optional_count, row};
 use crate::error::{invalid, raise};
 use crate::indexing::{Selection, iterate, select};
@@ -226,11 +226,18 @@ pub fn plan_batch<'py>(
         stop,
         seed,
     };
-    let (read, kept) = read_problems(robot, problems, &common)?;
     let threads = optional_count("threads", threads)?;
     let arm = robot.get().core.clone();
-    let stopwatch = Stopwatch::start();
-    let results = watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?;
+    let (results, kept, stopwatch) = if arm.tip_count() > 1 {
+        let read = |ends: &EndArguments<'_>, task: &_| ends.read_tips(robot.get(), task);
+        let (read, kept) = read_problems(robot, problems, &common, read)?;
+        let stopwatch = Stopwatch::start();
+        (watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?, kept, stopwatch)
+    } else {
+        let (read, kept) = read_problems(robot, problems, &common, |ends, _| ends.read(robot.get()))?;
+        let stopwatch = Stopwatch::start();
+        (watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?, kept, stopwatch)
+    };
     let elapsed = stopwatch.elapsed().as_secs_f64();
     let status = results.iter().map(|result| plan_status(result) as u8).collect();
     let (plans, errors) = converted(robot, results, &kept)?;
@@ -243,11 +250,12 @@ pub fn plan_batch<'py>(
 type Kept = Arc<ReadOptions>;
 
 /// Reads all problems. Those without options of their own share the common ones.
-fn read_problems<'py>(
+fn read_problems<'py, E>(
     robot: &Bound<'py, PyRobot>,
     problems: &Bound<'py, PyAny>,
     common: &PlanArguments<'py>,
-) -> PyResult<(Vec<PlanProblem>, Vec<Kept>)> {
+    read_ends: impl Fn(&EndArguments<'py>, &Option<Bound<'py, PyAny>>) -> PyResult<(E, Vec<E>)>,
+) -> PyResult<(Vec<PlanProblem<E>>, Vec<Kept>)> {
     let py = robot.py();
     let of_all = Arc::new(common.read(py, robot.get())?);
     let (mut read, mut kept) = (vec![], vec![]);
@@ -255,9 +263,9 @@ fn read_problems<'py>(
     for (i, problem) in problems.try_iter().map_err(|_| wrong())?.enumerate() {
         py.check_signals()?;
         let problem = problem?;
-        let one = || -> PyResult<(PlanProblem, Kept)> {
+        let one = || -> PyResult<(PlanProblem<E>, Kept)> {
             let (ends, own) = read_problem(&problem, common)?;
-            let (start, ends) = ends.read()?;
+            let (start, ends) = read_ends(&ends, own.as_ref().map_or(&common.task, |own| &own.task))?;
             let kept = match own {
                 None => of_all.clone(),
                 Some(own) => Arc::new(own.read_over(py, robot.get(), common, &of_all)?),

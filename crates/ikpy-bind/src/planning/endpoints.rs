@@ -5,17 +5,32 @@ use ikcore::planning::{Endpoint, TipsEndpoint};
 use ikcore::task::{Target, Tolerance};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyDict, PyList};
 
 use crate::convert::{Numbers, array, rigid_rows, shape_text, vector};
 use crate::error::invalid;
 use crate::ik::read_target;
 use crate::robot::PyRobot;
-use crate::tips::{Asked, TaskArguments, ToleranceArgument};
+use crate::tips::{Asked, TaskArguments, ToleranceArgument, read_only};
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Reads the start, given as a target or as joint positions.
+/// The ends of a robot with one tip, without the dicts that may name it.
+pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let of_one = |name: &str, end: &Bound<'py, PyAny>| match end.is_instance_of::<PyDict>() {
+        true => read_only(name, robot, end, |_, end| Ok(end.clone())),
+        false => Ok(end.clone()),
+    };
+    match end.cast::<PyList>() {
+        Ok(several) => {
+            let each = several.iter().enumerate().map(|(i, end)| of_one(&format!("{name}[{i}]"), &end));
+            Ok(PyList::new(end.py(), each.collect::<PyResult<Vec<_>>>()?)?.into_any())
+        }
+        Err(_) => of_one(name, end),
+    }
+}
+
 pub fn read_start(target: Argument<'_, '_>, q: Argument<'_, '_>) -> PyResult<Endpoint> {
     match one_of("start", target, q)? {
         Given::Target(target) => {

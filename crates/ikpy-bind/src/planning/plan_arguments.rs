@@ -8,7 +8,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::endpoints::{read_ends, read_start, read_tips_ends, read_tips_start};
+use super::endpoints::{plain, read_ends, read_start, read_tips_ends, read_tips_start};
 use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
@@ -32,9 +32,11 @@ pub struct EndArguments<'py> {
 
 impl EndArguments<'_> {
     /// Converts them to the start and the possible ends.
-    pub fn read(&self) -> PyResult<(Endpoint, Vec<Endpoint>)> {
-        let start = read_start(self.start.as_ref(), self.start_q.as_ref())?;
-        Ok((start, read_ends(self.end.as_ref(), self.end_q.as_ref())?))
+    pub fn read(&self, robot: &PyRobot) -> PyResult<(Endpoint, Vec<Endpoint>)> {
+        let start = self.start.as_ref().map(|start| plain("start", robot, start)).transpose()?;
+        let end = self.end.as_ref().map(|end| plain("end", robot, end)).transpose()?;
+        let start = read_start(start.as_ref(), self.start_q.as_ref())?;
+        Ok((start, read_ends(end.as_ref(), self.end_q.as_ref())?))
     }
 
     /// The same for a robot with several tips.
@@ -104,7 +106,10 @@ impl PlanArguments<'_> {
             retreat: read_line("retreat", self.retreat.as_ref())?,
             free_start: extracted("free_start", self.free_start.as_ref())?.unwrap_or(false),
             // That of several tips goes with their targets.
-            task: if robot.core.tip_count() > 1 { None } else { read_task(self.task.as_ref())? },
+            task: match &self.task {
+                Some(task) if robot.core.tip_count() == 1 => read_task(Some(&plain("task", robot, task)?))?,
+                _ => None,
+            },
             method: read_method(self.method.as_ref())?,
             objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
             obstacles: obstacles.core,

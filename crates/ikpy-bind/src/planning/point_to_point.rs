@@ -98,7 +98,7 @@ pub fn plan_point_to_point<'py>(
         let call = |watcher: &mut Watcher| plan_point_to_point_tips(&arm, &start, &ends, &options.core, watcher);
         watched(py, progress, call)?
     } else {
-        let (start, ends) = ends.read()?;
+        let (start, ends) = ends.read(robot.get())?;
         let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
         watched(py, progress, call)?
     };

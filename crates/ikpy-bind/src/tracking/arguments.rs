@@ -2,7 +2,7 @@
 
 use ikcore::limits::{LimitAt, Limits};
 use ikcore::obstacle::Surroundings;
-use ikcore::task::Tolerance;
+use ikcore::task::{Task, Tolerance};
 use ikcore::tracking::{TickRule, TrackOptions};
 use pyo3::prelude::*;
 
@@ -11,15 +11,14 @@ use crate::convert::{count, summary};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::solver::{known_solver, solver_names};
-use crate::task::read_task;
 
 /// The arguments as Python gives them; the rule is read first, since it decides how a path is sampled.
 pub struct TrackArguments<'a, 'py> {
     pub rule: TickRule,
-    pub task: Option<&'a Bound<'py, PyAny>>,
+    /// Those of the only tip; several tips have their own.
+    pub task: Option<Task>,
+    pub tolerance: Tolerance,
     pub goals: Option<&'a Bound<'py, PyAny>>,
-    pub position_tolerance: f64,
-    pub rotation_tolerance: f64,
     pub surroundings: Surroundings,
     pub seed: i128,
     pub limit_at: &'a str,
@@ -30,9 +29,9 @@ impl TrackArguments<'_, '_> {
     pub fn read(self, limits: Option<Limits>) -> PyResult<TrackOptions> {
         Ok(TrackOptions {
             rule: self.rule,
-            task: read_task(self.task)?,
+            task: self.task,
             goals: read_goals(self.goals)?,
-            tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
+            tolerance: self.tolerance,
             limits,
             surroundings: self.surroundings,
             ease: false,

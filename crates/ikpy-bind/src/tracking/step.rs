@@ -6,9 +6,11 @@ use std::time::Duration;
 use ikcore::obstacle::{ClearSpace, Contact, NearestContact};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::task::TipError;
 use ikcore::tracking::Step;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::convert::row;
 use crate::error::raise;
@@ -16,6 +18,7 @@ use crate::limits::PyLimits;
 use crate::obstacle::PyNearest;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
+use crate::tips::TipErrors;
 use crate::traversal::traversed;
 
 /// The result of one step of a `Tracker` or a `ControlSession`.
@@ -32,6 +35,8 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// What was asked of each tip.
+    tips: TipErrors,
     /// What is around the arm, and its configuration; `None` if nothing is to be kept clear of.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Found when asked for.
@@ -58,13 +63,22 @@ outcome! {
 
 #[pymethods]
 impl PyStep {
-    /// Distance of the tip from the target (m).
+    /// Errors of each target, by the keys of the last call or the name of the only tip: {tip: (position (m), rotation (rad))}, as
+    /// `position_error` and `rotation_error`; empty before the first target of several tips.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.tips.dict(py, std::iter::once(self.core.error), |errors| {
+            errors.next().map(|TipError { position, rotation }| (position, rotation))
+        })
+    }
+
+    /// Distance of the tip from the target (m); the largest of several tips.
     #[getter]
     fn position_error(&self) -> f64 {
         self.core.error.position
     }
 
-    /// Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free.
+    /// Geodesic angle to the target's orientation (rad), the largest of several tips; NaN if the task leaves the orientation free.
     #[getter]
     fn rotation_error(&self) -> f64 {
         self.core.error.rotation
@@ -98,15 +112,18 @@ impl PyStep {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("step", &state))?, &self.limits))
+        let bytes = pickling::bytes(py, to_bytes("step", &state))?;
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, limits, tips=None))]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
         let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Around) =
             from_bytes("step", bytes).map_err(raise)?;
-        Ok(Self { around: OnceLock::from(around), ..Self::new(py, core, [q, qd], limits, elapsed) })
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
+        Ok(Self { around: OnceLock::from(around), ..step })
     }
 }
 
@@ -114,7 +131,12 @@ impl PyStep {
     /// `motion`: the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, among: None, around: OnceLock::new() }
+        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+    }
+
+    /// The step of an arm with these tips.
+    pub fn of_tips(self, tips: TipErrors) -> Self {
+        Self { tips, ..self }
     }
 
     /// The step of an arm that keeps to `space`, at `q`.

@@ -1,23 +1,30 @@
 //! `track` and `TrackResult`.
 
+use ikcore::ik::SolveOptions;
+use ikcore::math::Pose;
 use ikcore::obstacle::Surroundings;
+use ikcore::path::Reference;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::tracking::{self, Record, TrackOptions};
+use ikcore::task::{Target, TipError, TipTask};
+use ikcore::tracking::{self, Record, TipTable, TipsRecord, TrackOptions};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
 use crate::convert::{row, table, vector};
-use crate::error::raise;
+use crate::error::{invalid, raise};
+use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::Obstacles;
 use crate::outcome::outcome;
-use crate::path::path_argument;
+use crate::path::{PyPath, path_argument};
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
+use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
 
@@ -26,6 +33,9 @@ use crate::traversal::traversed;
 pub struct PyTrackResult {
     core: Record,
     columns: Columns,
+    /// What was asked of each tip, and of several tips what became of it.
+    tips: TipErrors,
+    table: TipTable,
     /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
     #[pyo3(get)]
     clearance: Py<PyArray1<f64>>,
@@ -49,7 +59,7 @@ record! {
     PyTrackResult = |result| result.core,
     /// Configurations (k, n) (rad, m).
     q,
-    /// Positions of the tip (k, 3) (m).
+    /// Positions of the tip (k, 3) (m); of several tips those of the first target, `positions` has all.
     position,
     /// Evaluations of the forward kinematics in each step (k,).
     step_evaluations,
@@ -72,6 +82,31 @@ outcome! {
 
 #[pymethods]
 impl PyTrackResult {
+    /// Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (k,) (m), rotation (k,) (rad))};
+    /// `position_error` and `rotation_error` are the largest.
+    #[getter]
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let rows = self.core.position_error.iter().zip(&self.core.rotation_error);
+        let only = rows.map(|(&position, &rotation)| TipError { position, rotation });
+        self.tips.dict(py, only, |errors| {
+            let (position, rotation) = errors.map(|error| (error.position, error.rotation)).unzip();
+            (row::<f64>(py, position), row::<f64>(py, rotation))
+        })
+    }
+
+    /// Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; of a pair as seen from
+    /// its first tip.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.points(py, &self.core.position, &self.table.positions)
+    }
+
+    /// Reference positions of each target, as `positions`.
+    #[getter]
+    fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.points(py, &self.core.reference, &self.table.references)
+    }
+
     /// Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits.
     #[getter]
     fn limit_margin(&self) -> f64 {
@@ -99,19 +134,40 @@ impl PyTrackResult {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("track", &self.core))?;
-        pickling::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+        let table = pickling::bytes(py, to_bytes("track of several tips", &self.table))?;
+        let (robot, limits) = (self.robot.clone_ref(py), self.limits.clone_ref(py));
+        pickling::restored_from::<Self>(py, (core, robot, limits, self.tips.bytes(py)?, table))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
-        Self::new(py, from_bytes("track", bytes).map_err(raise)?, robot, limits)
+    #[pyo3(signature = (bytes, robot, limits, tips=None, table=None))]
+    fn _restore(
+        py: Python<'_>,
+        bytes: &[u8],
+        robot: Py<PyRobot>,
+        limits: Py<PyLimits>,
+        tips: Option<&[u8]>,
+        table: Option<&[u8]>,
+    ) -> PyResult<Self> {
+        let track = from_bytes("track", bytes).map_err(raise)?;
+        let tips = if tips.is_some() { TipErrors::restored(tips)? } else { TipErrors::of_one(robot.get().tips.clone()) };
+        let table = table.map(|bytes| from_bytes("track of several tips", bytes)).transpose().map_err(raise)?;
+        Self::new(py, track, (tips, table.unwrap_or_default()), robot, limits)
     }
 }
 
 impl PyTrackResult {
-    fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        core: Record,
+        (tips, several): (TipErrors, TipTable),
+        robot: Py<PyRobot>,
+        limits: Py<PyLimits>,
+    ) -> PyResult<Self> {
         Ok(Self {
+            tips,
+            table: several,
             columns: Columns::new(py, &core)?,
             velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
             clearance: row(py, core.clearance.clone()).unbind(),
@@ -120,6 +176,21 @@ impl PyTrackResult {
             limits,
             core,
         })
+    }
+
+    /// Points of each target (k, 3), of the only one those of `track`.
+    fn points<'py>(
+        &self,
+        py: Python<'py>,
+        track: &[[f64; 3]],
+        several: &[[f64; 3]],
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let rows = track.len();
+        let points = if several.is_empty() { track } else { several };
+        let converted = |points: &mut dyn Iterator<Item = [f64; 3]>| {
+            table(py, points.flatten().collect(), &[rows, 3]).ok()
+        };
+        self.tips.columns(py, points, converted)
     }
 }
 
@@ -131,18 +202,21 @@ impl PyTrackResult {
 ///
 /// Args:
 ///     robot: the arm.
-///     path: reference positions or poses over time.
+///     path: reference positions or poses over time. For a robot with several `tips` a dict of paths, such as {"left_tool": path}, which
+///         have one time; a constant pose (4, 4) or position (3,) counts as a path. A tip left out is free, and a pair
+///         ("left_tool", "right_tool") is the second as seen from the first: it is held there before anything else, so that both
+///         lag where one arm cannot follow.
 ///     start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
 ///         or, without goals, one far from singularities and limits.
 ///     dt: time step (s).
-///     task: which part of the path counts, one of `tasks`; None: all of it.
+///     task: which part of the path counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
 ///     limits: limits on the joint motion; None: the robot's.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
-///     position_tolerance: error band of positions (m).
-///     rotation_tolerance: error band of orientations (rad).
+///     position_tolerance: error band of positions (m); for several tips also a dict.
+///     rotation_tolerance: error band of orientations (rad); for several tips also a dict.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
 ///         robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
 ///         or stops. None: nothing is checked.
@@ -164,8 +238,9 @@ impl PyTrackResult {
 ///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, obstacles=None, margin=None, self_collision=None, seed=0,
-                    limit_at="interval", ease=false, progress=None))]
+                    position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
+                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, progress=None),
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -177,8 +252,8 @@ pub fn track(
     solver: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     goals: Option<&Bound<'_, PyAny>>,
-    position_tolerance: f64,
-    rotation_tolerance: f64,
+    #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
+    #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
     self_collision: Option<bool>,
@@ -188,20 +263,88 @@ pub fn track(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
-    let path = path_argument(path)?.get();
     let rule = tick_rule(solver)?;
-    let reference =
-        if rule.uses_velocities() { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };
-    let sampling = Sampling::of_ticks(dt, reference.len() - 1);
+    let asked = Asked::read("path", robot.get(), path, read_path)?;
+    let references = sampled(py, &asked, dt, rule.uses_velocities())?;
+    let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let obstacles = obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?;
     let surroundings = Surroundings { obstacles, margin, self_collision };
-    let asked =
-        TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, surroundings, seed, limit_at };
-    let options = TrackOptions { ease, ..asked.read(resolved)? };
-    let record =
-        watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
+    let mut tasks = SolveOptions::default();
+    let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
+    TaskArguments { task, position_tolerance, rotation_tolerance }.write(robot.get(), &asked, &mut tasks)?;
+    let (task, tolerance) = (tasks.task, tasks.tolerance);
+    let read = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
+    let options = TrackOptions { ease, ..read.read(resolved)? };
+    let start = start.as_deref();
+    let keys = asked.keys(robot.get());
+    let (record, tips) = if asked.subjects().is_none() {
+        let record = watched(py, progress, |watcher| tracking::track(&arm, &references[0], start, &options, watcher))?;
+        (record, (TipErrors::of_one(keys), TipTable::default()))
+    } else {
+        let paths: Vec<(TipTask, Reference)> = tasks.tips.into_iter().zip(references).collect();
+        let TipsRecord { track, tips } =
+            watched(py, progress, |watcher| tracking::track_tips(&arm, &paths, start, &options, watcher))?;
+        (track, (TipErrors { keys, errors: tips.errors.clone() }, tips))
+    };
     python_calls::log(py, format!("track: {}", record.message()))?;
-    PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
+    PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
+}
+
+/// A path, or a target that stays where it is.
+enum Followed<'py> {
+    Path(Bound<'py, PyPath>),
+    Constant(Target),
+}
+
+fn read_path<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Followed<'py>> {
+    match path_argument(value) {
+        Ok(path) => Ok(Followed::Path(path.clone())),
+        Err(_) if what != "path" => read_target(what, value).map(Followed::Constant).map_err(|error| {
+            let problem = error.value(value.py());
+            invalid(format!("{what}: expected a Path, or a constant pose or position: {problem}"))
+        }),
+        Err(error) => Err(error),
+    }
+}
+
+/// The paths at ticks of `dt` (s); all have one time.
+fn sampled(py: Python<'_>, asked: &Asked<Followed<'_>>, dt: f64, velocities: bool) -> PyResult<Vec<Reference>> {
+    let mut longest: Option<(f64, usize)> = None;
+    let mut references = vec![];
+    for followed in asked.values() {
+        let Followed::Path(path) = followed else {
+            references.push(None);
+            continue;
+        };
+        let path = path.get();
+        let reference = if velocities { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };
+        let (duration, rows) = (path.duration(), reference.len());
+        match longest {
+            Some((other, count)) if count != rows => {
+                return Err(invalid(format!("path: the paths have one time, got durations of {other} s and {duration} s")));
+            }
+            _ => longest = Some((duration, rows)),
+        }
+        references.push(Some(reference));
+    }
+    let Some((_, rows)) = longest else {
+        return Err(invalid("path: all targets are constant: give a Path for one tip at least".into()));
+    };
+    let constant = |followed: &Followed<'_>| match followed {
+        Followed::Constant(target) => constant_reference(target, dt, rows),
+        Followed::Path(_) => Err(invalid("path: no samples".into())),
+    };
+    let all = asked.values().iter().zip(references);
+    all.map(|(followed, reference)| reference.map_or_else(|| constant(followed), Ok)).collect()
+}
+
+/// A target that stays where it is as the samples of a path.
+fn constant_reference(target: &Target, dt: f64, rows: usize) -> PyResult<Reference> {
+    let rotations = match target {
+        Target::Pose(frame) => Some(vec![*Pose::from(*frame).rotation.matrix(); rows]),
+        _ => None,
+    };
+    Reference::new(dt, vec![target.position().unwrap_or_default(); rows], rotations).map_err(raise)
 }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
+use ikcore::tracking::{Arrival, Session, TickRule, TipArrival, TrackOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -20,6 +20,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
 use crate::robot::PyRobot;
+use crate::tips::{Asked, TaskArguments, TipErrors, TipKeys, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
@@ -32,13 +33,13 @@ use crate::traversal::traversed;
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
-///     task: as in `track`.
+///     task: as in `track`; also of tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
 ///         sample them.
 ///     goals: as in `track`.
-///     position_tolerance: largest position error (m).
-///     rotation_tolerance: largest rotation error (rad).
+///     position_tolerance: largest position error (m); for several tips also a dict.
+///     rotation_tolerance: largest rotation error (rad); for several tips also a dict.
 ///     obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
 ///         ticks: `tracker.obstacles = [...]`.
 ///     seed: seed of the random draws.
@@ -48,6 +49,10 @@ use crate::traversal::traversed;
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
+    /// Task and tolerances of each tip.
+    settings: TipSettings,
+    /// What the last targets were for.
+    keys: Mutex<TipKeys>,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
     /// The robot.
@@ -66,8 +71,9 @@ in_progress!(PyTracker, Session);
 impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
-                        position_tolerance=1e-6, rotation_tolerance=1e-6, obstacles=None, margin=None, self_collision=None, seed=0,
-                        limit_at="interval", target_filter=None, timeout=None))]
+                        position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
+                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None),
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -77,8 +83,8 @@ impl PyTracker {
         solver: Option<&Bound<'_, PyAny>>,
         limits: Option<&PyLimits>,
         goals: Option<&Bound<'_, PyAny>>,
-        position_tolerance: f64,
-        rotation_tolerance: f64,
+        #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
+        #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
         obstacles: Option<&Bound<'_, PyAny>>,
         margin: Option<f64>,
         self_collision: Option<bool>,
@@ -95,18 +101,27 @@ impl PyTracker {
         let given = obstacles.map(MovingObstacles::read).transpose()?;
         let shapes = given.as_ref().map(|given| given.shapes.clone());
         let surroundings = Surroundings { obstacles: shapes, margin, self_collision };
-        let asked =
-            TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, surroundings, seed, limit_at };
+        let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
+        let given_tasks = TaskArguments { task, position_tolerance, rotation_tolerance };
+        let settings = TipSettings::read(robot.get(), &given_tasks)?;
+        let (task, tolerance) = match arm.tip_count() {
+            1 => settings.of_only(arm),
+            _ => Default::default(),
+        };
+        let asked = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
         }
-        Ok(Self { session: Mutex::new(session), runs_solver, robot: robot.clone().unbind(), limits: in_force })
+        let (session, keys) = (Mutex::new(session), Mutex::new(robot.get().tips.clone()));
+        Ok(Self { session, settings, keys, runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
-    /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
+    /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot with several `tips` it is
+    /// a dict, such as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the
+    /// first. A pair that is where it is to be is held there, whatever else has to give way.
     ///
     /// Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
     /// model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
@@ -115,7 +130,7 @@ impl PyTracker {
     /// not finite raises an error, after which the tracker is as before.
     ///
     /// Args:
-    ///     target: target of the tip at the end of the tick; None: no new one.
+    ///     target: target of the tip, or of several, at the end of the tick; None: no new one.
     ///     velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
     ///         None: from the difference to the previous target.
     ///     stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
@@ -129,21 +144,36 @@ impl PyTracker {
         velocity: Option<&Bound<'_, PyAny>>,
         stamp: Option<f64>,
     ) -> PyResult<PyStep> {
-        let target = target.map(|target| read_target("target", target)).transpose()?;
+        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read_target)).transpose()?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         if target.is_none() && (velocity.is_some() || stamp.is_some()) {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
         }
-        let arrival = target.map(|target| Arrival { target, velocity, stamp });
         let (watch, mut session) = (Stopwatch::start(), self.session());
-        let core = if self.runs_solver {
-            watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
-        } else {
-            session.advance(arrival, &mut Unattended).map_err(raise)?
+        let core = match target {
+            Some(Asked::Tips { keys, subjects, values }) => {
+                if velocity.is_some() {
+                    return Err(invalid("velocity is for the target of one tip: leave it out".into()));
+                }
+                let targets = self.settings.tasks(&keys, &subjects).zip(values).collect();
+                let step = session.advance_tips(Some(TipArrival { targets, stamp }), &mut Unattended).map_err(raise)?;
+                *self.keys() = keys;
+                step
+            }
+            target => {
+                let one = |target| if let Asked::One(target) = target { Some(target) } else { None };
+                let arrival = target.and_then(one).map(|target| Arrival { target, velocity, stamp });
+                if self.runs_solver {
+                    watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
+                } else {
+                    session.advance(arrival, &mut Unattended).map_err(raise)?
+                }
+            }
         };
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q))
+        let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
+        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
     }
 
     /// Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
@@ -192,5 +222,12 @@ impl PyTracker {
     fn __repr__(&self) -> String {
         let session = self.session();
         format!("<Tracker of '{}' at t = {} s, dt = {} s>", session.robot().name(), session.time(), session.dt())
+    }
+}
+
+impl PyTracker {
+    /// What the last targets were for.
+    fn keys(&self) -> std::sync::MutexGuard<'_, TipKeys> {
+        self.keys.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
