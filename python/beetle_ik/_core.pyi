@@ -32,6 +32,7 @@ _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.intege
 _TipKey: TypeAlias = str | tuple[str, str]  # a tip, or one as seen from another
 _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
+_Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
 _Tolerance: TypeAlias = float | Mapping[str, float] | Mapping[_TipKey, float]
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
@@ -1612,7 +1613,7 @@ def solve_all(
 
 def self_motion(
     robot: Robot,
-    target: _Pose,
+    target: _Pose | Mapping[str, _Pose],
     *,
     start: ArrayLike | None = None,
     spacing: float = 0.05,
@@ -2095,16 +2096,16 @@ def from_function(function: Callable[[float], ArrayLike], duration: float) -> Pa
 
 def track(
     robot: Robot,
-    path: Path,
+    path: _Paths,
     start: ArrayLike | None = None,
     *,
     dt: float,
-    task: Task | None = None,
+    task: _Tasks = None,
     solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     goals: _Goals = None,
-    position_tolerance: float = 1e-6,
-    rotation_tolerance: float = 1e-6,
+    position_tolerance: _Tolerance = 1e-6,
+    rotation_tolerance: _Tolerance = 1e-6,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
     self_collision: bool | None = None,
@@ -2226,6 +2227,15 @@ class TrackResult:
         rounding.
         """
     @property
+    def errors(self) -> dict[_TipKey, tuple[_Array, _Array]]:
+        """errors"""
+    @property
+    def positions(self) -> dict[_TipKey, _Array]:
+        """positions"""
+    @property
+    def references(self) -> dict[_TipKey, _Array]:
+        """references"""
+    @property
     def limit_margin(self) -> float:
         """Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits."""
     @property
@@ -2313,12 +2323,12 @@ class Tracker:
         start: ArrayLike,
         *,
         dt: float,
-        task: Task | None = None,
+        task: _Tasks = None,
         solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         goals: _Goals = None,
-        position_tolerance: float = 1e-6,
-        rotation_tolerance: float = 1e-6,
+        position_tolerance: _Tolerance = 1e-6,
+        rotation_tolerance: _Tolerance = 1e-6,
         obstacles: Iterable[Obstacle | Moving] | None = None,
         margin: float | None = None,
         self_collision: bool | None = None,
@@ -2327,7 +2337,7 @@ class Tracker:
         target_filter: LowPass | OneEuro | None = None,
         timeout: float | None = None,
     ) -> Tracker: ...
-    def step(self, target: _Pose | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
+    def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
 
         Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
@@ -2414,6 +2424,9 @@ class Step:
     @property
     def qd(self) -> _Array:
         """The joint velocity over the step (n,) (rad/s, m/s)."""
+    @property
+    def errors(self) -> dict[_TipKey, tuple[float, float]]:
+        """errors"""
     @property
     def position_error(self) -> float:
         """Distance of the tip from the target (m)."""

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
 
 _ROW_HEIGHT = 2.4  # inches per panel over time
+# Colours of several tips, and of pairs of them.
+_TIPS = (BLUE, GREEN, ORANGE)
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
 _HEADROOM = 1.15  # height of a panel over what it shows
@@ -117,7 +119,8 @@ def track(result: TrackResult) -> Figure:
         figure.suptitle(f"{result.robot.name}, {counted(len(result.time) - 1, 'step')} of {result.time[1]:g} s")
         above, below = np.asarray(figure.subfigures(2, 1, height_ratios=heights))
         grid = above.add_gridspec(len(panels), 2, width_ratios=[1.0, 1.25])
-        _draw_space(above.add_subplot(grid[:, 0], projection="3d"), result)
+        draw_space = _draw_space if len(result.robot.tips) == 1 else _draw_space_of_tips
+        draw_space(above.add_subplot(grid[:, 0], projection="3d"), result)
         for row, draw in enumerate(panels):
             axes = above.add_subplot(grid[row, 1])
             draw(axes, result)
@@ -142,7 +145,9 @@ def model_free(result: ModelFreeResult) -> Figure:
         grid = figure.add_gridspec(rows, 2, width_ratios=[1.0, 1.25])
         _draw_space(figure.add_subplot(grid[:, 0], projection="3d"), result)
         if oriented:
-            _draw_rotation_error(figure.add_subplot(grid[1, 1]), result)
+            rotation = figure.add_subplot(grid[1, 1])
+            _draw_error(rotation, result.time, result.rotation_error, result.rotation_tolerance)
+            rotation.set_ylabel("rotation error [rad]")
         error, joints, measurements = (figure.add_subplot(grid[row, 1]) for row in (0, rows - 2, rows - 1))
         _draw_error(error, result.time, result.position_error, result.position_tolerance)
         error.set_ylabel("measured error [m]")
@@ -230,22 +235,59 @@ def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[n
 
 
 def _draw_space(axes: Any, result: TrackResult | ModelFreeResult) -> None:
-    axes.plot(*result.reference.T, color=VERMILION, linewidth=4, alpha=0.45, label="target")
-    axes.plot(*result.position.T, color=BLUE, linewidth=1.2, label="tip")
+    _draw_way(axes, result.position, result.reference, BLUE, "tip")
     axes.plot(*result.position[:1].T, color=BLUE, marker="o", linestyle="none", label="start")
     draw_in_space(axes, np.vstack((result.reference, result.position)))
     axes.set_title("path of the tip")
     axes.legend(loc="upper left")
 
 
+def _draw_space_of_tips(axes: Any, result: TrackResult) -> None:
+    """Draws the path of each tip that has a target, pairs left out: they are seen from another tip."""
+    positions, references = result.positions, result.references
+    tips = [key for key in positions if isinstance(key, str)]
+    if not tips:
+        axes.set_axis_off()
+        axes.set_title("poses of one tip as seen from another")
+        return
+    for tip, color in zip(tips, itertools.cycle(_TIPS), strict=False):
+        _draw_way(axes, positions[tip], references[tip], color, tip)
+    draw_in_space(axes, np.vstack([way[tip] for way in (positions, references) for tip in tips]))
+    axes.set_title("paths of the tips")
+    axes.legend(loc="upper left")
+
+
+def _draw_way(
+    axes: Any, position: NDArray[np.float64], reference: NDArray[np.float64], color: str, name: str
+) -> None:
+    label = "target" if name == "tip" else f"target of {name}"
+    axes.plot(*reference.T, color=VERMILION, linewidth=4, alpha=0.45, label=label)
+    axes.plot(*position.T, color=color, linewidth=1.2, label=name)
+
+
 def _draw_position_error(axes: Axes, result: TrackResult) -> None:
-    _draw_error(axes, result.time, result.position_error, result.position_tolerance)
+    _draw_errors(axes, result, 0, result.position_error, result.position_tolerance)
     axes.set_ylabel("position error [m]")
 
 
-def _draw_rotation_error(axes: Axes, result: TrackResult | ModelFreeResult) -> None:
-    _draw_error(axes, result.time, result.rotation_error, result.rotation_tolerance)
+def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
+    _draw_errors(axes, result, 1, result.rotation_error, result.rotation_tolerance)
     axes.set_ylabel("rotation error [rad]")
+
+
+def _draw_errors(
+    axes: Axes, result: TrackResult, component: int, error: NDArray[np.float64], tolerance: float
+) -> None:
+    """Draws the error of the tip or, of several tips and pairs of them, the errors of each."""
+    errors = result.errors
+    if len(result.robot.tips) == 1:
+        _draw_error(axes, result.time, error, tolerance)
+        return
+    for (key, each), color in zip(errors.items(), itertools.cycle(_TIPS), strict=False):
+        label = key if isinstance(key, str) else f"{key[1]} seen from {key[0]}"
+        axes.semilogy(result.time, each[component], color=color, label=label)
+    axes.axhline(tolerance, color=VERMILION, linestyle="--", label="tolerance")
+    axes.legend(loc="best")
 
 
 def _draw_error(axes: Axes, time: NDArray[np.float64], error: NDArray[np.float64], tolerance: float) -> None:

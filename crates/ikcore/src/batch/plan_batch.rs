@@ -38,8 +38,7 @@ pub fn plan_batch<E: MotionEnd>(
 ) -> Result<Vec<Result<Plan>>> {
     let threads = pool::thread_count(threads)?;
     for (index, PlanProblem { start, ends, options }) in problems.iter().enumerate() {
-        E::check(robot, start, ends, options)
-            .map_err(|error| Error::InProblem { index, error: Box::new(error) })?;
+        E::check(robot, start, ends, options).map_err(|error| Error::InProblem { index, error: Box::new(error) })?;
     }
     let planned = |problem: &PlanProblem<E>, monitor: &mut dyn Monitor| {
         if !monitor.keep_going() {

@@ -233,7 +233,8 @@ impl RowSolver {
             for j in 0..=i {
                 let mut entry = step.product(constraint, &self.active[j].along[..n]);
                 if i == j {
-                    let softness = if matches!(constraint, Constraint::Row(_) | Constraint::Held(_)) { SOFTNESS } else { 1e-14 };
+                    let softness =
+                        if matches!(constraint, Constraint::Row(_) | Constraint::Held(_)) { SOFTNESS } else { 1e-14 };
                     entry *= 1.0 + softness;
                 }
                 for k in 0..j {

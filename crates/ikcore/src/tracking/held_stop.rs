@@ -10,8 +10,8 @@ use crate::obstacle::JointMotion;
 /// Ticks in which an arm has to be at rest.
 const MOST_TICKS: usize = 1000;
 
-/// A step below this (rad, m) is rest.
-const REST: f64 = 1e-10;
+/// A step below this (rad, m) is rest: it ends within the next tick, whatever the limits.
+const REST: f64 = 1e-8;
 
 /// The configurations of a stop, tick by tick.
 #[derive(Debug, Clone, Default)]

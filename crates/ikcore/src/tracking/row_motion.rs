@@ -1,4 +1,4 @@
-//! Steps beside rows: nearest to where they begin, or to the target, measured by their effect on the task.
+//! Steps beside rows: nearest to where they begin, or to the target, measured by their effect on the task or by the joints.
 
 use smallvec::SmallVec;
 
@@ -42,6 +42,8 @@ pub(super) enum Towards {
     Target,
     /// Where it begins.
     Start,
+    /// Where it begins, measured by the joints: an arm that may not stop at once would keep what the task leaves free in motion.
+    Joints,
 }
 
 /// The step of a robot.
@@ -70,8 +72,13 @@ impl RowMotion {
 
     /// Writes the point after the step from `start` into `out`.
     pub fn write(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
-        let n = start.len();
         self.linearize(step, start);
+        self.write_linearized(step, start, out);
+    }
+
+    /// Writes the point after the step from `start`, where the linearization is, into `out`.
+    fn write_linearized(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
+        let n = start.len();
         let tips = step.aim.and_then(TickAim::tips);
         self.held.clear();
         if let Some(aims) = tips.filter(|_| step.holds_pairs) {
@@ -79,10 +86,11 @@ impl RowMotion {
         }
         let Beside { lower, upper, towards, .. } = *step;
         let counts = |i: usize| tips.is_none_or(|aims| aims.tasks.get(i).is_some_and(|task| !task.subject.is_pair()));
+        let counts = |i: usize| towards != Towards::Joints && counts(i);
         let blocks = self.linearization.blocks().enumerate().filter(|(i, _)| counts(*i));
         let tasks = blocks.map(|(_, TaskBlock { columns, residual })| match towards {
             Towards::Target => TaskRows { columns, residual },
-            Towards::Start => TaskRows { columns, residual: &[0.0; ROWS] },
+            Towards::Start | Towards::Joints => TaskRows { columns, residual: &[0.0; ROWS] },
         });
         let tasks: SmallVec<[TaskRows<'_>; 4]> = tasks.collect();
         let size: f64 = tasks.iter().map(|task| squared_size(&task.columns[..n])).sum();
@@ -91,22 +99,22 @@ impl RowMotion {
         self.solver.write(&step, out);
     }
 
-    /// Moves `q` to the poses of all pairs, by as little as the task allows. Returns whether they are held there.
+    /// Moves `q` to the poses of all pairs, by as little as they allow. Returns whether they are held there.
     pub fn hold(&mut self, step: &Beside<'_>, q: &mut Point) -> bool {
         let Some(aims) = step.aim.and_then(TickAim::tips) else { return true };
-        let step = Beside { towards: Towards::Start, holds_pairs: true, ..*step };
+        let step = Beside { towards: Towards::Joints, holds_pairs: true, ..*step };
         for _ in 0..HOLDING_STEPS {
             let start = q.clone();
-            self.write(&step, &start, q);
-            let missed = self.missed(aims);
-            if missed <= HELD {
-                break;
+            self.linearize(&step, &start);
+            if self.missed(aims) <= HELD {
+                return true;
             }
+            self.write_linearized(&step, &start, q);
         }
         aims.pairs_are_held(step.robot, q)
     }
 
-    /// How far pairs were from where they are to be, at the start of the last step.
+    /// How far pairs are from where they are to be, where the linearization is.
     fn missed(&self, aims: &TipAims<'_>) -> f64 {
         let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.subject.is_pair());
         blocks.map(|(block, _)| dot(&block.residual, &block.residual)).fold(0.0, f64::max).sqrt()

@@ -394,6 +394,7 @@ impl Session {
             goals: &mut self.goals,
             velocity: self.targets.velocity(),
             before: self.targets.before(),
+            moves: tips.is_some() && self.targets.moves(),
             time: self.ticks as f64 * self.dt,
             dt: self.dt,
             limits: &self.limits,
@@ -612,11 +613,7 @@ impl Session {
 }
 
 /// What is to be achieved, once a target has arrived.
-fn aim<'a>(
-    targets: &'a TargetStream,
-    tips: Option<&'a TipOrder>,
-    criterion: &'a Criterion,
-) -> Option<TickAim<'a>> {
+fn aim<'a>(targets: &'a TargetStream, tips: Option<&'a TipOrder>, criterion: &'a Criterion) -> Option<TickAim<'a>> {
     match (tips, targets.last()?) {
         (Some(tips), targets) => Some(TickAim::Tips(TipAims { tasks: tips.tasks(), targets })),
         (None, [target, ..]) => Some(TickAim::Tip { target, criterion }),

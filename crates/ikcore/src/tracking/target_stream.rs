@@ -96,6 +96,12 @@ impl TargetStream {
         self.before.as_ref().and_then(|wanted| Some((wanted.targets.first()?, wanted.velocity)))
     }
 
+    /// Whether a target has moved since the previous tick.
+    pub fn moves(&self) -> bool {
+        let both = self.before.as_ref().zip(self.last.as_ref());
+        both.is_none_or(|(before, last)| before.targets != last.targets)
+    }
+
     /// Sets the targets at t = 0.
     pub fn place(&mut self, targets: TargetRow, velocity: Option<[f64; 3]>) {
         self.last = Some(Wanted { targets, velocity });

@@ -158,7 +158,8 @@ fn first_configuration(
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<f64>> {
     // Tighter than the band, so that the track does not start at its edge.
-    let tight = |Tolerance { position, rotation }: Tolerance| Tolerance { position: 0.1 * position, rotation: 0.1 * rotation };
+    let tight =
+        |Tolerance { position, rotation }: Tolerance| Tolerance { position: 0.1 * position, rotation: 0.1 * rotation };
     let tightened = |(task, target): (TipTask, Target)| (TipTask { tolerance: tight(task.tolerance), ..task }, target);
     let (tips, wanted): (Vec<TipTask>, Vec<Target>) = targets(paths, 0).into_iter().map(tightened).unzip();
     let goals = if options.goals.is_empty() { vec![Goal::Centring { weight: 1.0 }] } else { options.goals.clone() };

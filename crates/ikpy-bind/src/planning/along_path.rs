@@ -80,6 +80,7 @@ pub fn plan_along_path(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
+    robot.get().core.require_one_tip("plan_along_path").map_err(raise)?;
     let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let given = Obstacles::read(py, obstacles)?;

@@ -151,7 +151,8 @@ impl PyTrackResult {
         table: Option<&[u8]>,
     ) -> PyResult<Self> {
         let track = from_bytes("track", bytes).map_err(raise)?;
-        let tips = if tips.is_some() { TipErrors::restored(tips)? } else { TipErrors::of_one(robot.get().tips.clone()) };
+        let tips =
+            if tips.is_some() { TipErrors::restored(tips)? } else { TipErrors::of_one(robot.get().tips.clone()) };
         let table = table.map(|bytes| from_bytes("track of several tips", bytes)).transpose().map_err(raise)?;
         Self::new(py, track, (tips, table.unwrap_or_default()), robot, limits)
     }
@@ -179,17 +180,11 @@ impl PyTrackResult {
     }
 
     /// Points of each target (k, 3), of the only one those of `track`.
-    fn points<'py>(
-        &self,
-        py: Python<'py>,
-        track: &[[f64; 3]],
-        several: &[[f64; 3]],
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn points<'py>(&self, py: Python<'py>, track: &[[f64; 3]], several: &[[f64; 3]]) -> PyResult<Bound<'py, PyDict>> {
         let rows = track.len();
         let points = if several.is_empty() { track } else { several };
-        let converted = |points: &mut dyn Iterator<Item = [f64; 3]>| {
-            table(py, points.flatten().collect(), &[rows, 3]).ok()
-        };
+        let converted =
+            |points: &mut dyn Iterator<Item = [f64; 3]>| table(py, points.flatten().collect(), &[rows, 3]).ok();
         self.tips.columns(py, points, converted)
     }
 }
@@ -323,7 +318,9 @@ fn sampled(py: Python<'_>, asked: &Asked<Followed<'_>>, dt: f64, velocities: boo
         let (duration, rows) = (path.duration(), reference.len());
         match longest {
             Some((other, count)) if count != rows => {
-                return Err(invalid(format!("path: the paths have one time, got durations of {other} s and {duration} s")));
+                return Err(invalid(format!(
+                    "path: the paths have one time, got durations of {other} s and {duration} s"
+                )));
             }
             _ => longest = Some((duration, rows)),
         }

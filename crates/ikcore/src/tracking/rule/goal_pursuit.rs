@@ -9,6 +9,7 @@ use super::tick::{Tick, TickResult};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
+use crate::task::TipAims;
 use crate::tracking::kept_motion::GoalToClear;
 use crate::tracking::limited_motion::LimitedMotion;
 
@@ -92,12 +93,15 @@ impl GoalPursuit {
         if let Some(goal) = &self.goal {
             goal.expected(time, &mut self.expected);
         }
-        self.solve(time, &positions, found, tick);
+        let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
+        // An arm that holds pairs may have no way to a goal that it lags behind.
+        let holds_pairs = tick.tips.as_ref().is_some_and(TipAims::has_pairs);
+        let anew = if holds_pairs && away > FAR { Some(q) } else { None };
+        self.solve(anew, time, &positions, found, tick);
         let aim = tick.aim();
         if let Some(kept) = &mut tick.kept {
             let goal = GoalToClear { robot: tick.robot, aim, positions: &positions };
             // A goal that obstacles have kept far away may be on the wrong side of one.
-            let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
             let from = if away < FAR { &self.expected } else { q };
             kept.clear_goal(&goal, from, &mut self.sample);
             self.since_held = if kept.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
@@ -107,10 +111,18 @@ impl GoalPursuit {
         }
     }
 
-    /// Sets `sample` to the configuration nearest to the expected one that meets the target of `time` (in ticks).
-    fn solve(&mut self, time: f64, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+    /// Sets `sample` to the configuration nearest to the expected one, or to that to begin `anew` at, that meets the target of `time`
+    /// (in ticks).
+    fn solve(
+        &mut self,
+        anew: Option<&[f64]>,
+        time: f64,
+        positions: &Bounds,
+        found: &mut TickResult,
+        tick: &mut Tick<'_>,
+    ) {
         let n = self.expected.len();
-        self.sample = Point::from_slice(&self.expected);
+        self.sample = Point::from_slice(anew.unwrap_or(&self.expected));
         positions.clip(&mut self.sample);
         let mut begin = self.sample.clone();
         let mut lowest = f64::INFINITY;
@@ -120,7 +132,7 @@ impl GoalPursuit {
                 break;
             }
             (lowest, begin) = (value, self.sample.clone());
-            let preferred = (i == 0).then(|| self.preferred(time, positions, tick));
+            let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(time, positions, tick));
             let least = self.linearization.least_damping(n);
             let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
             let ends = [positions.lower(), positions.upper()];

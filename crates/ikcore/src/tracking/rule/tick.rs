@@ -25,6 +25,8 @@ pub(in crate::tracking) struct Tick<'a> {
     pub velocity: Option<[f64; 3]>,
     /// Target and its velocity at the end of the previous tick, if there was one.
     pub before: Option<(&'a Target, Option<[f64; 3]>)>,
+    /// Whether a target has moved since the previous tick.
+    pub moves: bool,
     /// Start of the tick (s).
     pub time: f64,
     /// Length of the tick (s).

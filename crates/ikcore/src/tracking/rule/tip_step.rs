@@ -1,6 +1,6 @@
 //! The model-based rule for several tips: Gauss-Newton in the box of the tick.
 //!
-//! A target that one tick cannot reach is approached by all joints in proportion, as in `approach`; where that does not lower the
+//! A target that one tick cannot reach is approached by all joints in proportion, as in `approach`, unless it moves; where that does not lower the
 //! error, as out of reach, Levenberg-Marquardt lowers it as far as the tick allows.
 
 use super::tick::{Tick, TickResult};
@@ -72,8 +72,8 @@ impl TipStep {
         }
     }
 
-    /// Approaches targets that are far: all joints move in proportion to the way that is left to them within the position limits.
-    /// Returns false if the targets are not far, or if that brings the arm no nearer.
+    /// Approaches targets that are far: all joints move in proportion to the way that is left to them within the position limits or, after
+    /// targets that move, each as far as it may. Returns false if the targets are not far, or if that brings the arm no nearer.
     fn approach(&mut self, begin: &TickResult, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let n = begin.q.len();
         let positions = tick.positions();
@@ -92,6 +92,7 @@ impl TipStep {
             return false;
         }
         let mut near = begin.clone();
+        let share = if tick.moves { 1.0 } else { share };
         near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += share * (end - *q));
         tick.tick_box.clip(&mut near.q);
         near.assess(tick.robot, &tick.aim());
