@@ -46,6 +46,7 @@ mod time_optimal;
 mod tips;
 mod touch;
 mod track_clear;
+mod track_tips;
 mod tracking;
 mod tracking_paper;
 mod trajectory;

@@ -7,8 +7,9 @@ use crate::motion::JointState;
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
-/// Ticks in which an arm has to be at rest.
-const MOST_TICKS: usize = 1000;
+/// How many times as long as the fastest stop one may take that holds pairs, and ticks beside that.
+const SLOWER: f64 = 3.0;
+const MORE_TICKS: usize = 8;
 
 /// A step below this (rad, m) is rest: it ends within the next tick, whatever the limits.
 const REST: f64 = 1e-8;
@@ -67,7 +68,8 @@ impl HeldStop {
         state.advance(command.iter().zip(wish.q).map(|(to, from)| to - from));
         let mut tick_box = wish.tick_box.clone();
         let mut q = Point::from_slice(command);
-        for tick in 1..MOST_TICKS {
+        let most = MORE_TICKS + (SLOWER * state.ticks_to_stop(limited.braking())) as usize;
+        for tick in 1..=most {
             if state.step.iter().all(|step| step.abs() < REST) {
                 return true;
             }

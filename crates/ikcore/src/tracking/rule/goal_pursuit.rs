@@ -28,6 +28,9 @@ const RELEASED: usize = 5;
 /// A goal farther from the arm than this (rad, m) does not show the way along an obstacle.
 const FAR: f64 = 0.1;
 
+/// After so many ticks in which an arm that holds pairs gets no nearer to a goal that is far, there is no way to it.
+const NO_WAY: usize = 10;
+
 /// State of the rule between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct GoalPursuit {
@@ -38,6 +41,8 @@ pub(crate) struct GoalPursuit {
     sample: Point,
     /// Samples since obstacles changed one.
     since_held: Option<usize>,
+    /// The least distance (rad, m) of the goal from an arm that holds pairs, and samples since then.
+    nearest: Option<(f64, usize)>,
     linearization: Box<Linearization>,
 }
 
@@ -94,9 +99,8 @@ impl GoalPursuit {
             goal.expected(time, &mut self.expected);
         }
         let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
-        // An arm that holds pairs may have no way to a goal that it lags behind.
         let holds_pairs = tick.tips.as_ref().is_some_and(TipAims::has_pairs);
-        let anew = if holds_pairs && away > FAR { Some(q) } else { None };
+        let anew = (holds_pairs && self.has_no_way(away)).then_some(q);
         self.solve(anew, time, &positions, found, tick);
         let aim = tick.aim();
         if let Some(kept) = &mut tick.kept {
@@ -109,6 +113,20 @@ impl GoalPursuit {
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
         }
+    }
+
+    /// Whether an arm that holds pairs has got no nearer to its goal, which is `away` (rad, m), for long.
+    fn has_no_way(&mut self, away: f64) -> bool {
+        self.nearest = match self.nearest {
+            _ if away <= FAR => None,
+            Some((nearest, samples)) if away >= nearest => Some((nearest, samples + 1)),
+            _ => Some((away, 0)),
+        };
+        let waited = self.nearest.is_some_and(|(_, samples)| samples >= NO_WAY);
+        if waited {
+            self.nearest = None;
+        }
+        waited
     }
 
     /// Sets `sample` to the configuration nearest to the expected one, or to that to begin `anew` at, that meets the target of `time`
