@@ -2,10 +2,10 @@
 A tray in two hands
 ===================
 
-Two arms on a lift carry a tray along a circle that leaves their reach at the side. The right hand is to be where the
-tray has its other handle, as seen from the left hand: a target for the pair ``("left", "right")``. Whatever else gives
-way, the pair is held first, so the tray stays in both hands while both arms fall behind together. Two tracks of their
-own would pull it out of them.
+Two arms on a lift carry a tray along a circle that leaves their reach, and the right arm is slow. The right hand is to
+be where the tray has its other handle, as seen from the left hand: a target for the pair ``("left", "right")``.
+Whatever else gives way, the pair is held first, so the tray stays in both hands while both arms fall behind together.
+Two tracks of their own pull it out of them.
 """
 
 import matplotlib.pyplot as plt
@@ -18,13 +18,16 @@ LENGTHS = [0.1, 0.1, 0.2, 0.2, 0.2, 0.2, 0.0]
 
 
 def arm(side: str, y: float) -> str:
+    """Returns the links and joints of an arm whose shoulder is at `y` (m)."""
     parts, parent = [], "chest"
     for i, (axis, length) in enumerate(zip(AXES, LENGTHS, strict=True)):
         parts.append(f"<link name='{side}{i}'/><joint name='{side}{i}' type='revolute'><parent link='{parent}'/>")
         parts.append(f"<child link='{side}{i}'/><origin xyz='0 {y if i == 0 else 0} {length}'/><axis xyz='{axis}'/>")
         parts.append("<limit lower='-2.8' upper='2.8' velocity='2'/></joint>")
         parent = f"{side}{i}"
-    tip = f"<link name='{side}'/><joint name='{side}_mount' type='fixed'><parent link='{parent}'/><child link='{side}'/>"
+    tip = (
+        f"<link name='{side}'/><joint name='{side}_mount' type='fixed'><parent link='{parent}'/><child link='{side}'/>"
+    )
     return "".join([*parts, tip, "<origin xyz='0 0 0.1'/></joint>"])
 
 
@@ -36,14 +39,14 @@ robot = bik.Robot.from_urdf(
 )
 
 FORWARD = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-circle = bik.paths.circle(center=(0.7, 0.25, 0.95), diameter=0.4, duration=10.0, a=(0, 1, 0), b=(0, 0, 1))
+circle = bik.paths.circle(center=(0.72, 0.25, 1.0), diameter=0.6, duration=10.0, a=(0, 1, 0), b=(0, 0, 1))
 path = circle.with_orientation(FORWARD)
 tray = bik.pose((0.0, -0.5, 0.0))
-limits = bik.Limits(velocity=0.5)
+limits = bik.Limits(velocity=[0.2] + 7 * [0.6] + 7 * [0.2])
 together = bik.track(robot, {"left": path, ("left", "right"): tray}, dt=0.02, limits=limits)
 
 # The same circle for each hand on its own, half a metre apart.
-beside = bik.paths.circle(center=(0.7, -0.25, 0.95), diameter=0.4, duration=10.0, a=(0, 1, 0), b=(0, 0, 1))
+beside = bik.paths.circle(center=(0.72, -0.25, 1.0), diameter=0.6, duration=10.0, a=(0, 1, 0), b=(0, 0, 1))
 apart = bik.track(
     robot, {"left": path, "right": beside.with_orientation(FORWARD)}, together.q[0], dt=0.02, limits=limits
 )

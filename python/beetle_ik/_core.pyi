@@ -2122,18 +2122,21 @@ def track(
 
     Args:
         robot: the arm.
-        path: reference positions or poses over time.
+        path: reference positions or poses over time. For a robot with several `tips` a dict of paths, such as {"left_tool": path}, which
+            have one time; a constant pose (4, 4) or position (3,) counts as a path. A tip left out is free, and a pair
+            ("left_tool", "right_tool") is the second as seen from the first: it is held there before anything else, so that both
+            lag where one arm cannot follow.
         start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
             or, without goals, one far from singularities and limits.
         dt: time step (s).
-        task: which part of the path counts, one of `tasks`; None: all of it.
+        task: which part of the path counts, one of `tasks`, or a dict for several tips; None: all of it.
         solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
             two evaluations per step.
         limits: limits on the joint motion; None: the robot's.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
-        position_tolerance: error band of positions (m).
-        rotation_tolerance: error band of orientations (rad).
+        position_tolerance: error band of positions (m); for several tips also a dict.
+        rotation_tolerance: error band of orientations (rad); for several tips also a dict.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
             robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
             or stops. None: nothing is checked.
@@ -2194,7 +2197,7 @@ class TrackResult:
         """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
     @property
     def position(self) -> _Array:
-        """Positions of the tip (k, 3) (m)."""
+        """Positions of the tip (k, 3) (m); of several tips those of the first target, `positions` has all."""
     @property
     def reference(self) -> _Array:
         """Reference positions (k, 3) (m)."""
@@ -2228,13 +2231,17 @@ class TrackResult:
         """
     @property
     def errors(self) -> dict[_TipKey, tuple[_Array, _Array]]:
-        """errors"""
+        """Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (k,) (m), rotation (k,) (rad))};
+        `position_error` and `rotation_error` are the largest.
+        """
     @property
     def positions(self) -> dict[_TipKey, _Array]:
-        """positions"""
+        """Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; of a pair as seen from
+        its first tip.
+        """
     @property
     def references(self) -> dict[_TipKey, _Array]:
-        """references"""
+        """Reference positions of each target, as `positions`."""
     @property
     def limit_margin(self) -> float:
         """Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits."""
@@ -2302,13 +2309,13 @@ class Tracker:
         robot: the arm.
         start: (n,), configuration at t = 0.
         dt: time step (s).
-        task: as in `track`.
+        task: as in `track`; also of tips that get their targets later.
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
         limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
             sample them.
         goals: as in `track`.
-        position_tolerance: largest position error (m).
-        rotation_tolerance: largest rotation error (rad).
+        position_tolerance: largest position error (m); for several tips also a dict.
+        rotation_tolerance: largest rotation error (rad); for several tips also a dict.
         obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
             ticks: `tracker.obstacles = [...]`.
         seed: seed of the random draws.
@@ -2338,7 +2345,9 @@ class Tracker:
         timeout: float | None = None,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
-        """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
+        """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot with several `tips` it is
+        a dict, such as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the
+        first. A pair that is where it is to be is held there, whatever else has to give way.
 
         Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
         model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
@@ -2347,7 +2356,7 @@ class Tracker:
         not finite raises an error, after which the tracker is as before.
 
         Args:
-            target: target of the tip at the end of the tick; None: no new one.
+            target: target of the tip, or of several, at the end of the tick; None: no new one.
             velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
                 None: from the difference to the previous target.
             stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
@@ -2426,13 +2435,15 @@ class Step:
         """The joint velocity over the step (n,) (rad/s, m/s)."""
     @property
     def errors(self) -> dict[_TipKey, tuple[float, float]]:
-        """errors"""
+        """Errors of each target, by the keys of the last call or the name of the only tip: {tip: (position (m), rotation (rad))}, as
+        `position_error` and `rotation_error`; empty before the first target of several tips.
+        """
     @property
     def position_error(self) -> float:
-        """Distance of the tip from the target (m)."""
+        """Distance of the tip from the target (m); the largest of several tips."""
     @property
     def rotation_error(self) -> float:
-        """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
+        """Geodesic angle to the target's orientation (rad), the largest of several tips; NaN if the task leaves the orientation free."""
     @property
     def inside_limits(self) -> bool:
         """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""

@@ -257,9 +257,7 @@ def _draw_space_of_tips(axes: Any, result: TrackResult) -> None:
     axes.legend(loc="upper left")
 
 
-def _draw_way(
-    axes: Any, position: NDArray[np.float64], reference: NDArray[np.float64], color: str, name: str
-) -> None:
+def _draw_way(axes: Any, position: NDArray[np.float64], reference: NDArray[np.float64], color: str, name: str) -> None:
     label = "target" if name == "tip" else f"target of {name}"
     axes.plot(*reference.T, color=VERMILION, linewidth=4, alpha=0.45, label=label)
     axes.plot(*position.T, color=color, linewidth=1.2, label=name)
@@ -275,9 +273,7 @@ def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
     axes.set_ylabel("rotation error [rad]")
 
 
-def _draw_errors(
-    axes: Axes, result: TrackResult, component: int, error: NDArray[np.float64], tolerance: float
-) -> None:
+def _draw_errors(axes: Axes, result: TrackResult, component: int, error: NDArray[np.float64], tolerance: float) -> None:
     """Draws the error of the tip or, of several tips and pairs of them, the errors of each."""
     errors = result.errors
     if len(result.robot.tips) == 1:
