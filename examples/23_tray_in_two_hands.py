@@ -42,7 +42,7 @@ FORWARD = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 circle = bik.paths.circle(center=(0.72, 0.25, 1.0), diameter=0.6, duration=10.0, a=(0, 1, 0), b=(0, 0, 1))
 path = circle.with_orientation(FORWARD)
 tray = bik.pose((0.0, -0.5, 0.0))
-limits = bik.Limits(velocity=[0.2] + 7 * [0.6] + 7 * [0.2])
+limits = bik.Limits(velocity=[0.2] + 7 * [0.6] + 7 * [0.2], acceleration=3.0)
 together = bik.track(robot, {"left": path, ("left", "right"): tray}, dt=0.02, limits=limits)
 
 # The same circle for each hand on its own, half a metre apart.
