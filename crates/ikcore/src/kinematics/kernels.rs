@@ -1,6 +1,7 @@
 //! The table of compiled kernels: one entry per padded number of stages, for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
+use super::floating_kernels::FLOATING;
 use super::jacobian::{self, Columns};
 use super::link_frames::{self, StageFrames};
 use super::tip;
@@ -17,9 +18,9 @@ pub(crate) struct Kernels {
     /// Returns the tip position (m), at half the work.
     pub tip_position: fn(&Chain, &[f64]) -> [f64; 3],
     /// Tip positions (m) at two configurations, by coordinate.
-    tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
+    pub(super) tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
     /// Tip positions (m) at four configurations, by coordinate.
-    tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
+    pub(super) tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     /// Writes the geometric Jacobian and returns the tip's frame.
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
     /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
@@ -35,7 +36,7 @@ type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Fram
 impl Kernels {
     /// The fastest kernels for this machine.
     pub fn for_chain(chain: &Chain) -> Self {
-        for_stages(chain.padded_stages())
+        if chain.vector.is_some() { FLOATING } else { for_stages(chain.padded_stages()) }
     }
 
     /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n`

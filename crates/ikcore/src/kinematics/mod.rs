@@ -10,6 +10,7 @@
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
 //! | `four_forward_pass`, `eight_frames` | the pass of four configurations at once, and of eight in single precision |
 //! | `kernels` | table of compiled kernels |
+//! | `rotation_vector`, `floating_kernels` | the rotation of a floating base, and the kernels of chains that have one |
 //! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the positions of the tip |
@@ -18,6 +19,7 @@
 pub(crate) mod chain;
 pub(crate) mod eight_frames;
 mod fixed_direction;
+mod floating_kernels;
 mod forward_pass;
 mod four_forward_pass;
 mod jacobian;
@@ -25,6 +27,7 @@ pub(crate) mod kernels;
 pub(crate) mod link_frames;
 pub(crate) mod link_tree;
 mod reach;
+mod rotation_vector;
 mod screws;
 mod stages;
 mod task_rank;
@@ -35,6 +38,7 @@ mod wide_frame;
 pub use fixed_direction::FixedDirection;
 pub use jacobian::Columns;
 pub use reach::{Reach, ReachShortfall};
+pub(crate) use rotation_vector::RotationVector;
 pub use screws::{Screw, Screws};
 pub use task_rank::TaskRank;
 pub use torques::Wrench;

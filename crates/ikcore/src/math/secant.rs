@@ -64,7 +64,7 @@ impl Secant {
 }
 
 /// Jacobians of several tasks, estimated together.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Secants(SmallVec<[Secant; 1]>);
 
 impl Secants {

@@ -195,7 +195,7 @@ impl Robot {
 
     /// The moving elements, for eight configurations at once.
     pub(crate) fn eight_stages(&self) -> EightStages {
-        EightStages::new(self.moving_elements())
+        EightStages::new(self.moving_elements(), self.chain().vector.clone())
     }
 
     /// Number of the last frame that carries both of these.
