@@ -184,7 +184,7 @@ def waypoints(count: int) -> Callable[[], object]:
 
 PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
-ONE = "one configuration of at most 32 joints"
+ONE = "one configuration of at most 64 joints"
 COPIES = "as fast as its arrays are copied"
 PYTHON = "Python and matplotlib, which the interpreter interrupts"
 SHORT: dict[str, str] = {

@@ -8,13 +8,13 @@ use ikcore::ik::{SolveOptions, solve, solve_tips};
 use ikcore::load::UrdfOptions;
 use ikcore::manipulability::Motion;
 use ikcore::math::{Pose, pose};
-use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Vector3};
+use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::obstacle::{Edge, Scene, Sweep};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
 use ikcore::shape::Shape;
-use ikcore::solver::Unattended;
+use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Goal, Subject, Target, TipTask, Tolerance};
 
 use crate::common::{assert_derivative, configurations, message, pose_at};
@@ -49,7 +49,7 @@ fn base_at(q: &[f64], joints: usize) -> Pose {
         3 => (Vector3::new(q[0], q[1], 0.0), Vector3::new(0.0, 0.0, q[2])),
         _ => (Vector3::new(q[0], q[1], q[2]), Vector3::new(q[3], q[4], q[5])),
     };
-    Isometry3::from_parts(Translation3::from(slide), Rotation3::from_scaled_axis(turn).into())
+    Pose::from_parts(slide.into(), Rotation3::from_scaled_axis(turn))
 }
 
 /// Random configurations; some at rotation vectors of no length, and near the longest.
@@ -168,7 +168,7 @@ fn it_reaches_where_the_arm_alone_does_not() {
         for (seed, goal) in (0..).zip(configurations(&robot, 200)) {
             let options = SolveOptions { seed, ..SolveOptions::default() };
             let found = solve(&robot, &pose_at(&robot, &goal), &options, &mut Unattended).unwrap();
-            missed += usize::from(!found.status.is_solved());
+            missed += usize::from(found.status != Status::Solved);
             let inside = robot.joints().iter().zip(&found.q).all(|(joint, q)| joint.lower <= *q && *q <= joint.upper);
             assert!(inside, "{:?}", found.q);
         }
@@ -182,8 +182,7 @@ fn it_drives_round_an_obstacle() {
     let ready = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
     let [start, end] = [-1.5, 1.5].map(|x| [&[x, 0.0, 0.0], &ready[..]].concat());
     let pillar = vec![Shape::cylinder([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 0.3, 2.0).unwrap()];
-    let mut options = PointToPointOptions::default();
-    options.surroundings.obstacles = Some(pillar.clone());
+    let options = PointToPointOptions { obstacles: pillar, ..PointToPointOptions::default() };
     let plan = plan_point_to_point(
         &robot,
         &Endpoint::Configuration(start),
@@ -192,7 +191,7 @@ fn it_drives_round_an_obstacle() {
         &mut Unattended,
     )
     .unwrap();
-    assert!(plan.status.is_solved(), "{}", plan.message);
+    assert_eq!(plan.status, Status::Solved, "{}", plan.message());
 }
 
 #[test]
@@ -206,10 +205,10 @@ fn both_hands_of_a_floating_torso() {
         let base = base_at(&q, 6);
         let [left, right] = ["left_tool", "right_tool"].map(|link| robot.link_fk(link, &q).unwrap());
         assert_near(&left, &(base * torso.link_fk("left_tool", &q[6..]).unwrap()));
-        let targets = [Target::from(left), Target::from(right)];
-        let options = SolveOptions { seed, ..SolveOptions::default() };
-        let found = solve_tips(&robot, &[task(0), task(1)], &targets, &options, &mut Unattended).unwrap();
-        assert!(found.status.is_solved(), "{seed}: {:?}", found.status);
+        let targets = [Target::from(&left), Target::from(&right)];
+        let options = SolveOptions { seed, tips: vec![task(0), task(1)], ..SolveOptions::default() };
+        let found = solve_tips(&robot, &targets, &options, &mut Unattended).unwrap();
+        assert_eq!(found.status, Status::Solved, "{seed}");
     }
 }
 

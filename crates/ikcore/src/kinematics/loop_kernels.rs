@@ -1,16 +1,15 @@
-//! The kernels of chains with a [rotation vector](super::rotation_vector), for any number of stages: plain loops over frames.
+//! Kernels for any number of stages, for chains with a [rotation vector](super::rotation_vector) and for those that are longer than compiled
+//! ones: plain loops over frames.
 
 use super::chain::Chain;
-use super::jacobian::Columns;
 use super::kernels::Kernels;
-use super::link_frames::StageFrames;
 use super::torques::Wrench;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF};
+use crate::math::{Columns, Frame, MAX_DOF};
 
 /// The kernels.
-pub(super) const FLOATING: Kernels = Kernels {
+pub(super) const LOOPS: Kernels = Kernels {
     tip,
     tip_position: |chain, q| tip(chain, q).origin,
     tip_pair: tip_positions::<2>,
@@ -54,6 +53,7 @@ fn tip_positions<const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
 fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
     let mut moved = [Frame::IDENTITY; MAX_DOF];
     let tip = forward_pass(chain, q, |i, frame| moved[i] = *frame);
+    columns.fit(q.len());
     columns[..q.len()].fill([0.0; 6]);
     for (motion, frame) in chain.motions[..chain.moving].iter().zip(&moved) {
         let velocity = motion.velocity(frame, &tip.origin);
@@ -67,16 +67,16 @@ fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
 }
 
 fn torques(chain: &Chain, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
-    let mut columns = [[0.0; 6]; MAX_DOF];
+    let mut columns = Columns::default();
     let tip = jacobian(chain, q, &mut columns);
     let wrench = wrench(&tip);
-    for (torque, column) in torques.iter_mut().zip(&columns) {
+    for (torque, column) in torques.iter_mut().zip(&*columns) {
         *torque = column.iter().zip(&wrench).map(|(c, w)| c * w).sum();
     }
     tip
 }
 
-fn stage_frames_four(chain: &Chain, qs: &[F64x4], reached: &mut StageFrames<F64x4>) {
+fn stage_frames_four(chain: &Chain, qs: &[F64x4], reached: &mut [Frame<F64x4>]) {
     for lane in 0..4 {
         let mut q = [0.0; MAX_DOF];
         q.iter_mut().zip(qs).for_each(|(q, lanes)| *q = lanes.0[lane]);
