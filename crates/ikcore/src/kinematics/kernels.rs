@@ -3,7 +3,7 @@
 use super::chain::Chain;
 use super::jacobian;
 use super::link_frames;
-use super::loop_kernels::LOOPS;
+use super::loop_kernels;
 use super::tip;
 use super::torques::{self, Wrench};
 use crate::math::arithmetic::by_instructions;
@@ -18,9 +18,9 @@ pub(crate) struct Kernels {
     /// Returns the tip position (m), at half the work.
     pub tip_position: fn(&Chain, &[f64]) -> [f64; 3],
     /// Tip positions (m) at two configurations, by coordinate.
-    pub(super) tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
+    tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
     /// Tip positions (m) at four configurations, by coordinate.
-    pub(super) tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
+    tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     /// Writes the geometric Jacobian and returns the tip's frame.
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
     /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
@@ -34,10 +34,22 @@ pub(crate) struct Kernels {
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
 
 impl Kernels {
+    /// For chains of any kind and length.
+    const LOOPS: Self = Self {
+        tip: loop_kernels::tip,
+        tip_position: |chain, q| loop_kernels::tip(chain, q).origin,
+        tip_pair: loop_kernels::tip_positions::<2>,
+        tip_four: loop_kernels::tip_positions::<4>,
+        jacobian: loop_kernels::jacobian,
+        torques: loop_kernels::torques,
+        stage_frames: loop_kernels::stage_frames,
+        stage_frames_four: loop_kernels::stage_frames_four,
+    };
+
     /// The fastest kernels for this machine.
     pub fn for_chain(chain: &Chain) -> Self {
         let is_compiled = chain.vector.is_none() && chain.moving <= STACK_DOF;
-        if is_compiled { for_stages(chain.padded_stages()) } else { LOOPS }
+        if is_compiled { for_stages(chain.padded_stages()) } else { Self::LOOPS }
     }
 
     /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n`

@@ -2,25 +2,10 @@
 //! ones: plain loops over frames.
 
 use super::chain::Chain;
-use super::kernels::Kernels;
 use super::torques::Wrench;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, MAX_DOF};
-
-/// The kernels.
-pub(super) const LOOPS: Kernels = Kernels {
-    tip,
-    tip_position: |chain, q| tip(chain, q).origin,
-    tip_pair: tip_positions::<2>,
-    tip_four: tip_positions::<4>,
-    jacobian,
-    torques,
-    stage_frames: |chain, q, reached| {
-        forward_pass(chain, q, |i, frame| reached[i + 1] = *frame);
-    },
-    stage_frames_four,
-};
 
 /// Calls `visit(i, frame)` with the frame that each stage moves, from the base on, and returns the tip's.
 fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) -> Frame {
@@ -40,17 +25,17 @@ fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) 
     frame.then::<NoFma>(&chain.tip)
 }
 
-fn tip(chain: &Chain, q: &[f64]) -> Frame {
+pub(super) fn tip(chain: &Chain, q: &[f64]) -> Frame {
     forward_pass(chain, q, |_, _| ())
 }
 
-fn tip_positions<const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
+pub(super) fn tip_positions<const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
     let n = qs.len() / W;
     let points: [[f64; 3]; W] = std::array::from_fn(|w| tip(chain, &qs[w * n..(w + 1) * n]).origin);
     std::array::from_fn(|k| std::array::from_fn(|w| points[w][k]))
 }
 
-fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
+pub(super) fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
     let mut moved = [Frame::IDENTITY; MAX_DOF];
     let tip = forward_pass(chain, q, |i, frame| moved[i] = *frame);
     columns.fit(q.len());
@@ -66,7 +51,7 @@ fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
     tip
 }
 
-fn torques(chain: &Chain, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+pub(super) fn torques(chain: &Chain, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
     let mut columns = Columns::default();
     let tip = jacobian(chain, q, &mut columns);
     let wrench = wrench(&tip);
@@ -76,7 +61,11 @@ fn torques(chain: &Chain, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques:
     tip
 }
 
-fn stage_frames_four(chain: &Chain, qs: &[F64x4], reached: &mut [Frame<F64x4>]) {
+pub(super) fn stage_frames(chain: &Chain, q: &[f64], reached: &mut [Frame]) {
+    forward_pass(chain, q, |i, frame| reached[i + 1] = *frame);
+}
+
+pub(super) fn stage_frames_four(chain: &Chain, qs: &[F64x4], reached: &mut [Frame<F64x4>]) {
     for lane in 0..4 {
         let mut q = [0.0; MAX_DOF];
         q.iter_mut().zip(qs).for_each(|(q, lanes)| *q = lanes.0[lane]);
