@@ -4,7 +4,8 @@
 
 Baxter, Tiago and two Pandas on a torso get pairs of poses, both from one random configuration. Pinocchio judges the
 answers: both poses within 1e-6 (m, rad), inside the limits. All libraries start in the middle of the joint ranges. The
-robots come from the package `example-robot-data` (`make zoo` installs it). It writes `two_hands.csv`, which the site shows.
+robots come from the package `example-robot-data` (`make zoo` installs it). It writes `two_hands.csv`, which the site
+shows.
 """
 
 # ruff: noqa: E402
@@ -76,7 +77,7 @@ def installed() -> Path:
 
 def rigs(robots: Path) -> list[TwoHands]:
     """The robots."""
-    pandas = two_arms_on_a_torso(robots / "panda_description/urdf/panda.urdf", "panda_hand")
+    pandas = two_arms_on_a_torso(robots / "panda_description/urdf/panda.urdf")
     return [
         reduced("Baxter", robots / "baxter_description/urdf/baxter.urdf", ("left_gripper", "right_gripper")),
         reduced(

@@ -1,6 +1,6 @@
 """Robots with two hands, and the libraries that take both at once."""
 
-# ruff: noqa: D102, D107
+# ruff: noqa: ARG002, D101, D102, D107
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Poses = dict[str, np.ndarray]  # (4, 4) by the name of the tip
 
 @dataclass(frozen=True)
 class TwoHands:
-    """A robot of which only the joints between its base and two tips move: no meshes, and a mass for those that simulate."""
+    """A robot of which only the joints on the way to two tips move: no meshes, and masses for simulators."""
 
     name: str
     text: str
@@ -86,6 +86,7 @@ def reduced(name: str, urdf: Path | str, tips: tuple[str, str]) -> TwoHands:
 
 
 def child(joint: ET.Element) -> str:
+    """The link that a joint carries."""
     found = joint.find("child")
     return "" if found is None else found.get("link", "")
 
@@ -99,7 +100,7 @@ def way(tip: str, above: dict[str, ET.Element]) -> Iterator[ET.Element]:
         tip = "" if parent is None else parent.get("link", "")
 
 
-def two_arms_on_a_torso(arm: Path, tip: str) -> str:
+def two_arms_on_a_torso(arm: Path) -> str:
     """Two arms of a file on a torso that turns and lifts: their links and joints are called `left_` and `right_`."""
     robot = ET.Element("robot", name="two arms")
     ET.SubElement(robot, "link", name="floor")
@@ -193,7 +194,7 @@ class Stepping(Library):
                 return self._configuration()
             try:
                 self._step()
-            except Exception:  # noqa: BLE001 each library has its own for a program without a solution
+            except Exception:
                 return None
         return None
 

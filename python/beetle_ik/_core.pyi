@@ -326,6 +326,16 @@ class Robot:
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
+    def with_mobile_base(
+        self,
+        kind: Literal["planar", "floating"],
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> Robot:
+        """ """
     def with_held(self, hold: Mapping[str, float]) -> Robot:
         """Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
 

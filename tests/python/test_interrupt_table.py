@@ -211,7 +211,7 @@ SHORT: dict[str, str] = {
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "Tracker.stop", "pose",
             "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
-            "Robot.with_collision_pairs", "Robot.with_srdf",
+            "Robot.with_collision_pairs", "Robot.with_mobile_base", "Robot.with_srdf",
         ],
         ONE,
     ),
