@@ -23,7 +23,7 @@ pub enum MobileBase {
     Floating,
 }
 
-words!("mobile base": MobileBase { Planar => "planar", Floating => "floating" });
+words!("kind of mobile base": MobileBase { Planar => "planar", Floating => "floating" });
 
 /// Limits of the joints of a base, one entry for each.
 #[derive(Debug, Clone, PartialEq)]
