@@ -32,7 +32,7 @@ pub struct TipArrival {
 
 /// Targets with the velocity of the only one (m/s), if known.
 #[derive(Debug, Clone)]
-struct Wanted {
+struct LastTargets {
     targets: TargetRow,
     velocity: Option<[f64; 3]>,
 }
@@ -46,9 +46,9 @@ pub(super) struct TargetStream {
     timeout: Option<f64>,
     /// For rules that extrapolate.
     repeated: Option<RepeatedTargets>,
-    last: Option<Wanted>,
+    last: Option<LastTargets>,
     /// Those at the end of the previous tick.
-    before: Option<Wanted>,
+    before: Option<LastTargets>,
     /// When the last targets were measured, and when they arrived (s).
     measured: f64,
     arrived: f64,
@@ -104,7 +104,7 @@ impl TargetStream {
 
     /// Sets the targets at t = 0.
     pub fn place(&mut self, targets: TargetRow, velocity: Option<[f64; 3]>) {
-        self.last = Some(Wanted { targets, velocity });
+        self.last = Some(LastTargets { targets, velocity });
         self.before.clone_from(&self.last);
     }
 
@@ -140,7 +140,7 @@ impl TargetStream {
                 *target = filter.filtered(target, interval);
             }
         }
-        self.last = Some(Wanted { targets, velocity });
+        self.last = Some(LastTargets { targets, velocity });
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
     }
 
