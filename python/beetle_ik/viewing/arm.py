@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .._core import Nearest, Task
 
     Array = NDArray[np.float64]
+    Targets = dict[str, Array]
 
 Follow = Literal["track", "solve", "off"]
 Part = Literal["pose", "position", "pointing"]
@@ -30,9 +31,10 @@ _PAUSE = 30  # ticks
 
 
 class Arm:
-    """A robot, its configuration, its target, the obstacles around it, and how it follows the target.
+    """A robot, its configuration, a target for each tip, the obstacles around it, and how it follows the targets.
 
     Attributes:
+        follows: the ways in which it can follow.
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
         moves: whether it is under way to the target.
@@ -44,24 +46,33 @@ class Arm:
         self.q = q
         self.outcome: Step | Solution | None = None
         self.moves = False
-        self._target = robot.fk(q)
+        self.follows = FOLLOWS if len(robot.tips) == 1 else FOLLOWS[1:]  # a tracker takes robots with one tip
+        self._targets = self.tips_at(q)
         self._obstacles = obstacles
-        self._follow: Follow = "track"
-        self._part: Part = "pose" if robot.dof >= 6 else "position"
+        self._follow = self.follows[0]
+        self._part: Part = "pose" if robot.dof >= 6 * len(robot.tips) else "position"
         self._keeps_clear = True
         self._tracker: Tracker | None = None
         self._escapes = False
         self._anchor, self._ticks, self._tries_again = q, 0, True
 
-    @property
-    def target(self) -> Array:
-        """The pose (4, 4) that the tip is to reach."""
-        return self._target
+    def tips_at(self, q: Array) -> Targets:
+        """Returns the pose (4, 4) of each tip at `q` (n,), by its name."""
+        return dict(zip(self.robot.tips, self.robot.fk(q).reshape(-1, 4, 4), strict=True))
 
-    @target.setter
-    def target(self, target: Array) -> None:
-        self._target = target
+    @property
+    def targets(self) -> Targets:
+        """The pose (4, 4) that each tip is to reach, by its name; another dict after each change."""
+        return self._targets
+
+    @targets.setter
+    def targets(self, targets: Targets) -> None:
+        self._targets = targets
         self._set_off()
+
+    def aim(self, tip: str, target: Array) -> None:
+        """Gives one tip another target (4, 4)."""
+        self.targets = self._targets | {tip: target}
 
     @property
     def obstacles(self) -> list[Obstacle]:
@@ -106,9 +117,13 @@ class Arm:
         self._restart()
 
     @property
-    def goal(self) -> Array:
-        """The target as solvers take it: a position (3,) if the orientation is free, otherwise a pose (4, 4)."""
-        return self.target[:3, 3] if self._part == "position" else self.target
+    def goal(self) -> Array | Targets:
+        """What solvers take: for each tip a position (3,) if the orientation is free, otherwise a pose (4, 4).
+
+        That of an only tip is no dict.
+        """
+        goals = {tip: each[:3, 3] if self._part == "position" else each for tip, each in self._targets.items()}
+        return goals if len(goals) > 1 else goals[self.robot.tips[0]]
 
     @property
     def task(self) -> Task | None:
@@ -126,10 +141,10 @@ class Arm:
         return nearest(self.robot, self.q, self._obstacles)
 
     def put(self, q: Array) -> None:
-        """Puts the arm at `q` (n,), to rest there. The target moves along with the tip, if the arm follows it."""
+        """Puts the arm at `q` (n,), to rest there. Targets move along with the tips, if the arm follows them."""
         self.q, self.outcome = q, None
         if self._follow != "off":
-            self._target = self.robot.fk(q)
+            self._targets = self.tips_at(q)
         self._tracker, self.moves = None, False
 
     def advance(self) -> bool:

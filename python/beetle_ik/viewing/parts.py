@@ -10,7 +10,7 @@ import numpy as np
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
 from .._style import BLACK, rgb
 from .checks import motion_of, postures_of
-from .handle import Handle
+from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
 from .playback import Playback
@@ -21,8 +21,8 @@ from .surfaces import Links
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .looks import Look
     from .page import Page
-    from .surfaces import Meshes
 
     Array = NDArray[np.float64]
 
@@ -36,8 +36,8 @@ _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has
 class Parts:
     """The parts of the page, and what they do together."""
 
-    def __init__(self, page: Page, meshes: Meshes, notes: list[str]) -> None:
-        """Fills the page. `meshes` are those of the links, `notes` sentences about the robot."""
+    def __init__(self, page: Page, looks: list[Look], notes: list[str]) -> None:
+        """Fills the page. `looks` are those of the links, `notes` sentences about the robot."""
         self._page = page
         scene, gui = page.server.scene, page.server.gui
         base = page.arm.robot.link_poses(page.arm.q)[0, :3, 3]
@@ -45,21 +45,21 @@ class Parts:
         camera.look_at, camera.position, camera.fov = base + _LOOK * page.scale, base + _FROM * page.scale, _FIELD
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         scene.add_grid("/floor", width=4 * page.scale, height=4 * page.scale, cell_size=0.1, section_size=0.5)
-        self._links = Links(scene, page.arm.robot, meshes)
+        self._links = Links(scene, page.arm.robot, looks)
         self.report = Report(page, notes)
         self._playback = Playback(page)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Target"):
-            handle = Handle(page)
+            handles = Handles(page)
         with tabs.add_tab("Joints"):
             joints = Joints(page)
         with tabs.add_tab("Obstacles"):
             obstacles = Obstacles(page)
-            bodies = gui.add_checkbox("bodies around the meshes", initial_value=False)
+            bodies = gui.add_checkbox("bodies around the meshes", False, visible=self._links.has_covers)
             page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
         with tabs.add_tab("Postures"):
             self._postures = Postures(page, self._links)
-        self._quick = (handle, obstacles, self._postures)
+        self._quick = (handles, obstacles, self._postures)
         self._slow = (joints, self.report)
         self._due = 0.0
         self.refresh()

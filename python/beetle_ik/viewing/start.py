@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import BeetleIkError, Mesh, Obstacle, Robot, clearance
+from .._core import Obstacle, Robot, clearance
 from .._text import counted
 
 _THICKNESS = 0.04  # radius of capsules, as a fraction of the length of the arm
@@ -22,6 +22,9 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     if robot.unread_collision_shapes and robot.bodies and has_meshes:
         robot = robot.with_capsules(list(robot.capsules))
         notes.append(f'{unread} not read, and not kept clear: Robot.from_urdf(..., collision="fit") reads them')
+    elif len(robot.tips) > 1 and not robot.bodies:
+        robot = robot.with_capsules([])
+        notes.append("no bodies in the model: nothing is kept clear")
     elif robot.unread_collision_shapes or not robot.bodies:
         lacking = f"{unread} not read" if robot.unread_collision_shapes else "no bodies in the model"
         radius = max(_THICKNESS * length(robot), _THINNEST)
@@ -34,18 +37,10 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     return robot, notes
 
 
-def meshes(robot: Robot) -> tuple[list[tuple[str, Mesh]], list[str]]:
-    """Returns the meshes of the robot, each (link, mesh in its frame), or a sentence that says why there are none."""
-    try:
-        return robot.collision_meshes(), []
-    except BeetleIkError as error:  # a file that has gone
-        return [], [str(error)]
-
-
 def length(robot: Robot) -> float:
-    """Returns the length of the chain (m) from joint to joint, with joints in the middle of their ranges."""
+    """Returns the length of the (first) chain (m) from joint to joint, with joints in the middle of their ranges."""
     q = middle(robot)
-    origins = np.vstack((robot.link_poses(q)[:, :3, 3], robot.fk(q)[:3, 3]))
+    origins = np.vstack((robot.link_poses(q)[:, :3, 3], robot.fk(q).reshape(-1, 4, 4)[0, :3, 3]))
     return float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
 
 
@@ -62,7 +57,7 @@ def configuration(robot: Robot, obstacles: list[Obstacle]) -> NDArray[np.float64
         return robot.stances["ready"]
     center = middle(robot)
     candidates = np.vstack((center, 0.5 * (center + robot.random_configurations(_CANDIDATES, seed=0))))
-    agility = robot.manipulability(candidates)
+    agility = robot.manipulability(candidates) if len(robot.tips) == 1 else np.ones(len(candidates))
     good = (agility > _SINGULAR * np.median(agility)) & (clearance(robot, candidates, obstacles) > _CLEAR)
     heights = np.array([robot.link_poses(q)[:, 2, 3] for q in candidates])
     above = good & (heights.min(axis=1) >= heights[:, 0] - _FLOOR)

@@ -17,6 +17,7 @@
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
+//! | `visual` | how links look |
 //! | `serialization` | robots as bytes |
 
 mod arms;
@@ -43,6 +44,7 @@ mod serialization;
 mod stance;
 mod tip_chain;
 mod tips;
+mod visual;
 
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
@@ -56,6 +58,7 @@ pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub(crate) use links::FrameBuffer;
 pub use model::Robot;
 pub use stance::Stance;
+pub use visual::{Visual, VisualShape};
 
 pub use off_chain::HeldJoint;
 pub(crate) use off_chain::{OffChain, OffChainLink};

@@ -12,6 +12,7 @@ use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::parts::Parts;
 use super::stance::Stance;
+use super::visual::Visual;
 use super::tip_chain::TipChains;
 use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
@@ -338,6 +339,13 @@ impl Robot {
     pub(crate) fn with_stances(&self, stances: Vec<Stance>) -> Self {
         let mut robot = self.clone();
         robot.parts.stances = stances;
+        robot
+    }
+
+    /// The same robot with these visual shapes.
+    pub(crate) fn with_visuals(&self, visuals: Vec<Visual>) -> Self {
+        let mut robot = self.clone();
+        robot.parts.visuals = visuals;
         robot
     }
 
