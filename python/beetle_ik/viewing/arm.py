@@ -117,7 +117,7 @@ class Arm:
         self._restart()
 
     @property
-    def goal(self) -> Array | Targets:
+    def goal(self) -> Any:
         """What solvers take: for each tip a position (3,) if the orientation is free, otherwise a pose (4, 4).
 
         That of an only tip is no dict.

@@ -41,7 +41,9 @@ def target_poses(target: Any, present: Targets) -> Targets:
     """Returns the targets `present` with those of `target`: a dict by the names of tips, or that of the only tip."""
     if not isinstance(target, Mapping):
         if len(present) > 1:
-            raise InvalidInputError(f"target must be a dict with the tips {_named(present)} as keys, got {target!r:.60}")
+            raise InvalidInputError(
+                f"target must be a dict with the tips {_named(present)} as keys, got {target!r:.60}"
+            )
         (tip,) = present
         return {tip: _target_pose("target", target, present[tip])}
     for tip in target:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
         if not scene.is_empty:
             made.append(Look(link, scene))
     if missing:
-        notes.append(f"{counted(len(missing), 'visual mesh', 'visual meshes')} not found, such as {missing[0]}")
+        notes.append(f"{counted(len(missing), 'file')} of visual meshes not found, such as {missing[0]}")
     try:
         collision_meshes = robot.collision_meshes()
     except BeetleIkError as error:  # a file that has gone
@@ -70,7 +70,7 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
 
 def _read(file: str) -> trimesh.Scene:
     """Returns the content of a mesh file, in metres."""
-    scene = library("trimesh", "trimesh", "the viewer", extra="view").load_scene(file)
+    scene: trimesh.Scene = library("trimesh", "trimesh", "the viewer", extra="view").load_scene(file)
     return scene if scene.units is None else scene.convert_units("meters")  # COLLADA says what its units are
 
 
@@ -90,13 +90,14 @@ def _paint(scene: trimesh.Scene, color: Color) -> None:
         if not isinstance(mesh, Trimesh):  # lines and points
             scene.delete_geometry(name)
             continue
-        material = getattr(mesh.visual, "material", None)
-        if not mesh.visual.defined:
+        visual: Any = mesh.visual
+        material = getattr(visual, "material", None)
+        if not visual.defined:
             mode = "OPAQUE" if color[3:] in ((), (255,)) else "BLEND"
             material = PBRMaterial(baseColorFactor=color, metallicFactor=0.0, roughnessFactor=1.0, alphaMode=mode)
             mesh.visual = TextureVisuals(material=material)
         elif isinstance(material, SimpleMaterial):
-            material = mesh.visual.material = material.to_pbr()
+            material = visual.material = material.to_pbr()
         if isinstance(material, PBRMaterial):
             material.doubleSided = True
         if len(mesh.faces) > _MOST:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_LOOK = np.array([0.15, 0.0, 0.3])  # of the camera, as a fraction of the arm
-_FROM = np.array([1.2, 1.0, 0.75])
+_FROM = np.array([1.2, 1.0, 0.5])  # of the camera, from where it looks, as a fraction of the robot
+_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -40,9 +40,12 @@ class Parts:
         """Fills the page. `looks` are those of the links, `notes` sentences about the robot."""
         self._page = page
         scene, gui = page.server.scene, page.server.gui
-        base = page.arm.robot.link_poses(page.arm.q)[0, :3, 3]
+        places = page.arm.robot.all_link_poses(page.arm.q)[:, :3, 3]
+        low, high = places.min(axis=0), places.max(axis=0)
+        size = max(page.scale, float(np.linalg.norm(high - low)))
+        look = 0.5 * (low + high) + _ASIDE * size
         camera = page.server.initial_camera
-        camera.look_at, camera.position, camera.fov = base + _LOOK * page.scale, base + _FROM * page.scale, _FIELD
+        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         scene.add_grid("/floor", width=4 * page.scale, height=4 * page.scale, cell_size=0.1, section_size=0.5)
         self._links = Links(scene, page.arm.robot, looks)

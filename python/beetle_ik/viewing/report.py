@@ -41,7 +41,11 @@ class Report:
     def refresh(self) -> None:
         """Shows the state of the arm."""
         nearest = self._page.arm.nearest
-        paragraphs = [f"<b data-beetle-ik='status'>{html.escape(self._status())}</b>", *self._tips(), _clearance(nearest)]
+        paragraphs = [
+            f"<b data-beetle-ik='status'>{html.escape(self._status())}</b>",
+            *self._tips(),
+            _clearance(nearest),
+        ]
         if self.problem:
             paragraphs.insert(0, f"<b style='color:{VERMILION}'>{html.escape(self.problem)}</b>")
         text = "".join(f"<p>{each}</p>" for each in paragraphs)

@@ -39,41 +39,35 @@ class Links:
             for link in robot.all_link_names
         }
         self._poses = np.full((len(self._frames), 4, 4), np.nan)
-        self._meshes: list[tuple[str, Array, NDArray[np.int64]]] = []
-        """Of each link: vertices and faces for its ghosts."""
+        self._looks = looks
         for i, look in enumerate(looks):
-            mesh = look.scene.to_mesh()
             scene.add_glb(f"{self._frames[look.link].name}/look_{i}", look.scene.export(file_type="glb"))
-            self._meshes.append((look.link, mesh.vertices, mesh.faces))
         seen = {look.link for look in looks}
-        self._covers = [self._draw(i, body, seen) for i, body in enumerate(robot.bodies) if _is_thick(body)]
+        bodies = [body for body in robot.bodies if getattr(body.shape, "radius", 1.0)]  # a rod without has no surface
+        self._naked = [body for body in bodies if body.link not in seen or body.source == "attached"]
+        for i, body in enumerate(self._naked):
+            self._draw(f"body_{i}", body, LINKS[1])  # one colour: neighbours overlap at their joint
+        covers = [body for body in bodies if body not in self._naked]
+        self._covers = [
+            self._draw(f"cover_{i}", body, SKY, opacity=_TRANSLUCENT, visible=False) for i, body in enumerate(covers)
+        ]
         self._ghosts: list[Any] = []
 
-    def _draw(self, i: int, body: Body, seen: set[str]) -> viser.MeshHandle | None:
-        """Draws a body, and returns it if it covers what is seen of its link."""
-        covers = body.link in seen and body.source != "attached"
-        vertices, faces = soup(body.shape.triangles)
-        smooth = isinstance(body.shape, _SMOOTH)
-        if smooth:  # light falls smoothly where corners are shared
-            _, first, corners = np.unique(vertices.round(_SAME), axis=0, return_index=True, return_inverse=True)
-            vertices, faces = vertices[first], corners.reshape(-1, 3)
-        if not covers:
-            self._meshes.append((body.link, vertices, faces))
-        handle = self._scene.add_mesh_simple(
-            f"{self._frames[body.link].name}/body_{i}", vertices, faces, flat_shading=not smooth, side="double",
-            color=rgb(SKY if covers else LINKS[1]),  # one colour: neighbours overlap at their joint
-            opacity=_TRANSLUCENT if covers else None, visible=not covers,
-        )  # fmt: skip
-        return handle if covers else None
+    def _draw(self, name: str, body: Body, color: str, **how: Any) -> viser.MeshHandle:
+        vertices, faces, flat = _mesh(body)
+        path = f"{self._frames[body.link].name}/{name}"
+        return self._scene.add_mesh_simple(
+            path, vertices, faces, color=rgb(color), flat_shading=flat, side="double", **how
+        )
 
     @property
     def has_covers(self) -> bool:
         """Whether there are bodies that `show_bodies` shows."""
-        return any(self._covers)
+        return bool(self._covers)
 
     def show_bodies(self, shown: bool) -> None:
         """Shows or hides the bodies around what is seen."""
-        for handle in filter(None, self._covers):
+        for handle in self._covers:
             handle.visible = shown
 
     def place(self, q: Array) -> None:
@@ -94,7 +88,10 @@ class Links:
         if not len(configurations):
             return
         poses = np.array([self._robot.all_link_poses(q) for q in configurations])
-        for i, (link, vertices, faces) in enumerate(self._meshes):
+        looks = [(look.link, look.scene.to_mesh()) for look in self._looks]
+        meshes = [(link, mesh.vertices, mesh.faces) for link, mesh in looks]
+        meshes += [(body.link, *_mesh(body)[:2]) for body in self._naked]
+        for i, (link, vertices, faces) in enumerate(meshes):
             places = poses[:, self._robot.all_link_names.index(link)]
             ghosts = self._scene.add_batched_meshes_simple(
                 f"/ghosts/{i}", vertices, faces, batched_wxyzs=wxyz(places), batched_positions=places[:, :3, 3],
@@ -103,9 +100,13 @@ class Links:
             self._ghosts.append(ghosts)
 
 
-def _is_thick(body: Body) -> bool:
-    """Whether it has a surface; a rod of radius zero has none."""
-    return bool(getattr(body.shape, "radius", 1.0))
+def _mesh(body: Body) -> tuple[Array, NDArray[np.int64], bool]:
+    """Returns vertices and faces of a body, and whether faces are flat: light falls smoothly on shared corners."""
+    vertices, faces = soup(body.shape.triangles)
+    if not isinstance(body.shape, _SMOOTH):
+        return vertices, faces, True
+    _, first, corners = np.unique(vertices.round(_SAME), axis=0, return_index=True, return_inverse=True)
+    return vertices[first], corners.reshape(-1, 3), False
 
 
 def node_name(name: str) -> str:
