@@ -22,14 +22,16 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     if robot.unread_collision_shapes and robot.bodies and has_meshes:
         robot = robot.with_capsules(list(robot.capsules))
         notes.append(f'{unread} not read, and not kept clear: Robot.from_urdf(..., collision="fit") reads them')
-    elif len(robot.tips) > 1 and not robot.bodies:
-        robot = robot.with_capsules([])
-        notes.append("no bodies in the model: nothing is kept clear")
     elif robot.unread_collision_shapes or not robot.bodies:
         lacking = f"{unread} not read" if robot.unread_collision_shapes else "no bodies in the model"
         radius = max(_THICKNESS * length(robot), _THINNEST)
-        robot = robot.with_capsules([*robot.capsules, *robot.with_capsules(radius=radius).capsules])
-        notes.append(f"{lacking}: capsules of radius {1e3 * radius:.0f} mm along the links take their place")
+        if len(robot.tips) == 1:
+            places, added = "capsules along the links", robot.with_capsules(radius=radius).capsules
+        else:
+            origin = np.zeros(3)
+            places, added = "balls at the joints", [(link, origin, origin, radius) for link in robot.all_link_names]
+        robot = robot.with_capsules([*robot.capsules, *added])
+        notes.append(f"{lacking}: {places}, of radius {1e3 * radius:.0f} mm, take their place")
     unlimited = np.isinf(robot.velocity_limit)
     if unlimited.any():
         robot = robot.with_limits(velocity=np.where(unlimited, _SPEED, robot.velocity_limit))

@@ -33,10 +33,8 @@ class Links:
     def __init__(self, scene: viser.SceneApi, robot: Robot, looks: list[Look]) -> None:
         """Adds the frames and what they carry; `place` moves them."""
         self._scene, self._robot = scene, robot
-        bare = not looks and not robot.bodies
         self._frames = {
-            link: scene.add_frame(f"/robot/{node_name(link)}", show_axes=bare, axes_length=0.05, axes_radius=0.003)
-            for link in robot.all_link_names
+            link: scene.add_frame(f"/robot/{node_name(link)}", show_axes=False) for link in robot.all_link_names
         }
         self._poses = np.full((len(self._frames), 4, 4), np.nan)
         self._looks = looks
@@ -44,10 +42,10 @@ class Links:
             scene.add_glb(f"{self._frames[look.link].name}/look_{i}", look.scene.export(file_type="glb"))
         seen = {look.link for look in looks}
         bodies = [body for body in robot.bodies if getattr(body.shape, "radius", 1.0)]  # a rod without has no surface
-        self._naked = [body for body in bodies if body.link not in seen or body.source == "attached"]
+        self._naked = [body for body in bodies if body.link not in seen]
         for i, body in enumerate(self._naked):
             self._draw(f"body_{i}", body, LINKS[1])  # one colour: neighbours overlap at their joint
-        covers = [body for body in bodies if body not in self._naked]
+        covers = [body for body in bodies if body.link in seen]
         self._covers = [
             self._draw(f"cover_{i}", body, SKY, opacity=_TRANSLUCENT, visible=False) for i, body in enumerate(covers)
         ]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 
 use super::document::Document;
-use super::link_capsules::{UrdfMesh, Primitive};
+use super::link_capsules::{Primitive, UrdfMesh};
 use super::package::Packages;
 use crate::error::{Error, Result, shortened};
 use crate::load::cover_cache::covered_mesh;
