@@ -55,9 +55,10 @@ def view(
     """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
 
     The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
-    clear. The page has sliders for the joints, all solutions, the self-motion, and plays motions back. Meshes are those
-    that `robot.collision_meshes()` reads; links without them show their bodies, and a robot without bodies gets
-    capsules along its links. In a notebook the viewer shows inline.
+    clear. One with several tips has a handle for each, and follows them as `solve` does. The page has sliders for the
+    joints, all solutions, the self-motion, and plays motions back. Links look as `robot.visuals` says where files are
+    found, otherwise like their collision meshes or bodies; a robot without bodies gets capsules along its links. In a
+    notebook the viewer shows inline.
 
     Args:
         robot: the robot.
