@@ -7,7 +7,9 @@ import sys
 import threading
 import time
 from collections.abc import Collection, Iterator
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -121,6 +123,20 @@ def test_a_target_out_of_reach_is_approached_and_ends() -> None:
     assert arm.outcome is not None
     assert not arm.outcome.success
     assert np.linalg.norm(PANDA.fk(arm.q)[:3, 3] - arm.targets[TIP][:3, 3]) < 1.2  # its reach is 0.85 m
+
+
+def test_an_arm_that_hunts_about_a_posture_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hunting(_: Arm) -> SimpleNamespace:  # the null space beside a singular posture
+        return SimpleNamespace(
+            q=START + 0.01 * (-1) ** next(turns), position_error=0.01, rotation_error=0.0, success=False
+        )
+
+    turns = count()
+    monkeypatch.setattr(Arm, "_track", hunting)
+    arm = Arm(PANDA, START, [])
+    arm.aim(TIP, BELOW)
+    list(ticks(arm))
+    assert next(turns) < 100
 
 
 def test_solve_stays_out_of_an_obstacle() -> None:

@@ -26,7 +26,9 @@ DT = 1.0 / 60.0  # s, of a tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
 _REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
 _ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
-_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived
+_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived,
+_HUNTING = 0.05  # rad, m: as has one that comes no farther than this, and no nearer to its target by more than
+_NEARER = 1e-4  # m, rad
 _PAUSE = 30  # ticks
 
 
@@ -54,7 +56,7 @@ class Arm:
         self._keeps_clear = True
         self._tracker: Tracker | None = None
         self._escapes = False
-        self._anchor, self._ticks, self._tries_again = q, 0, True
+        self._anchor, self._error, self._ticks, self._tries_again = q, np.inf, 0, True
 
     def tips_at(self, q: Array) -> Targets:
         """Returns the pose (4, 4) of each tip at `q` (n,), by its name."""
@@ -156,8 +158,9 @@ class Arm:
             return False
         self.outcome = self._track()
         self.q = self.outcome.q
-        if np.abs(self.q - self._anchor).max() > _STILL:
-            self._anchor, self._ticks = self.q, 0
+        moved, error = np.abs(self.q - self._anchor).max(), _error(self.outcome)
+        if moved > _HUNTING or (moved > _STILL and error < self._error - _NEARER):
+            self._anchor, self._error, self._ticks = self.q, error, 0
         self._ticks += 1
         if self._ticks == _PAUSE:
             if self._tries_again and not self.outcome.success:
@@ -203,4 +206,9 @@ class Arm:
 
     def _set_off(self) -> None:
         self.moves = self._follow != "off"
-        self._anchor, self._ticks, self._tries_again = self.q, 0, True
+        self._anchor, self._error, self._ticks, self._tries_again = self.q, np.inf, 0, True
+
+
+def _error(step: Step) -> float:
+    """Returns the distance from the target (m, rad)."""
+    return step.position_error + float(np.nan_to_num(step.rotation_error))

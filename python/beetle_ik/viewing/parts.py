@@ -47,7 +47,8 @@ class Parts:
         camera = page.server.initial_camera
         camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
         gui.configure_theme(show_share_button=False)  # it would show the page to others
-        scene.add_grid("/floor", width=4 * page.scale, height=4 * page.scale, cell_size=0.1, section_size=0.5)
+        floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
+        scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
         self._links = Links(scene, page.arm.robot, looks)
         self.report = Report(page, notes)
         self._playback = Playback(page)
