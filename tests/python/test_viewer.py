@@ -125,6 +125,20 @@ def test_a_target_out_of_reach_is_approached_and_ends() -> None:
     assert np.linalg.norm(PANDA.fk(arm.q)[:3, 3] - arm.targets[TIP][:3, 3]) < 1.2  # its reach is 0.85 m
 
 
+def test_an_approach_that_touches_an_obstacle_is_not_made() -> None:
+    beyond = [1.5, 0.0, 0.4]
+    wall = bik.obstacles.Box((0.7, 0.0, 0.5), (0.02, 2.0, 2.0))
+    arm = Arm(PANDA, START, [wall])
+    arm.part, arm.follow = "position", "solve"
+    arm.aim(TIP, bik.pose(beyond))
+    assert bik.solve(PANDA, beyond, start=START, obstacles=[wall]).status is bik.Status.OUT_OF_REACH
+    assert min(ticks(arm)) >= MARGIN
+    assert arm.stays
+    arm.keeps_clear = False
+    list(ticks(arm))
+    assert not arm.stays
+
+
 def test_an_arm_that_hunts_about_a_posture_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     def hunting(_: Arm) -> SimpleNamespace:  # the null space beside a singular posture
         return SimpleNamespace(

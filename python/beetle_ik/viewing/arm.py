@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from .. import tasks
-from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, nearest, solve
+from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, clearance, nearest, solve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +24,7 @@ PARTS: tuple[Part, ...] = get_args(Part)
 
 DT = 1.0 / 60.0  # s, of a tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
+_MARGIN = 1e-3  # m, that of solvers
 _REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
 _ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
 _STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived,
@@ -40,6 +41,7 @@ class Arm:
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
         moves: whether it is under way to the target.
+        stays: whether it stays where it is because it would collide at the last solution.
     """
 
     def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
@@ -47,7 +49,7 @@ class Arm:
         self.robot = robot
         self.q = q
         self.outcome: Step | Solution | None = None
-        self.moves = False
+        self.moves = self.stays = False
         self.follows = FOLLOWS if len(robot.tips) == 1 else FOLLOWS[1:]  # a tracker takes robots with one tip
         self._targets = self.tips_at(q)
         self._obstacles = obstacles
@@ -175,7 +177,9 @@ class Arm:
         found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
         self.outcome = found
         self._tracker, self.moves = None, False
-        if found.status is not Status.IN_COLLISION:
+        # A target out of reach is approached without looking at obstacles.
+        self.stays = self._keeps_clear and clearance(self.robot, found.q, self._obstacles) < _MARGIN
+        if not self.stays:
             self.q = found.q
 
     @property

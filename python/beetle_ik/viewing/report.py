@@ -62,7 +62,7 @@ class Report:
         arm = self._page.arm
         if arm.outcome is None:
             return "at rest" if arm.follow != "off" else "moved from outside"
-        if isinstance(arm.outcome, Solution) and arm.outcome.status is Status.IN_COLLISION:
+        if isinstance(arm.outcome, Solution) and arm.stays:
             return "no clear solution: the arm stays"
         word = _WORDS.get(arm.outcome.status, "under way" if arm.moves else "as near as it gets from here")
         return f"{word}: {_errors(arm.outcome.position_error, arm.outcome.rotation_error)} from the target"
