@@ -32,6 +32,8 @@ default_role = "py:obj"  # one backquote in docstrings
 html_theme = "furo"
 html_title = "beetle-ik"
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["gallery.css"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -58,6 +60,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
     "ignore_pattern": r"15_wrong_model\.py$",  # a program for MuJoCo, with an argument
+    "thumbnail_size": (640, 480),
     "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),
     "remove_config_comments": True,

@@ -157,11 +157,9 @@ def dragged(browser: Any, file: Path) -> None:
 def solved(browser: Any, file: Path) -> None:
     """Pictures all solutions of a pose."""
     robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
-    target = bik.pose([0.3, 0.35, 0.3], rpy=[np.pi, 0.0, 2.0])
-    board = bik.obstacles.Box((0.0, 0.0, -0.06), (1.2, 1.2, 0.1), touch=["base_link", "shoulder_link"])
-    with bik.view(robot, bik.solve(robot, target).q, obstacles=[board], port=0) as viewer:
+    target = bik.pose([0.3, 0.45, 0.6], rpy=[np.pi / 2, 0.0, 2.0])
+    with bik.view(robot, bik.solve(robot, target, obstacles=[]).q, port=0) as viewer:
         visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
-        visitor.until(lambda: not viewer.moves)
         visitor.open_tab("Postures")
         visitor.press("Show all solutions")
         visitor.page.get_by_label("velocity ellipsoid").check()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_FROM = np.array([1.2, 1.0, 0.5])  # of the camera, from where it looks, as a fraction of the robot
+_FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
@@ -40,8 +40,8 @@ class Parts:
         """Fills the page. `looks` are those of the links, `notes` sentences about the robot."""
         self._page = page
         scene, gui = page.server.scene, page.server.gui
-        places = page.arm.robot.all_link_poses(page.arm.q)[:, :3, 3]
-        low, high = places.min(axis=0), places.max(axis=0)
+        self._links = Links(scene, page.arm.robot, looks)
+        low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
         look = 0.5 * (low + high) + _ASIDE * size
         camera = page.server.initial_camera
@@ -49,7 +49,6 @@ class Parts:
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
         scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
-        self._links = Links(scene, page.arm.robot, looks)
         self.report = Report(page, notes)
         self._playback = Playback(page)
         tabs = gui.add_tab_group()

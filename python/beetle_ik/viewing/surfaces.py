@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_TRANSLUCENT = 0.25
+_TRANSLUCENT = 0.3
 _SAME = 7  # decimals of corners that are the same
 _SMOOTH = (Capsule, Ellipsoid, Sphere)
 
@@ -57,6 +57,16 @@ class Links:
         return self._scene.add_mesh_simple(
             path, vertices, faces, color=rgb(color), flat_shading=flat, side="double", **how
         )
+
+    def bounds(self, q: Array) -> tuple[Array, Array]:
+        """Returns the least and the greatest coordinates (3,) of links and what is seen of them at `q` (n,)."""
+        poses = dict(zip(self._frames, self._robot.all_link_poses(q), strict=True))
+        points = [pose[:3, 3:].T for pose in poses.values()]
+        for look in self._looks:
+            corners = np.stack(np.meshgrid(*look.scene.bounds.T), axis=-1).reshape(-1, 3)
+            points.append(corners @ poses[look.link][:3, :3].T + poses[look.link][:3, 3])
+        every = np.concatenate(points)
+        return every.min(axis=0), every.max(axis=0)
 
     @property
     def has_covers(self) -> bool:
