@@ -157,7 +157,7 @@ def dragged(browser: Any, file: Path) -> None:
 def solved(browser: Any, file: Path) -> None:
     """Pictures all solutions of a pose."""
     robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
-    target = bik.pose([0.3, 0.45, 0.6], rpy=[np.pi / 2, 0.0, 2.0])
+    target = bik.pose([0.45, -0.3, 0.5], rpy=[np.pi / 2, 0.0, 1.0])
     with bik.view(robot, bik.solve(robot, target, obstacles=[]).q, port=0) as viewer:
         visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
         visitor.open_tab("Postures")
