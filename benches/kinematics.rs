@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ikcore::manipulability::{Manipulability, Motion};
-use ikcore::math::MAX_DOF;
+use ikcore::math::Columns;
 use ikcore::rng;
 use ikcore::robot::Robot;
 
@@ -20,7 +20,7 @@ fn single(c: &mut Criterion) {
         let robot = robot(name);
         let qs = robot.random_configurations(4, &mut rng::stream(0, 0)).expect("they fit into memory");
         let q = &qs[..robot.dof()];
-        let mut columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
         let mut group = c.benchmark_group(name);
         group.bench_function("fk", |b| b.iter(|| robot.tip(black_box(q))));
         group.bench_function("fk and jacobian", |b| b.iter(|| robot.tip_and_jacobian(black_box(q), &mut columns)));

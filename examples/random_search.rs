@@ -12,7 +12,7 @@ pub struct RandomSearch {
 }
 
 /// Storage for the point drawn.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
 }
@@ -20,10 +20,10 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for RandomSearch {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let mut x = Point::from_slice(x0);
-        evaluator.evaluate(&mut x)?;
-        Ok(State { x })
+    fn start(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+        *x = Point::from_slice(x0);
+        evaluator.evaluate(x)?;
+        Ok(())
     }
 
     fn step(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

@@ -332,6 +332,28 @@ class Robot:
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
+    def with_mobile_base(
+        self,
+        kind: Literal["planar", "floating"],
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> Robot:
+        """Returns a copy on a mobile base, whose joints come first in `q`. Poses are then those in the frame of a new first link,
+        "world"; the base pose of this robot is how it is mounted. In named configurations the base is at zero.
+
+        Args:
+            kind: "planar": base_x, base_y (m) and base_yaw (rad). "floating": base_x, base_y, base_z (m) and base_rx, base_ry,
+                base_rz (rad), a rotation vector: no orientation is singular. Its velocity and acceleration are the rates of its entries.
+            lower: lower position limits, (3,) or (6,); finite, since random configurations and starts of searches are drawn from the
+                range. The yaw may be unlimited on both sides. The rotation vector has to stay shorter than 5.97 rad;
+                -pi and pi for each entry hold every orientation.
+            upper: upper position limits, likewise.
+            velocity: velocity limits, a number or one per joint (m/s, rad/s); None: unknown.
+            acceleration: acceleration limits for `rated_limits`, likewise (m/s^2, rad/s^2).
+        """
     def with_held(self, hold: Mapping[str, float]) -> Robot:
         """Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
 

@@ -17,7 +17,7 @@ def distance_by_coal(arm: bik.Robot, q: np.ndarray, scene: bik.Scene) -> float:
     def apart(one: tuple[Any, Any], other: tuple[Any, Any]) -> float:
         return float(coal.distance(one[0], one[1], other[0], other[1], request, coal.DistanceResult()))
 
-    place = dict(zip(arm.link_names, arm.link_poses(q), strict=True))
+    place = dict(zip(arm.all_link_names, arm.all_link_poses(q), strict=True))
     links: list[tuple[str, tuple[Any, Any]]] = []
     for link, a, b, radius in arm.capsules:
         ends = [place[link][:3, :3] @ end + place[link][:3, 3] for end in (a, b)]

@@ -89,9 +89,9 @@ def test_wrong_joint_positions_are_named(call: Callable[[], object], error: type
         (lambda: bik.Robot.planar([]), Invalid, "lengths of a planar arm: expected at least 1, got 0"),
         (lambda: bik.Robot.planar([1, -1]), Invalid, "length 1 of a planar arm must be positive and finite, got -1"),
         (
-            lambda: bik.Robot.planar([1] * 33),
+            lambda: bik.Robot.planar([1] * 65),
             Invalid,
-            "robot 'planar33': 33 moving joints between base and tip; at most 32 are supported",
+            "robot 'planar65': 65 moving joints between base and tip; at most 64 are supported",
         ),
         (
             lambda: bik.Robot.planar([1, 1], lower=1, upper=-1),

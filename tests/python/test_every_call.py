@@ -104,6 +104,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.with_capsules": {"radius": 0.05},
     "Robot.with_collision_pairs": {"pairs": []},
     "Robot.with_held": {"hold": {}},
+    "Robot.with_mobile_base": {"kind": "planar", "lower": [-1, -1, -3], "upper": [1, 1, 3]},
     "Robot.with_srdf": {"path_or_xml": "<robot/>"},
     "Robot.with_tool": {"tool": np.eye(4)},
     "Scene.": {".": bik.Scene()},

@@ -185,7 +185,7 @@ def waypoints(count: int) -> Callable[[], object]:
 
 PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
-ONE = "one configuration of at most 32 joints"
+ONE = "one configuration of at most 64 joints"
 COPIES = "as fast as its arrays are copied"
 PYTHON = "Python and matplotlib, which the interpreter interrupts"
 SHORT: dict[str, str] = {
@@ -212,7 +212,7 @@ SHORT: dict[str, str] = {
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "Tracker.stop", "pose",
             "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
-            "Robot.with_collision_pairs", "Robot.with_srdf",
+            "Robot.with_collision_pairs", "Robot.with_mobile_base", "Robot.with_srdf",
         ],
         ONE,
     ),

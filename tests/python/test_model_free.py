@@ -226,7 +226,7 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
             "a Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
-        (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),
+        (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 64 joints, got 0"),
         (
             lambda: track(bik.KinematicPlant(IIWA), start=[0.0]),
             bik.InvalidInputError,

@@ -2,7 +2,7 @@
 
 use crate::common::chains::RandomChain;
 use crate::common::{bits, message, robot};
-use ikcore::math::pose;
+use ikcore::math::{Columns, pose};
 use ikcore::nalgebra::{Matrix4, Matrix6xX, Rotation3, Vector3};
 use ikcore::objective::{Objective, Score};
 use ikcore::problem::Problem;
@@ -10,11 +10,12 @@ use ikcore::rng;
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::task::{Target, Tolerance};
 
-/// Forty chains of 1 to 12 joints, up to 16 of them moving with their mimics, each with a configuration up to a turn
-/// and a half from zero.
+/// Forty chains of 1 to 12 joints, up to 16 of them moving with their mimics, and five of 30 to 50, up to 64 of them moving; each with
+/// a configuration up to a turn and a half from zero.
 fn chains() -> impl Iterator<Item = (RandomChain, Vec<f64>)> {
-    (0..40).map(|seed| {
-        let chain = RandomChain::new(seed, 1 + seed as usize % 12, 16);
+    let short = (0..40).map(|seed| (seed, 1 + seed as usize % 12, 16));
+    short.chain((0..5).map(|seed| (seed, 30 + 5 * seed as usize, 64))).map(|(seed, joints, moving)| {
+        let chain = RandomChain::new(seed, joints, moving);
         let mut rng = rng::stream(seed, 99);
         let q = (0..chain.robot.dof()).map(|_| rng.uniform_in(-9.0, 9.0)).collect();
         (chain, q)
@@ -84,7 +85,7 @@ fn jacobian_is_the_derivative_of_the_tip() {
 #[test]
 fn jacobian_pass_meets_the_same_tip() {
     for (chain, q) in chains() {
-        let mut columns = [[0.0; 6]; 32];
+        let mut columns = Columns::default();
         assert_eq!(chain.robot.tip_and_jacobian(&q, &mut columns), chain.robot.tip(&q));
     }
 }
@@ -133,7 +134,7 @@ fn planar_builder(joints: usize) -> ChainBuilder {
 
 #[test]
 fn every_number_of_joints_up_to_the_largest_works() {
-    for joints in 1..=32 {
+    for joints in 1..=64 {
         let robot = planar_builder(joints).build().unwrap();
         let q: Vec<f64> = (0..joints).map(|j| 0.1 * (j as f64 - 3.0)).collect();
         let (mut angle, mut expected) = (0.0_f64, [0.0; 2]);
@@ -154,8 +155,8 @@ fn every_number_of_joints_up_to_the_largest_works() {
 
 #[test]
 fn one_joint_more_is_too_many() {
-    let problem = "33 moving joints between base and tip; at most 32 are supported";
-    assert_eq!(message(planar_builder(33).build()), format!("robot 'snake': {problem}"));
+    let problem = "65 moving joints between base and tip; at most 64 are supported";
+    assert_eq!(message(planar_builder(65).build()), format!("robot 'snake': {problem}"));
 }
 
 #[test]

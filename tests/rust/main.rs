@@ -25,6 +25,7 @@ mod layers;
 mod manipulability;
 mod messages;
 mod minimize;
+mod mobile_base;
 mod model_free;
 mod motion;
 mod obstacle;

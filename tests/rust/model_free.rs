@@ -499,5 +499,5 @@ fn wrong_input_is_named() {
     assert_eq!(run(Controller::default(), &outside), limits);
     let none = ModelFreeOptions::default();
     let no_joints = track_model_free(&mut exact_plant(), &circle(), &[], &none, &mut Unattended);
-    assert_eq!(message(no_joints), "start: expected 1 to 32 joints, got 0");
+    assert_eq!(message(no_joints), "start: expected 1 to 64 joints, got 0");
 }

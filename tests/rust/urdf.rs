@@ -469,7 +469,7 @@ fn loading_is_linear_in_the_links() {
     assert_eq!(robot.dof(), 1);
 
     let moving = error(&large("revolute", |i| i - 1));
-    assert_eq!(moving, "robot 'large': 99999 moving joints between base and tip; at most 32 are supported");
+    assert_eq!(moving, "robot 'large': 99999 moving joints between base and tip; at most 64 are supported");
 }
 
 #[test]

@@ -31,6 +31,8 @@ pub(crate) enum NoClosedForm {
     Joined,
     /// Joints slide, and no method fits.
     Sliding,
+    /// The base floats.
+    Floating,
 }
 
 /// The closed form of a chain of three to seven joints.
@@ -63,6 +65,9 @@ impl ClosedFormArm {
             if axes != 1 {
                 return Err(NoClosedForm::Drives { joint, axes });
             }
+        }
+        if chain.vector.is_some() {
+            return Err(NoClosedForm::Floating);
         }
         if rank < joints.min(6) {
             return Err(NoClosedForm::Rank(rank));

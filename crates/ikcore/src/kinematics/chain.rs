@@ -4,6 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::rotation_vector::RotationVector;
 use super::stages::Stages;
 use crate::math::so3::cross;
 use crate::math::{Frame, Pose, pose};
@@ -17,10 +18,13 @@ pub(crate) struct StageMotion {
     pub turn_offset: f64,
     pub slide_scale: f64,
     pub slide_offset: f64,
+    /// Whether it is an entry of a [`RotationVector`], whose axis moves with it and with the others.
+    pub of_vector: bool,
 }
 
 impl StageMotion {
-    const NONE: Self = Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0 };
+    const NONE: Self =
+        Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0, of_vector: false };
 
     /// A turn by `scale * q[joint] + offset` (rad).
     pub fn turn(joint: usize, scale: f64, offset: f64) -> Self {
@@ -30,6 +34,11 @@ impl StageMotion {
     /// A slide by `scale * q[joint] + offset` (m).
     pub fn slide(joint: usize, scale: f64, offset: f64) -> Self {
         Self { joint, slide_scale: scale, slide_offset: offset, ..Self::NONE }
+    }
+
+    /// A turn by entry `joint` of a rotation vector.
+    fn vector_entry(joint: usize) -> Self {
+        Self { of_vector: true, ..Self::turn(joint, 1.0, 0.0) }
     }
 
     /// Velocity of `point`, carried by the frame `moved` of this element, per unit speed of the joint.
@@ -65,6 +74,8 @@ pub(crate) struct Chain {
     /// The tip relative to the last stage.
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
+    /// Whose stages do not turn about axes of their own.
+    pub vector: Option<RotationVector>,
 }
 
 /// Numbers of stages that kernels are compiled for. Chains are padded to the next one.
@@ -96,12 +107,13 @@ pub(crate) struct ChainFolder {
     frames: Vec<Frame>,
     motions: Vec<StageMotion>,
     links: Vec<LinkFrame>,
+    vector: Option<RotationVector>,
 }
 
 impl ChainFolder {
     /// An empty chain that starts at `base`.
     pub fn new(base: &Pose) -> Self {
-        Self { constant: *base, frames: vec![], motions: vec![], links: vec![] }
+        Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None }
     }
 
     /// Appends a constant transform.
@@ -122,13 +134,23 @@ impl ChainFolder {
         self.constant = aligned.inverse();
     }
 
+    /// Appends the rotation whose vector stands in q from entry `joint` on. A chain has one at most.
+    pub fn rotation_vector(&mut self, joint: usize) {
+        let start = Frame::from(&self.constant);
+        self.vector = Some(RotationVector { first: self.frames.len(), joint, start });
+        self.frames.extend(RotationVector::at_zero(&start));
+        self.motions.extend((0..3).map(|entry| StageMotion::vector_entry(joint + entry)));
+        self.motions.push(StageMotion::NONE);
+        self.constant = Pose::identity();
+    }
+
     /// Returns the chain with its tip moved by `tool`. It has at least one moving element and at most
     /// [`MAX_DOF`](crate::math::MAX_DOF).
     pub fn finish(self, tool: &Pose) -> Chain {
-        let Self { constant, frames, mut motions, links } = self;
+        let Self { constant, frames, mut motions, links, vector } = self;
         let moving = frames.len();
         motions.resize(padded(moving).next_multiple_of(LANES), StageMotion::NONE);
-        Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links }
+        Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links, vector }
     }
 }
 

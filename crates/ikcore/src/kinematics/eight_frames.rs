@@ -3,6 +3,7 @@
 
 use super::chain::StageMotion;
 use super::four_forward_pass::RunningFrames;
+use super::rotation_vector::RotationVector;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f32x8::F32x8;
@@ -11,7 +12,10 @@ use crate::math::sincos::sincos_eight;
 
 /// The moving elements of a robot.
 #[derive(Debug, Clone)]
-pub(crate) struct EightStages(Vec<Stage>);
+pub(crate) struct EightStages {
+    stages: Vec<Stage>,
+    vector: Option<RotationVector>,
+}
 
 #[derive(Debug, Clone)]
 struct Stage {
@@ -24,27 +28,37 @@ struct Stage {
 
 impl EightStages {
     /// In the order of their frames from number 1 on: the number of the frame that each starts from, its constant frame there, and
-    /// its motion.
-    pub fn new(stages: impl Iterator<Item = (usize, Frame, StageMotion)>) -> Self {
+    /// its motion; and the rotation vector among them.
+    pub fn new(stages: impl Iterator<Item = (usize, Frame, StageMotion)>, vector: Option<RotationVector>) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
             origin: frame.origin.map(|x| F32x8::splat(x as f32)),
         };
-        Self(stages.map(|(parent, frame, motion)| Stage { parent, frame: lanes(&frame), motion }).collect())
+        let stages = stages.map(|(parent, frame, motion)| Stage { parent, frame: lanes(&frame), motion }).collect();
+        Self { stages, vector }
     }
 
     /// Room for [`write`](Self::write): one frame more than there are moving elements.
     pub fn buffer(&self) -> Vec<Frame<F32x8>> {
         let mut identity = Frame { axes: [[F32x8::ZERO; 3]; 3], origin: [F32x8::ZERO; 3] };
         (0..3).for_each(|k| identity.axes[k][k] = F32x8::splat(1.0));
-        vec![identity; self.0.len() + 1]
+        vec![identity; self.stages.len() + 1]
     }
 
     /// Writes the frames of all elements, from entry 1 on; `qs` has one entry per joint.
     #[inline(always)]
     pub fn write<A: Arithmetic>(&self, qs: &[F32x8], frames: &mut [Frame<F32x8>]) {
         let splat = Eight::<A>::splat;
-        for (i, Stage { parent, frame, motion }) in self.0.iter().enumerate() {
+        let vector = self.vector.as_ref().map(|vector| (vector, vector_frames(vector, qs)));
+        for (i, Stage { parent, frame, motion }) in self.stages.iter().enumerate() {
+            if let Some((vector, turned)) = &vector
+                && let Some(own) = vector.own_stage(i)
+            {
+                let moved = RunningFrames::<Eight<A>>::of(&turned[own]);
+                frames[i + 1] =
+                    if *parent == 0 { moved } else { RunningFrames::of(&frames[*parent]).then(moved) }.stored();
+                continue;
+            }
             let q = Eight::<A>::of(qs[motion.joint]);
             let (sine, cosine) = sincos_eight(q.mul_add(splat(motion.turn_scale), splat(motion.turn_offset)));
             let slide = q.mul_add(splat(motion.slide_scale), splat(motion.slide_offset));
@@ -52,4 +66,18 @@ impl EightStages {
             frames[i + 1] = if *parent == 0 { moved } else { RunningFrames::of(&frames[*parent]).then(moved) }.stored();
         }
     }
+}
+
+/// Frames of the stages of a rotation vector, each relative to the one before; computed in double precision.
+#[cold]
+fn vector_frames(vector: &RotationVector, qs: &[F32x8]) -> [Frame<F32x8>; RotationVector::STAGES] {
+    let phi = vector.phi(qs);
+    let lanes: [[Frame; RotationVector::STAGES]; 8] =
+        std::array::from_fn(|lane| vector.frames(&phi.map(|entry| f64::from(entry.0[lane]))));
+    let rows =
+        |entry: &dyn Fn(&Frame) -> f64, own: usize| F32x8(std::array::from_fn(|lane| entry(&lanes[lane][own]) as f32));
+    std::array::from_fn(|own| Frame {
+        axes: std::array::from_fn(|axis| std::array::from_fn(|k| rows(&|frame| frame.axes[axis][k], own))),
+        origin: std::array::from_fn(|k| rows(&|frame| frame.origin[k], own)),
+    })
 }

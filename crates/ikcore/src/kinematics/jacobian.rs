@@ -4,11 +4,7 @@ use super::chain::Chain;
 use super::forward_pass::forward_pass;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF};
-
-/// Columns of a 6 x n matrix, one per joint: linear rows (m/rad, or 1 for a prismatic joint), then angular rows; the
-/// first n are in use.
-pub type Columns = [[f64; 6]; MAX_DOF];
+use crate::math::{Columns, Frame};
 
 /// Writes the Jacobian in world axes into `columns`, linear rows before angular rows, and returns the tip's frame.
 #[inline(always)]
@@ -22,6 +18,8 @@ pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
         axes[i] = frame.axes[2];
         origins[i] = frame.origin;
     });
+    columns.fit(q.len());
+    let columns = &mut **columns;
     columns[..N].fill([0.0; 6]);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
         let (axis, lever) = (axes[i], A::sub_x4(tip.origin, origins[i]));

@@ -1,13 +1,14 @@
 //! The table of compiled kernels: one entry per padded number of stages, for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
-use super::jacobian::{self, Columns};
-use super::link_frames::{self, StageFrames};
+use super::jacobian;
+use super::link_frames;
+use super::loop_kernels;
 use super::tip;
 use super::torques::{self, Wrench};
-use crate::math::Frame;
 use crate::math::arithmetic::by_instructions;
 use crate::math::f64x4::F64x4;
+use crate::math::{Columns, Frame, STACK_DOF};
 
 /// The kernels compiled for one padded number of stages and one instruction set.
 #[derive(Debug, Clone, Copy)]
@@ -24,18 +25,31 @@ pub(crate) struct Kernels {
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
     /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
     pub torques: Torques,
-    /// Writes the frames of all stages.
-    pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+    /// Writes the frames of all stages; there is room for [`STACK_DOF`] + 1 at least.
+    pub stage_frames: fn(&Chain, &[f64], &mut [Frame]),
     /// The frames of all stages for four configurations, bit-identical.
-    pub stage_frames_four: fn(&Chain, &[F64x4], &mut StageFrames<F64x4>),
+    pub stage_frames_four: fn(&Chain, &[F64x4], &mut [Frame<F64x4>]),
 }
 
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
 
 impl Kernels {
+    /// For chains of any kind and length.
+    const LOOPS: Self = Self {
+        tip: loop_kernels::tip,
+        tip_position: |chain, q| loop_kernels::tip(chain, q).origin,
+        tip_pair: loop_kernels::tip_positions::<2>,
+        tip_four: loop_kernels::tip_positions::<4>,
+        jacobian: loop_kernels::jacobian,
+        torques: loop_kernels::torques,
+        stage_frames: loop_kernels::stage_frames,
+        stage_frames_four: loop_kernels::stage_frames_four,
+    };
+
     /// The fastest kernels for this machine.
     pub fn for_chain(chain: &Chain) -> Self {
-        for_stages(chain.padded_stages())
+        let is_compiled = chain.vector.is_none() && chain.moving <= STACK_DOF;
+        if is_compiled { for_stages(chain.padded_stages()) } else { Self::LOOPS }
     }
 
     /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n`
@@ -151,7 +165,7 @@ mod tests {
             let chain = arm(joints);
             let (best, baseline) = (for_stages(joints), baseline(joints));
             let q: Vec<f64> = (0..joints).map(|i| (1.7 * i as f64).sin()).collect();
-            let (mut columns, mut others) = ([[0.0; 6]; MAX_DOF], [[0.0; 6]; MAX_DOF]);
+            let (mut columns, mut others) = (Columns::default(), Columns::default());
             let tip = (best.jacobian)(&chain, &q, &mut columns);
             let other = (baseline.jacobian)(&chain, &q, &mut others);
             let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);

@@ -6,10 +6,9 @@
 use nalgebra::Vector3;
 
 use super::chain::{Chain, LinkFrame, StageMotion, basis_with_z_along};
-use super::jacobian::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF, Pose, pose};
+use crate::math::{Columns, Frame, Pose, STACK_DOF, pose};
 
 /// A moving element of a branch.
 #[derive(Debug, Clone)]
@@ -44,7 +43,7 @@ pub(crate) struct LinkTree {
 impl LinkTree {
     /// Length of a buffer of frames: that of the kernels at least.
     pub fn frames(&self) -> usize {
-        (self.moving + 1 + self.branches.len()).max(MAX_DOF + 1)
+        (self.moving + 1 + self.branches.len()).max(STACK_DOF + 1)
     }
 
     /// Adds the frames of the branches to those of the chain at `q`.

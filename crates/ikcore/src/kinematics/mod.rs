@@ -10,6 +10,8 @@
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
 //! | `four_forward_pass`, `eight_frames` | the pass of four configurations at once, and of eight in single precision |
 //! | `kernels` | table of compiled kernels |
+//! | `rotation_vector` | the rotation of a floating base |
+//! | `loop_kernels` | kernels of chains that have one, and of long ones |
 //! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the positions of the tip |
@@ -24,7 +26,9 @@ mod jacobian;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
 pub(crate) mod link_tree;
+mod loop_kernels;
 mod reach;
+mod rotation_vector;
 mod screws;
 mod stages;
 mod task_rank;
@@ -33,8 +37,8 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub use jacobian::Columns;
 pub use reach::{Reach, ReachShortfall};
+pub(crate) use rotation_vector::RotationVector;
 pub use screws::{Screw, Screws};
 pub use task_rank::TaskRank;
 pub use torques::Wrench;

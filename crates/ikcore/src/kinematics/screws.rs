@@ -1,7 +1,6 @@
 //! Screws of a chain at a configuration: the velocity that each moving element gives to everything after it.
 
 use super::chain::{Chain, StageMotion};
-use super::link_frames::StageFrames;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::math::{Frame, MAX_DOF};
@@ -50,7 +49,7 @@ impl std::ops::Deref for Screws {
 
 impl Screws {
     /// The screws of `chain` with its stages at `reached`, mimics included.
-    pub(crate) fn of(chain: &Chain, reached: &StageFrames) -> Self {
+    pub(crate) fn of(chain: &Chain, reached: &[Frame]) -> Self {
         // Padding moves nothing. A mimic of factor zero moves nothing either, but elements may follow it.
         let count = chain.motions.iter().rposition(moves).map_or(0, |last| last + 1);
         let mut screws = Self { all: [Screw::NONE; MAX_DOF], count };

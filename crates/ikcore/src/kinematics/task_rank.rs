@@ -1,9 +1,8 @@
 //! Rank of the tip Jacobian by task: the number of directions in which the tip can move, almost everywhere.
 
 use super::chain::Chain;
-use super::jacobian::Columns;
 use super::kernels::Kernels;
-use crate::math::MAX_DOF;
+use crate::math::Columns;
 use crate::math::singular_values::SingularValues;
 use crate::rng;
 
@@ -31,7 +30,7 @@ impl TaskRank {
         for draw in 0..DRAWS {
             let mut rng = rng::stream(0, draw);
             let q: Vec<f64> = ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
-            let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+            let mut columns = Columns::default();
             (kernels.jacobian)(chain, &q, &mut columns);
             let columns = &columns[..q.len()];
             most.pose = most.pose.max(rank(columns));

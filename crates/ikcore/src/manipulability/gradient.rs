@@ -6,7 +6,8 @@
 
 use super::gram;
 use super::index::Manipulability;
-use crate::kinematics::{Columns, Screw};
+use crate::kinematics::Screw;
+use crate::math::Columns;
 use crate::math::MAX_DOF;
 use crate::math::singular_values::SingularValues;
 use crate::math::so3::cross;
@@ -30,7 +31,8 @@ impl Manipulability {
 pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], out: &mut [f64]) -> f64 {
     // With mimics several elements share a joint, so their columns are summed.
     let mut shares = [[0.0; 6]; MAX_DOF];
-    let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+    let mut columns = Columns::default();
+    columns.fit(out.len());
     for (share, screw) in shares.iter_mut().zip(screws) {
         *share = screw.column(tip);
         columns[screw.joint].iter_mut().zip(&*share).for_each(|(sum, entry)| *sum += entry);
@@ -47,7 +49,8 @@ pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], ou
 
 /// w and dw/dJ, column by column.
 fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Columns) {
-    let mut sensitivity: Columns = [[0.0; 6]; MAX_DOF];
+    let mut sensitivity = Columns::default();
+    sensitivity.fit(columns.len());
     if measure.has_full_rank()
         && let Some(index) = gram::index_and_sensitivity(columns, measure.motion(), &mut sensitivity)
     {

@@ -1,7 +1,7 @@
 //! The index from the LDL' factors of J J', at a tenth of the cost of singular values. `None` near singularities, where
 //! squaring J loses digits and singular values are used instead.
 
-use crate::kinematics::Columns;
+use crate::math::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::gram::gram;
 use crate::math::ldl::{Ldl, trace};

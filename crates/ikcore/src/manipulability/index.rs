@@ -4,8 +4,8 @@ use super::ellipsoid::Ellipsoid;
 use super::gram;
 use super::motion::Motion;
 use crate::error::Result;
-use crate::kinematics::{Columns, TaskRank};
-use crate::math::MAX_DOF;
+use crate::kinematics::TaskRank;
+use crate::math::Columns;
 use crate::math::singular_values::SingularValues;
 use crate::robot::Robot;
 
@@ -56,7 +56,7 @@ impl Manipulability {
 
     /// Yoshikawa's index at `q`, which has one finite entry per joint of the robot.
     pub fn index(&self, robot: &Robot, q: &[f64]) -> f64 {
-        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
         robot.tip_and_jacobian_of(self.tip, q, &mut columns);
         self.index_of(&mut columns[..q.len()])
     }
@@ -87,7 +87,7 @@ impl Manipulability {
 }
 
 fn decompose(robot: &Robot, measure: &Manipulability, q: &[f64]) -> SingularValues {
-    let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+    let mut columns = Columns::default();
     robot.tip_and_jacobian_of(measure.tip, q, &mut columns);
     let columns = &mut columns[..q.len()];
     measure.motion.select(columns);

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::gradient;
 use super::index::Manipulability;
-use crate::kinematics::Columns;
+use crate::math::Columns;
 use crate::math::MAX_DOF;
 use crate::robot::Robot;
 
@@ -35,7 +35,8 @@ impl Manipulability {
         let screws = robot.screws(q);
         let mut indices = LinkIndices { values: [0.0; MAX_DOF], count: screws.len() };
         for (i, link) in screws.iter().enumerate() {
-            let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+            let mut columns = Columns::default();
+            columns.fit(q.len());
             for screw in &screws[..=i] {
                 let share = screw.column(&link.end);
                 columns[screw.joint].iter_mut().zip(share).for_each(|(sum, entry)| *sum += entry);

@@ -8,6 +8,7 @@
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
+//! | `columns` | columns of Jacobians |
 //! | `gram`, `ldl`, `box_step`, `block_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, of several tasks, beside rows |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
@@ -16,6 +17,7 @@ pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub mod block_step;
 pub mod box_step;
+mod columns;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
 pub(crate) mod f32x8;
@@ -41,11 +43,15 @@ pub(crate) mod vec3;
 pub(crate) mod vector;
 
 pub use arithmetic::instructions;
+pub use columns::Columns;
 pub use frame::Frame;
 pub use knots::Knots;
 
 /// The largest number of independent joints, and of moving elements, of a robot.
-pub const MAX_DOF: usize = 32;
+pub const MAX_DOF: usize = 64;
+
+/// Up to this number of joints no hot loop allocates: what grows with it is on the stack.
+pub const STACK_DOF: usize = 32;
 
 /// A rigid transform: rotation matrix and translation (m).
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

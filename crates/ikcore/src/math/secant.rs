@@ -2,7 +2,7 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::MAX_DOF;
+use super::Columns;
 use super::block_step::{BlockStep, TaskRows};
 use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
@@ -11,20 +11,15 @@ use super::vector::squared_size;
 const SHORTEST: f64 = 1e-12;
 
 /// An estimate of dr/dx, by columns.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Secant {
-    columns: [[f64; ROWS]; MAX_DOF],
-}
-
-impl Default for Secant {
-    fn default() -> Self {
-        Self { columns: [[0.0; ROWS]; MAX_DOF] }
-    }
+    columns: Columns,
 }
 
 impl Secant {
     /// Sets column `j` from one antenna: x_j moved by `length`, and r changed by `difference`.
     pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; ROWS]) {
+        self.columns.fit(j + 1);
         self.columns[j] = difference.map(|change| change / length);
     }
 
@@ -64,7 +59,7 @@ impl Secant {
 }
 
 /// Jacobians of several tasks, estimated together.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Secants(SmallVec<[Secant; 1]>);
 
 impl Secants {

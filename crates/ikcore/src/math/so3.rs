@@ -145,7 +145,7 @@ impl<R: Real> InverseLeftJacobian<R> {
 /// `v` rotated by the rotation vector `phi` (rad): Rodrigues' formula.
 #[inline]
 pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
-    let squared = phi.iter().map(|entry| entry * entry).sum::<f64>();
+    let squared = dot(phi, phi);
     // sin(x) / x and (1 - cos x) / x^2.
     let (first, second) = if squared < SMALL {
         (1.0 - squared / 6.0 * (1.0 - squared / 20.0), 0.5 - squared / 24.0 * (1.0 - squared / 30.0))
@@ -153,9 +153,45 @@ pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
         let angle = squared.sqrt();
         (angle.sin() / angle, (1.0 - angle.cos()) / squared)
     };
+    turned_twice(v, phi, [first, second])
+}
+
+/// Columns of the left Jacobian of SO(3) at `phi` (rad): the angular velocity per rate of each entry of phi.
+pub fn left_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
+    let squared = dot(phi, phi);
+    // (1 - cos x) / x^2 and (x - sin x) / x^3.
+    let by = if squared < SMALL {
+        [0.5 - squared / 24.0 * (1.0 - squared / 30.0), 1.0 / 6.0 - squared / 120.0 * (1.0 - squared / 42.0)]
+    } else {
+        let angle = squared.sqrt();
+        [(1.0 - angle.cos()) / squared, (1.0 - angle.sin() / angle) / squared]
+    };
+    Frame::IDENTITY.axes.map(|axis| turned_twice(&axis, phi, by))
+}
+
+/// Columns of the inverse of the right Jacobian of SO(3) at `phi` (rad), which has to be shorter than 2 pi.
+pub fn inverse_right_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
+    let squared = dot(phi, phi);
+    let quadratic = if squared < SMALL {
+        1.0 / 12.0 + squared * (1.0 / 720.0 + squared / 30240.0)
+    } else {
+        let half = 0.5 * squared.sqrt();
+        (1.0 - half * half.cos() / half.sin()) / squared
+    };
+    Frame::IDENTITY.axes.map(|axis| turned_twice(&axis, phi, [0.5, quadratic]))
+}
+
+/// v + a phi x v + b phi x (phi x v).
+#[inline]
+fn turned_twice(v: &[f64; 3], phi: &[f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
     let once = cross(phi, v);
     let twice = cross(phi, &once);
-    std::array::from_fn(|k| v[k] + first * once[k] + second * twice[k])
+    std::array::from_fn(|k| v[k] + a * once[k] + b * twice[k])
+}
+
+#[inline(always)]
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Euclidean length.

@@ -4,24 +4,18 @@ use smallvec::SmallVec;
 
 use super::evaluation::{Objective, Score};
 use super::gradient::Gradient;
-use crate::math::MAX_DOF;
+use crate::math::Columns;
 use crate::math::block_step::{BlockStep, TaskRows};
 use crate::math::box_step::{BoxStep, LEAST_DAMPING, ROWS};
 use crate::math::vector::squared_size;
 
 /// Residual r and Jacobian dr/dx of one task at a point.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct TaskBlock {
     /// Weighted residual, actual minus target; rows that a task does not use are zero.
     pub residual: [f64; ROWS],
     /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
-    pub columns: [[f64; ROWS]; MAX_DOF],
-}
-
-impl Default for TaskBlock {
-    fn default() -> Self {
-        Self { residual: [0.0; ROWS], columns: [[0.0; ROWS]; MAX_DOF] }
-    }
+    pub columns: Columns,
 }
 
 /// TaskResiduals and Jacobians of all tasks at a point: one block for most objectives.
@@ -110,13 +104,13 @@ impl Linearization {
 impl TaskBlock {
     /// Writes J'r into `gradient`.
     fn gradient(&self, gradient: &mut [f64]) {
-        for (slope, column) in gradient.iter_mut().zip(&self.columns) {
+        for (slope, column) in gradient.iter_mut().zip(&*self.columns) {
             *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
         }
     }
 
     fn add_gradient(&self, gradient: &mut [f64]) {
-        for (slope, column) in gradient.iter_mut().zip(&self.columns) {
+        for (slope, column) in gradient.iter_mut().zip(&*self.columns) {
             *slope += column.iter().zip(&self.residual).map(|(c, r)| c * r).sum::<f64>();
         }
     }

@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-use crate::math::MAX_DOF;
+use crate::math::STACK_DOF;
 
-/// A point of the search space; on the stack up to [`MAX_DOF`] entries. `clone` copies entry by entry, so hot paths use
+/// A point of the search space; on the stack up to [`STACK_DOF`] entries. `clone` copies entry by entry, so hot paths use
 /// `from_slice`, which copies all at once.
-pub type Point = SmallVec<[f64; MAX_DOF]>;
+pub type Point = SmallVec<[f64; STACK_DOF]>;

@@ -55,7 +55,8 @@ impl MovingElements {
         while at > below {
             let ((parent, Frame { origin: [x, y, z], .. }, motion), slide) =
                 (&self.stages[at - 1], self.slides[at - 1]);
-            levers.0[motion.joint] += motion.turn_scale.abs() * beside + motion.slide_scale.abs();
+            let lever = if motion.of_vector { far } else { beside };
+            levers.0[motion.joint] += motion.turn_scale.abs() * lever + motion.slide_scale.abs();
             (beside, far) = (x.hypot(*y) + slide + far, x.hypot(*y).hypot(*z) + slide + far);
             at = *parent;
         }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::kinematics::chain::StageMotion;
 use crate::math::Frame;
 use crate::robot::Robot;
 use crate::shape::PlacedBody;
@@ -26,7 +27,7 @@ pub(super) fn displacement(
     for (number, motion) in robot.carriers(frame, below) {
         let ([turn, slide], axis) = (motion.travel(reach), &frames[number]);
         // The distance from an axis is convex: largest at an end.
-        let lever = distance_to_axis(axis, start).max(distance_to_axis(axis, end)) + beside_axis + moved;
+        let lever = lever(motion, axis, start).max(lever(motion, axis, end)) + beside_axis + moved;
         moved += turn.min(2.0) * lever + slide;
     }
     moved
@@ -38,7 +39,8 @@ pub(super) fn displacement(
 ///
 /// Along a straight line in joint space, p(s) with s from 0 to 1, a rotation by t_k about axis k accelerates a point at distance l_k
 /// from it by t_k^2 l_k, and the rotation by t_i about an axis i nearer to the base turns its velocity t_k l_k by t_i: once on either
-/// side. A curve with |p''| <= b is within b / 8 of its chord.
+/// side. A curve with |p''| <= b is within b / 8 of its chord. A rotation vector that changes by t accelerates a point at distance l
+/// from its origin by |t|^2 l at most, which is no more.
 pub(super) fn sagitta(
     robot: &Robot,
     frames: &[Frame],
@@ -52,7 +54,7 @@ pub(super) fn sagitta(
     for (number, motion) in robot.carriers(frame, 0) {
         let ([turn, slide], axis) = (motion.travel(change), &frames[number]);
         let [off_turn, off_slide] = motion.travel(off_line);
-        let lever = distance_to_axis(axis, start).max(distance_to_axis(axis, end)) + beside_axis + moved;
+        let lever = lever(motion, axis, start).max(lever(motion, axis, end)) + beside_axis + moved;
         bend += turn * (turn * lever + 2.0 * outer_velocity);
         off += off_turn * lever + off_slide;
         outer_velocity += turn * lever + slide;
@@ -61,8 +63,10 @@ pub(super) fn sagitta(
     bend / 8.0 + off
 }
 
-fn distance_to_axis(frame: &Frame, point: &Vector3<f64>) -> f64 {
-    (point - Vector3::from(frame.origin)).cross(&Vector3::from(frame.axes[2])).norm()
+/// The distance of `point` from the axis of an element at `frame`; from its origin if the axis moves with the joint.
+fn lever(motion: &StageMotion, frame: &Frame, point: &Vector3<f64>) -> f64 {
+    let from_origin = point - Vector3::from(frame.origin);
+    if motion.of_vector { from_origin.norm() } else { from_origin.cross(&Vector3::from(frame.axes[2])).norm() }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::link_displacement::displacement;
 use super::placement::Placement;
 use crate::error::{Error, Result};
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF};
+use crate::math::{Columns, Frame};
 use crate::robot::{Carried, Joint, Robot};
 use crate::shape::{LineSegment, PlacedBody, Shape};
 use crate::wording::listed;
@@ -388,7 +388,7 @@ fn middle_of_range(joint: &Joint) -> f64 {
 /// Whether the arm stays in the plane z = 0 for all joint positions.
 fn moves_in_plane(robot: &Robot) -> bool {
     let q: Vec<f64> = robot.joints().iter().map(middle_of_range).collect();
-    let mut columns = [[0.0; 6]; MAX_DOF];
+    let mut columns = Columns::default();
     let tip = robot.tip_and_jacobian(&q, &mut columns);
     let flat = |column: &[f64; 6]| column[2..5].iter().all(|x| x.abs() < 1e-9);
     robot.tip_count() == 1 && tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)

@@ -68,7 +68,7 @@ impl PlanarArm {
         {
             return None;
         }
-        let mut columns = [[0.0; 6]; crate::math::MAX_DOF];
+        let mut columns = crate::math::Columns::default();
         let tip = robot.tip_and_jacobian(&vec![0.0; n], &mut columns);
         let vertical = |column: &[f64; 6]| {
             let [_, _, up, about @ ..] = column;

@@ -40,17 +40,17 @@ fn arm(robot: &Robot, own: &[Element]) -> Option<TipArm> {
     let mut joints: Vec<usize> = vec![];
     let mut elements = vec![Element::Link(String::new())];
     for element in own {
-        elements.push(match element {
-            Element::Moving { axis, turns, joint, scale, offset } => {
-                let known = joints.iter().position(|known| known == joint);
-                let number = known.unwrap_or(joints.len());
-                if known.is_none() {
-                    joints.push(*joint);
-                }
-                Element::Moving { axis: *axis, turns: *turns, joint: number, scale: *scale, offset: *offset }
+        let mut element = element.clone();
+        // A rotation vector is that of the base, which all tips share.
+        if let Element::Moving { joint, .. } = &mut element {
+            let known = joints.iter().position(|known| known == joint);
+            let number = known.unwrap_or(joints.len());
+            if known.is_none() {
+                joints.push(*joint);
             }
-            element => element.clone(),
-        });
+            *joint = number;
+        }
+        elements.push(element);
     }
     let described = joints.iter().map(|joint| robot.joints()[*joint].clone()).collect();
     let robot = Robot::new(Description { name: robot.name().into(), joints: described, elements }).ok()?;

@@ -2,8 +2,7 @@
 
 use super::model::Robot;
 use crate::error::{Error, Result};
-use crate::kinematics::Columns;
-use crate::math::MAX_DOF;
+use crate::math::Columns;
 
 impl Robot {
     /// Poses of the tip (m, 4, 4) at `qs` (m, n); both row-major.
@@ -26,7 +25,7 @@ impl Robot {
     pub fn jacobian_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let rows = self.rows(qs)?;
         let n = self.dof();
-        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
         let mut jacobians = Vec::with_capacity(6 * qs.len());
         for q in rows {
             self.tip_and_jacobian(q, &mut columns);

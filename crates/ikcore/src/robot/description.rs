@@ -1,12 +1,14 @@
 //! The description of a robot: independent joints, and the elements of its chain from base to tip.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
+use crate::kinematics::RotationVector;
 use crate::kinematics::chain::{Chain, ChainFolder, StageMotion};
 use crate::math::{MAX_DOF, Pose, pose};
 
@@ -30,6 +32,11 @@ pub enum Element {
     },
     /// Names the frame reached so far.
     Link(String),
+    /// A rotation by the vector (rad) whose entries are this independent joint and the two that follow it; one at most.
+    RotationVector {
+        /// The first of the three.
+        joint: usize,
+    },
 }
 
 /// Drive of a moving element by an independent joint at q: `scale * q + offset`.
@@ -68,7 +75,7 @@ impl Description {
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.elements.iter().filter_map(|element| match element {
             Element::Link(name) => Some(name.as_str()),
-            Element::Fixed(_) | Element::Moving { .. } => None,
+            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } => None,
         })
     }
 
@@ -79,6 +86,7 @@ impl Description {
             match element {
                 Element::Fixed(transform) => chain.fixed(transform),
                 Element::Link(_) => chain.link(),
+                Element::RotationVector { joint } => chain.rotation_vector(*joint),
                 Element::Moving { axis, turns, joint, scale, offset } => {
                     let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
                     chain.moving(axis, motion(*joint, *scale, *offset));
@@ -91,7 +99,7 @@ impl Description {
     /// Checks all assumptions of the kernels.
     pub fn validate(&self) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
-        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
+        let moving: usize = self.elements.iter().map(Element::stages).sum();
         if moving == 0 || self.joints.is_empty() {
             return Err(invalid("no joint moves between base and tip".into()));
         }
@@ -118,12 +126,42 @@ impl Element {
         Self::Moving { axis: axis.normalize(), turns: kind.turns(), joint, scale, offset }
     }
 
+    /// The independent joints that drive it.
+    pub(super) fn drivers(&self) -> Range<usize> {
+        match self {
+            Self::Fixed(_) | Self::Link(_) => 0..0,
+            Self::Moving { joint, .. } => *joint..joint + 1,
+            Self::RotationVector { joint } => *joint..joint + 3,
+        }
+    }
+
+    /// How many stages it becomes.
+    fn stages(&self) -> usize {
+        match self {
+            Self::Fixed(_) | Self::Link(_) => 0,
+            Self::Moving { .. } => 1,
+            Self::RotationVector { .. } => RotationVector::STAGES,
+        }
+    }
+
+    /// The same element in a robot that has `shift` more joints before its own.
+    pub(super) fn shifted(mut self, shift: usize) -> Self {
+        if let Self::Moving { joint, .. } | Self::RotationVector { joint } = &mut self {
+            *joint += shift;
+        }
+        self
+    }
+
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
     pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem };
         match self {
             Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Self::Link(_) => Ok(()),
+            Self::RotationVector { joint } => match driver(joint + 2) {
+                Some(_) => Ok(()),
+                None => Err(invalid(format!("joints {joint} to {} of a rotation vector do not exist", joint + 2))),
+            },
             Self::Moving { axis, joint, scale, offset, .. } => {
                 let Some(driver) = driver(*joint) else {
                     return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));

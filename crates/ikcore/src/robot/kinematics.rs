@@ -5,7 +5,8 @@ use nalgebra::Matrix6xX;
 use super::model::Robot;
 use crate::error::Result;
 use crate::kinematics::link_frames::link_frames;
-use crate::kinematics::{Columns, Reach, Screws, Wrench};
+use crate::kinematics::{Reach, Screws, Wrench};
+use crate::math::Columns;
 use crate::math::{Frame, MAX_DOF, Pose};
 
 impl Robot {
@@ -24,7 +25,7 @@ impl Robot {
     /// [`Error::WrongLength`](crate::Error::WrongLength) or [`Error::NotFinite`](crate::Error::NotFinite).
     pub fn jacobian(&self, q: &[f64]) -> Result<Matrix6xX<f64>> {
         self.check("joint angles", q)?;
-        let mut columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
         self.tip_and_jacobian(q, &mut columns);
         Ok(Matrix6xX::from_iterator(q.len(), columns[..q.len()].iter().flatten().copied()))
     }
@@ -87,7 +88,7 @@ impl Robot {
 
     /// Writes the frames after 0, 1, 2, ... moving elements; the z axis of each but the first is the axis of the
     /// element.
-    pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
+    pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame]) {
         (self.kernels().stage_frames)(self.chain(), q, frames);
     }
 }

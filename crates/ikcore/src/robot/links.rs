@@ -7,15 +7,15 @@ use smallvec::SmallVec;
 
 use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::kinematics::Columns;
 use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::kinematics::eight_frames::EightStages;
+use crate::math::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF, Pose};
+use crate::math::{Frame, Pose};
 use crate::wording::listed;
 
-/// The frames of all moving elements: MAX_DOF + 1 on the stack, more of them (mimic joints beside the chain) on the heap.
+/// The frames of all moving elements: STACK_DOF + 1 and a few more on the stack, more of them on the heap.
 pub(crate) type FrameBuffer = SmallVec<[Frame; 36]>;
 
 impl Robot {
@@ -103,7 +103,8 @@ impl Robot {
     pub fn link_jacobian_all(&self, link: &str, qs: &[f64]) -> Result<Vec<f64>> {
         let link = self.link_number(link)?;
         let mut frames = self.frame_buffer();
-        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
+        columns.fit(self.dof());
         let mut jacobians = Vec::with_capacity(6 * qs.len());
         for q in self.rows(qs)? {
             self.write_frames(q, &mut frames);
@@ -195,7 +196,7 @@ impl Robot {
 
     /// The moving elements, for eight configurations at once.
     pub(crate) fn eight_stages(&self) -> EightStages {
-        EightStages::new(self.moving_elements())
+        EightStages::new(self.moving_elements(), self.chain().vector.clone())
     }
 
     /// Number of the last frame that carries both of these.
@@ -207,18 +208,14 @@ impl Robot {
     /// Writes the frames of all moving elements at `q`.
     #[inline]
     pub(crate) fn write_frames(&self, q: &[f64], frames: &mut [Frame]) {
-        if let Some(chain) = frames.first_chunk_mut() {
-            self.write_stage_frames(q, chain);
-        }
+        self.write_stage_frames(q, frames);
         self.tree().extend_frames(q, frames);
     }
 
     /// [`write_frames`](Self::write_frames) for four configurations at once, bit-identical; `qs` has one entry per joint, and
     /// `frames` is as long as [`frame_buffer`](Self::frame_buffer).
     pub(crate) fn write_frames_four(&self, qs: &[F64x4], frames: &mut [Frame<F64x4>]) {
-        if let Some(chain) = frames.first_chunk_mut() {
-            (self.kernels().stage_frames_four)(self.chain(), qs, chain);
-        }
+        (self.kernels().stage_frames_four)(self.chain(), qs, frames);
         self.tree().extend_frames_four(qs, frames);
     }
 }

@@ -30,7 +30,7 @@ impl Robot {
                     }
                 }
                 Element::Moving { turns: true, offset, .. } => *offset += rng.uniform_in(-angle, angle),
-                Element::Moving { .. } | Element::Link(_) => {}
+                Element::Moving { .. } | Element::RotationVector { .. } | Element::Link(_) => {}
             }
         }
         Self::assembled(parts)

@@ -15,6 +15,7 @@
 //! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
+//! | `mobile_base` | a robot on a base that moves |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
@@ -34,6 +35,7 @@ mod kinematics;
 mod link_capsule;
 mod links;
 mod manufacturing_errors;
+mod mobile_base;
 mod model;
 mod off_chain;
 mod pair_rule;
@@ -56,6 +58,7 @@ pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub(crate) use links::FrameBuffer;
+pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;
 pub use visual::{Visual, VisualShape};

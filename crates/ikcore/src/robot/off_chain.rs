@@ -47,7 +47,8 @@ impl OffChain {
             for element in &link.elements {
                 match self.settled(element, dof) {
                     Element::Fixed(transform) => tree.fixed(&transform),
-                    Element::Link(_) => {}
+                    // A rotation vector stands at the start of the chain alone.
+                    Element::Link(_) | Element::RotationVector { .. } => {}
                     Element::Moving { axis, turns, joint, scale, offset } => {
                         let motion = if turns { StageMotion::turn } else { StageMotion::slide };
                         tree.moving(&axis, motion(joint, scale, offset));

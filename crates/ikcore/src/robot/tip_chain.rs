@@ -59,7 +59,7 @@ impl TipChains {
         let chains = ways.iter().enumerate().map(|(tip, way)| {
             let others = || joints.iter().enumerate().filter(|(other, _)| *other != tip);
             let is_shared = |joint: &usize| others().any(|(_, joints)| joints.contains(joint));
-            let last = way.elements.iter().rposition(|element| driver(element).is_some_and(|joint| is_shared(&joint)));
+            let last = way.elements.iter().rposition(|element| element.drivers().any(|joint| is_shared(&joint)));
             let (stem, own) = way.elements.split_at(last.map_or(0, |last| last + 1));
             // The base and the tool of the robot with one tip; those of several have none.
             let whole = CompiledChain::new(folded(parts, &way.elements));
@@ -168,24 +168,16 @@ impl Way {
         Self { name, link, links: (0..=at).chain(beside.iter().map(|number| on_chain + number)).collect(), elements }
     }
 
-    /// The joint of each of its moving elements.
+    /// The joints of its moving elements.
     fn joints(&self) -> impl Iterator<Item = usize> {
-        self.elements.iter().filter_map(driver)
+        self.elements.iter().flat_map(Element::drivers)
     }
 
     /// Whether nothing moves between the ends of both.
     fn moves_with(&self, other: &Self) -> bool {
         let shared = self.elements.iter().zip(&other.elements).take_while(|(one, other)| one == other).count();
-        let is_fixed = |way: &Self| way.elements[shared..].iter().all(|element| driver(element).is_none());
+        let is_fixed = |way: &Self| way.elements[shared..].iter().all(|element| element.drivers().is_empty());
         is_fixed(self) && is_fixed(other)
-    }
-}
-
-/// The joint that drives an element.
-fn driver(element: &Element) -> Option<usize> {
-    match element {
-        Element::Moving { joint, .. } => Some(*joint),
-        Element::Fixed(_) | Element::Link(_) => None,
     }
 }
 

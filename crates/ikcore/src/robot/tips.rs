@@ -3,7 +3,8 @@
 use super::model::Robot;
 use super::tip_chain::{TipChain, first_tip};
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::kinematics::{Columns, Reach, Screws, TaskRank};
+use crate::kinematics::{Reach, Screws, TaskRank};
+use crate::math::Columns;
 use crate::math::{Frame, MAX_DOF};
 use crate::wording::{joined, listed};
 
@@ -71,7 +72,7 @@ impl Robot {
     /// As [`fk_all`](Self::fk_all).
     pub fn tips_jacobian_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let rows = self.rows(qs)?;
-        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        let mut columns = Columns::default();
         let mut jacobians = Vec::with_capacity(6 * self.tip_count() * qs.len());
         for q in rows {
             for tip in 0..self.tip_count() {
@@ -100,6 +101,7 @@ impl Robot {
             None => self.tip_and_jacobian(q, columns),
             Some(TipChain { whole, .. }) => {
                 // The kernel writes the columns of the first joints, and adds to the others.
+                columns.fit(q.len());
                 columns[..q.len()].fill([0.0; 6]);
                 (whole.kernels.jacobian)(&whole.chain, q, columns)
             }

@@ -72,7 +72,7 @@ impl Apps {
 }
 
 /// The descent between updates.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     theta: Point,
     /// E at theta.
@@ -97,13 +97,14 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         self.error_threshold.is_some()
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let mut theta = Point::from_slice(x0);
         let zeros = Point::from_elem(0.0, x0.len());
         let mut gradient = zeros.clone();
         let error = evaluator.differentiate(&mut theta, &mut gradient)?;
         let arrived = self.is_below_threshold(error);
-        Ok(State { theta, error, gradient, step: zeros.clone(), gradient_before: zeros, iterations: 0, arrived })
+        *state = State { theta, error, gradient, step: zeros.clone(), gradient_before: zeros, iterations: 0, arrived };
+        Ok(())
     }
 
     /// The paper evaluates E, updates theta, and stops if that E was small enough: so its last update starts from

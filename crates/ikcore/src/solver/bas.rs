@@ -84,7 +84,7 @@ impl Bas {
 }
 
 /// The beetle between passes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     /// Best position of the beetle.
     base: Point,
@@ -112,7 +112,7 @@ const LARGEST_GROUP: usize = 4;
 type Points = SmallVec<[f64; 2 * LARGEST_GROUP * 8]>;
 
 /// Storage for a group of explorations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Group {
     directions: Points,
     antennae: Points,
@@ -122,10 +122,11 @@ struct Group {
 impl<O: Objective + ?Sized> Solver<O> for Bas {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let mut base = Point::from_slice(x0);
         let base_value = evaluator.evaluate(&mut base)?;
-        Ok(State { group: Group::new(self.group(), base.len()), base, base_value, passes: 0 })
+        *state = State { group: Group::new(self.group(), base.len()), base, base_value, passes: 0 };
+        Ok(())
     }
 
     /// Lines 5 to 15 of Algorithm 1.

@@ -59,7 +59,7 @@ impl BroydenBas {
 }
 
 /// Point and Jacobian estimate between steps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
     value: f64,
@@ -75,15 +75,14 @@ pub struct State {
 impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let mut x = Point::from_slice(x0);
         let mut residual = TaskResiduals::new();
         let value = evaluator.residual(&mut x, &mut residual)?;
         evaluator.before_steps()?;
         let jacobian = Secants::new(residual.len());
-        let mut state = State { x, value, residual, jacobian, damping: LEAST_DAMPING, slow: 0, fresh: false };
-        state.put_out_antennae(evaluator)?;
-        Ok(state)
+        *state = State { x, value, residual, jacobian, damping: LEAST_DAMPING, slow: 0, fresh: false };
+        state.put_out_antennae(evaluator)
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

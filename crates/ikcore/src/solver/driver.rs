@@ -9,8 +9,8 @@ use crate::objective::Objective;
 
 /// An algorithm: options in `self`, progress in `State`.
 pub trait Solver<O: Objective + ?Sized> {
-    /// The progress of the algorithm.
-    type State;
+    /// The progress of the algorithm; by default that before the first start.
+    type State: Default;
 
     /// Where the points may lie; by default in the box.
     fn domain(&self) -> Domain {
@@ -23,20 +23,11 @@ pub trait Solver<O: Objective + ?Sized> {
         false
     }
 
-    /// Evaluates the start `x0` first, then makes any further initial evaluations.
+    /// Starts, or starts anew, at `x0`: evaluates it first, then makes any further initial evaluations.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status>;
-
-    /// Restarts at `x0`. Override it to reuse large buffers of `state`.
-    ///
-    /// # Errors
-    /// The evaluator's [`Status`].
-    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
-        *state = self.start(evaluator, x0)?;
-        Ok(())
-    }
+    fn start(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status>;
 
     /// Makes one iteration.
     ///
@@ -56,12 +47,8 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
         (*self).has_own_threshold()
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status> {
-        (*self).start(evaluator, x0)
-    }
-
-    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
-        (*self).restart(state, evaluator, x0)
+    fn start(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+        (*self).start(state, evaluator, x0)
     }
 
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
@@ -86,7 +73,8 @@ where
     O: Objective + ?Sized,
     S: Solver<O>,
 {
-    let mut state = solver.start(evaluator, x0)?;
+    let mut state = S::State::default();
+    solver.start(&mut state, evaluator, x0)?;
     evaluator.before_steps()?;
     loop {
         solver.step(&mut state, evaluator)?;

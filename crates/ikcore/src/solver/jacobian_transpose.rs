@@ -61,7 +61,7 @@ impl JacobianTranspose {
 }
 
 /// The descent between steps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
     value: f64,
@@ -72,11 +72,11 @@ pub struct State {
 impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let mut x = Point::from_slice(x0);
-        let mut linearization = Linearization::default();
-        let value = evaluator.linearize(&mut x, &mut linearization)?;
-        Ok(State { gradient: Point::from_elem(0.0, x.len()), x, value, linearization })
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+        let State { x, value, linearization, gradient } = state;
+        (*x, *gradient) = (Point::from_slice(x0), Point::from_elem(0.0, x0.len()));
+        *value = evaluator.linearize(x, linearization)?;
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

@@ -52,7 +52,7 @@ impl LevenbergMarquardt {
 }
 
 /// The descent between steps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
     descent: Descent,
@@ -62,7 +62,7 @@ pub struct State {
 }
 
 /// Value and damping of a descent.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Descent {
     value: f64,
     damping: f64,
@@ -133,17 +133,10 @@ impl Descent {
 impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let linearizations = [Linearization::default(), Linearization::default()];
-        let x = Point::from_slice(x0);
-        let mut state = State { x, descent: self.descent_from(f64::INFINITY), linearizations, here: 0 };
-        state.descent.value = evaluator.linearize(&mut state.x, &mut state.linearizations[0])?;
-        Ok(state)
-    }
-
-    fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let State { x, descent, linearizations, here } = state;
-        x.copy_from_slice(x0);
+        x.clear();
+        x.extend_from_slice(x0);
         *descent = self.descent_from(evaluator.linearize(x, &mut linearizations[*here])?);
         Ok(())
     }

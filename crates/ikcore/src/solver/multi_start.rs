@@ -54,14 +54,14 @@ impl<S> MultiStart<S> {
 }
 
 /// The running attempt.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State<T> {
     inner: T,
     attempt: AttemptProgress,
 }
 
 /// The progress of an attempt.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct AttemptProgress {
     steps: usize,
     /// The best value when `steps` was last a multiple of the patience.
@@ -135,17 +135,17 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
         self.solver.has_own_threshold()
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status> {
-        let inner = self.solver.start(evaluator, x0)?;
-        Ok(State { inner, attempt: AttemptProgress::begun_at(evaluator.attempt_value()) })
+    fn start(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+        self.solver.start(&mut state.inner, evaluator, x0)?;
+        state.attempt = AttemptProgress::begun_at(evaluator.attempt_value());
+        Ok(())
     }
 
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let step = self.solver.step(&mut state.inner, evaluator);
         if self.rule.begins_again(step, &mut state.attempt, evaluator.attempt_value())? {
             let x = self.rule.next_start(evaluator)?;
-            self.solver.restart(&mut state.inner, evaluator, &x)?;
-            state.attempt = AttemptProgress::begun_at(evaluator.attempt_value());
+            self.start(state, evaluator, &x)?;
         }
         Ok(())
     }

@@ -34,7 +34,7 @@ impl NewtonRaphson {
 }
 
 /// The iteration between steps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
     value: f64,
@@ -44,11 +44,11 @@ pub struct State {
 impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
-        let mut x = Point::from_slice(x0);
-        let mut linearization = Linearization::default();
-        let value = evaluator.linearize(&mut x, &mut linearization)?;
-        Ok(State { x, value, linearization })
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+        let State { x, value, linearization } = state;
+        *x = Point::from_slice(x0);
+        *value = evaluator.linearize(x, linearization)?;
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

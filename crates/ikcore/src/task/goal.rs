@@ -110,6 +110,11 @@ impl Goal {
                           self_collision=True"
                     .into(),
             }),
+            // Its gradient takes axes that joints before them carry along, as those of a rotation vector are not.
+            Self::Manipulability { .. } | Self::LinkManipulability { .. } if robot.is_floating() => {
+                let problem = "the goals Manipulability and LinkManipulability are not for robots on a floating base";
+                Err(Error::Contradiction { problem: problem.into() })
+            }
             Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
             Self::Manipulability { tip: None, .. } => robot.require_one_tip("the goal Manipulability without tip="),
             Self::LinkManipulability { .. } => robot.require_one_tip("the goal LinkManipulability"),

@@ -8,10 +8,10 @@ use super::target::Target;
 use super::tip_error::{SquaredError, TipError, Tolerance};
 use super::tip_task::Task;
 use crate::error::{Error, Result};
-use crate::kinematics::Columns;
+use crate::math::Columns;
+use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
-use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Linearization, Score, TaskBlock};
 use crate::robot::Robot;
 
@@ -105,7 +105,7 @@ impl TipCriterion {
         match self.subject {
             Subject::Tip(_) => frame,
             Subject::Pair { from, .. } => {
-                let mut own: Columns = [[0.0; 6]; MAX_DOF];
+                let mut own = Columns::default();
                 let base = robot.tip_and_jacobian_of(from, q, &mut own);
                 seen_from(&base, &mut own[..q.len()], &frame, &mut columns[..q.len()]);
                 base.inverse().then::<NoFma>(&frame)

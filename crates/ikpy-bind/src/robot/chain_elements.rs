@@ -8,7 +8,7 @@ use pyo3::types::PyTuple;
 
 use super::PyRobot;
 use crate::convert::{copied, point, pose_array, rigid};
-use crate::error::raise;
+use crate::error::{invalid, raise};
 
 /// Returns the elements between base and tip, each ("fixed", pose (4, 4)), ("moving", joint, turns, axis (3,), scale,
 /// offset) or ("link", name).
@@ -23,6 +23,9 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
         Element::Moving { axis, turns, joint, scale, offset } => {
             let axis: Bound<'py, PyArray1<f64>> = copied(py, axis.as_slice());
             ("moving", *joint, *turns, axis, *scale, *offset).into_pyobject(py)
+        }
+        Element::RotationVector { .. } => {
+            Err(invalid("interop: a robot on a floating base cannot be converted; convert the arm alone".into()))
         }
     }
 }

@@ -1,9 +1,9 @@
-//! Modified copies of a robot: other tool, base, limits, capsules, or random errors.
+//! Modified copies of a robot: other tool, base, limits, capsules, a mobile base, or random errors.
 
 use std::collections::BTreeMap;
 
 use ikcore::rng;
-use ikcore::robot::{Joint, LinkCapsule};
+use ikcore::robot::{BaseLimits, Joint, LinkCapsule, MobileBase};
 use pyo3::prelude::*;
 
 use super::PyRobot;
@@ -40,6 +40,49 @@ impl PyRobot {
             joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
         };
         self.core.with_limits(change).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy on a mobile base, whose joints come first in `q`. Poses are then those in the frame of a new first link,
+    /// "world"; the base pose of this robot is how it is mounted. In named configurations the base is at zero.
+    ///
+    /// Args:
+    ///     kind: "planar": base_x, base_y (m) and base_yaw (rad). "floating": base_x, base_y, base_z (m) and base_rx, base_ry,
+    ///         base_rz (rad), a rotation vector: no orientation is singular. Its velocity and acceleration are the rates of its entries.
+    ///     lower: lower position limits, (3,) or (6,); finite, since random configurations and starts of searches are drawn from the
+    ///         range. The yaw may be unlimited on both sides. The rotation vector has to stay shorter than 5.97 rad;
+    ///         -pi and pi for each entry hold every orientation.
+    ///     upper: upper position limits, likewise.
+    ///     velocity: velocity limits, a number or one per joint (m/s, rad/s); None: unknown.
+    ///     acceleration: acceleration limits for `rated_limits`, likewise (m/s^2, rad/s^2).
+    #[pyo3(signature = (kind, *, lower=None, upper=None, velocity=None, acceleration=None))]
+    fn with_mobile_base(
+        &self,
+        #[pyo3(from_py_with = crate::convert::text)] kind: &str,
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        acceleration: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let base: MobileBase = kind.parse().map_err(raise)?;
+        let joints = base.joint_names();
+        let position = |what: &str, value: Option<&Bound<'_, PyAny>>| match value {
+            Some(value) => scalar_or_vector(what, value).map(|(values, _)| values),
+            None => Err(invalid(format!(
+                "a {base} base needs {what}=({},), the limits of {}: configurations are drawn from the range",
+                joints.len(),
+                joints.join(", ")
+            ))),
+        };
+        let rate = |what: &str, value: Option<&Bound<'_, PyAny>>| {
+            value.map_or(Ok(vec![f64::INFINITY; joints.len()]), |value| per_joint(what, value, joints.len()))
+        };
+        let limits = BaseLimits {
+            lower: position("lower", lower)?,
+            upper: position("upper", upper)?,
+            velocity: rate("velocity", velocity)?,
+            acceleration: rate("acceleration", acceleration)?,
+        };
+        self.core.with_mobile_base(base, &limits).map(Self::from).map_err(raise)
     }
 
     /// Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).

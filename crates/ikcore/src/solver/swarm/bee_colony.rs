@@ -41,7 +41,7 @@ impl BeeColony {
 }
 
 /// The colony between cycles.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     /// Failed trials at each source.
@@ -57,15 +57,16 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for BeeColony {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let sources = self.schedule.population;
-        Ok(State {
+        *state = State {
             population: Population::start(&self.schedule, evaluator, x0)?,
             trials: vec![0; sources],
             chosen: vec![0; sources],
             candidates: Members::new(sources, x0.len()),
             fitness: vec![0.0; sources],
-        })
+        };
+        Ok(())
     }
 
     /// One cycle: employed bees, onlookers, a scout.

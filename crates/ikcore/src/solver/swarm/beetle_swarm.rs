@@ -108,7 +108,7 @@ impl BeetleSwarm {
 }
 
 /// The swarm between generations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     memory: BestPlaces,
@@ -122,16 +122,17 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let beetles = self.schedule.population;
-        Ok(State {
+        *state = State {
             memory: BestPlaces::new(beetles, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             antennae: Members::new(2 * beetles, x0.len()),
             step: self.step,
             population,
-        })
+        };
+        Ok(())
     }
 
     /// Lines 5 to 21 of Algorithm 1.

@@ -3,7 +3,7 @@
 use super::population::{Members, Population};
 
 /// The best position of each member so far: p of particle swarms, and g, the best of them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct BestPlaces {
     /// The best position of each member.
     pub members: Members,

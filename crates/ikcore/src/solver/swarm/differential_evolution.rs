@@ -59,7 +59,7 @@ impl DifferentialEvolution {
 }
 
 /// The population between generations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     trials: Members,
@@ -68,9 +68,10 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        Ok(State { trials: Members::new(self.schedule.population, x0.len()), population })
+        *state = State { trials: Members::new(self.schedule.population, x0.len()), population };
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

@@ -71,7 +71,7 @@ impl Firefly {
 }
 
 /// The swarm between turns.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     /// Indices of the fireflies that move this turn (a prefix of the list is in use), and their next positions.
@@ -89,10 +89,10 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Firefly {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let fireflies = self.schedule.population;
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        Ok(State {
+        *state = State {
             scales: population.widths.iter().map(|width| if *width > 0.0 { 1.0 / width } else { 0.0 }).collect(),
             population,
             moving: vec![0; fireflies],
@@ -100,7 +100,8 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
             attractor: 0,
             randomness: self.randomness,
             draws: vec![0.0; fireflies * x0.len().div_ceil(2)],
-        })
+        };
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

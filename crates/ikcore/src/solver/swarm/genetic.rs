@@ -86,7 +86,7 @@ impl Genetic {
 }
 
 /// The population between generations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     children: Members,
@@ -99,14 +99,15 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Genetic {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let members = self.schedule.population;
-        Ok(State {
+        *state = State {
             population: Population::start(&self.schedule, evaluator, x0)?,
             children: Members::new(members, x0.len()),
             ranking: (0..members).collect(),
             scale: self.mutation_scale,
-        })
+        };
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {

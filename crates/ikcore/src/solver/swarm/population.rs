@@ -12,7 +12,7 @@ use crate::solver::evaluator::Evaluator;
 const GAIN: f64 = 1e-6;
 
 /// Points, stored consecutively, and their values.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Members {
     /// All coordinates, member by member.
     pub points: Vec<f64>,
@@ -87,7 +87,7 @@ impl Members {
 }
 
 /// The present generation.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Population {
     /// The members.
     pub members: Members,

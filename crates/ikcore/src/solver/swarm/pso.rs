@@ -163,7 +163,7 @@ impl Pso {
 }
 
 /// The swarm between generations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     memory: BestPlaces,
@@ -174,14 +174,15 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Pso {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        Ok(State {
+        *state = State {
             memory: BestPlaces::new(self.schedule.population, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             tiled: TiledBounds::new(evaluator.bounds(), &population),
             population,
-        })
+        };
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
@@ -206,7 +207,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
 }
 
 /// The bounds of every coordinate of every particle.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct TiledBounds {
     lower: Vec<f64>,
     upper: Vec<f64>,

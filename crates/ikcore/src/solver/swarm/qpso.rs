@@ -39,7 +39,7 @@ impl Qpso {
 }
 
 /// The swarm between generations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     memory: BestPlaces,
@@ -49,10 +49,11 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Qpso {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+    fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let memory = BestPlaces::new(self.schedule.population, x0.len());
-        Ok(State { scratch: Scratch::new(&population.members), population, memory })
+        *state = State { scratch: Scratch::new(&population.members), population, memory };
+        Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
@@ -69,7 +70,7 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
 
 /// Data of an update, repeated for every particle, so that an update is one long loop over all coordinates, which the
 /// compiler vectorises for any dimension.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Scratch {
     /// Mean of the best positions.
     mean: Point,

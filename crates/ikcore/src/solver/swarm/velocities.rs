@@ -8,7 +8,7 @@ use super::population::{Population, tile};
 use crate::rng::{LazyRng, split};
 
 /// The velocities of all particles.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Velocities {
     /// All coordinates, particle by particle.
     pub all: Vec<f64>,

@@ -7,7 +7,7 @@
 //! followed by its own motion plus a fraction of the remaining displacement.
 
 use super::tick::Tick;
-use crate::kinematics::Columns;
+use crate::math::Columns;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Point, TaskBlock};
@@ -88,7 +88,7 @@ impl Approach {
 /// descent from `q`, since far from the target the linearisation gives little more than a direction.
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();
-    let mut at = TaskBlock { columns: *columns, ..TaskBlock::default() };
+    let mut at = TaskBlock { columns: columns.clone(), ..TaskBlock::default() };
     let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
     let (mut lower, mut upper) = ([0.0; MAX_DOF], [0.0; MAX_DOF]);
     for j in 0..n {

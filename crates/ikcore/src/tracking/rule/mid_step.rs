@@ -8,9 +8,9 @@
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
-use crate::kinematics::Columns;
+use crate::math::Columns;
 use crate::math::{
-    Frame, MAX_DOF,
+    Frame,
     box_step::{BoxStep, least_damping},
 };
 use crate::objective::{Differentiable, Point, TaskBlock};
@@ -57,7 +57,7 @@ struct Kinematics {
 
 impl Default for Kinematics {
     fn default() -> Self {
-        Self { q: Point::new(), tip: Frame::IDENTITY, columns: [[0.0; 6]; MAX_DOF] }
+        Self { q: Point::new(), tip: Frame::IDENTITY, columns: Columns::default() }
     }
 }
 
@@ -173,6 +173,7 @@ impl MidStepState {
             Model::Here => &self.here,
             Model::Begin | Model::MidTick => &self.begin,
         };
+        self.linearization.columns.fit(n);
         let columns = &mut self.linearization.columns[..n];
         match model {
             Model::MidTick => at_middle(&current.columns, &self.before.columns, columns),
@@ -243,7 +244,7 @@ impl MidStepState {
 
 /// (3 J_k - J_{k-1}) / 2.
 fn at_middle(now: &Columns, before: &Columns, middle: &mut [[f64; 6]]) {
-    for (middle, (now, before)) in middle.iter_mut().zip(now.iter().zip(before)) {
+    for (middle, (now, before)) in middle.iter_mut().zip(now.iter().zip(&**before)) {
         (0..6).for_each(|k| middle[k] = now[k] + 0.5 * (now[k] - before[k]));
     }
 }

@@ -247,6 +247,7 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
     let n = from.len();
     let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {
+        neighbour.columns.fit(n);
         neighbour.columns[..n].copy_from_slice(&scratch.linearization.columns[..n]);
         target.moved(&twist, time).linearize_tip(&tip, n, tick.criterion, neighbour);
     }
