@@ -19,7 +19,6 @@ from .report import Report
 from .surfaces import Links
 
 if TYPE_CHECKING:
-    import viser
     from numpy.typing import NDArray
 
     from .looks import Look
@@ -29,8 +28,6 @@ if TYPE_CHECKING:
 
 _FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
-_BELOW = np.array([0.0, 0.0, -0.4])
-_FAR = 1.8
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -46,17 +43,9 @@ class Parts:
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
-        middle = 0.5 * (low + high)
-        look = middle + _ASIDE * size
+        look = 0.5 * (low + high) + _ASIDE * size
         camera = page.server.initial_camera
         camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
-
-        @page.server.on_client_connect
-        def _(client: viser.ClientHandle) -> None:
-            if client.camera.aspect < 1.0:  # a phone, with the controls below
-                with client.atomic():
-                    client.camera.look_at, client.camera.position = middle + _BELOW * size, middle + _FAR * _FROM * size
-
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
         scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
