@@ -119,7 +119,7 @@ class Viewer:
         self.url = f"http://{f'[{host}]' if ':' in host else host}:{port}"
         self._lock = threading.RLock()
         self._closed, self._first_close = threading.Event(), threading.Lock()
-        self._callbacks: list[Callable[[Array], object]] = []
+        self._callbacks: list[Callable[[Any], object]] = []
         self._arm = Arm(self.robot, begin, scene)
         self._told = self._arm.targets
         self._moves = False
@@ -179,7 +179,7 @@ class Viewer:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the handle: "track", "solve" or "off".
+        """How the arm follows the handle: "track", "solve" or "off"; one with several tips by "solve" or "off".
 
         "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
         and the handle stays where it is.
@@ -216,8 +216,8 @@ class Viewer:
         """
         self._change(lambda: self._parts.show(result))
 
-    def on_target(self, callback: Callable[[Array], object]) -> None:
-        """Has `callback(target)` called with each new pose (4, 4) of the handle, in the thread of the viewer.
+    def on_target(self, callback: Callable[[Any], object]) -> None:
+        """Has `callback(target)` called with each new `target`, in the thread of the viewer.
 
         While it runs, the arm waits; what it raises is logged and shown on the page.
         """
