@@ -44,7 +44,12 @@ BATCH = (
     "{two cores, ms a problem} ms on two: a gain of {gain}, where two empty loops gain {gain of two empty loops}."
 )
 BEGIN, END = "<!-- written by benches/planning.py -->", "<!-- end -->"
-OURS = (planners.BeetleIk, planners.BeetleIkTravel, planners.Within5Milliseconds)
+OURS = (
+    planners.BeetleIk,
+    planners.BeetleIkTravel,
+    planners.TravelWithin100Milliseconds,
+    planners.Within5Milliseconds,
+)
 OTHERS = (planners.Old, planners.OldCapsules, planners.RoboPlan, planners.MpLib)
 NAMES = [planner.name for planner in (*OURS, *OTHERS)]
 IMPROVING = (planners.Within1Second, planners.Within5Seconds)

@@ -151,6 +151,14 @@ class Within5Milliseconds(Within):
     seconds = 0.005
 
 
+class TravelWithin100Milliseconds(Within):
+    name = 'beetle-ik, objective="joint_travel", max_time=0.1'
+    seconds = 0.1  # less than the first planner takes
+
+    def _options(self) -> dict[str, Any]:
+        return {"objective": "joint_travel", **super()._options()}
+
+
 class Within1Second(Within):
     name = "beetle-ik, max_time=1"
     seconds = 1.0

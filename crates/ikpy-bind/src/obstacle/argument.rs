@@ -5,9 +5,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::body::PyObstacle;
+use super::body::{PyObstacle, not_made_here};
+use super::from_core::wrapped;
 use super::moving::PyMoving;
-use crate::convert::{optional_texts, summary};
+use crate::convert::summary;
 use crate::error::invalid;
 
 /// The obstacles of a call.
@@ -31,17 +32,46 @@ impl Obstacles {
     }
 }
 
-/// Names of links that may touch something, as passed from Python.
-pub type Touch = Option<Vec<String>>;
-
-/// Reads names of links that may touch something.
-pub fn read_touch(value: &Bound<'_, PyAny>) -> PyResult<Touch> {
-    let wrong = || invalid(format!("touch must be a list of link names, got {}", summary(value)));
-    let named = |error: PyErr| if error.is_instance_of::<PyTypeError>(value.py()) { wrong() } else { error };
-    optional_texts(value).map_err(named)
+/// Obstacles of which some may move: shapes, and the velocity of each; no velocities if all are at rest.
+#[derive(Default)]
+pub struct MovingObstacles {
+    pub shapes: Vec<Shape>,
+    pub velocities: Vec<[f64; 3]>,
 }
 
-pub(super) fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+impl MovingObstacles {
+    /// Reads any sequence of obstacles.
+    pub fn read(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let given = items(value)?;
+        if given.iter().all(|item| item.cast::<PyMoving>().is_err()) {
+            return Ok(Self { shapes: Obstacles::read_shapes(value)?, velocities: vec![] });
+        }
+        let mut all = Self::default();
+        for (i, item) in given.iter().enumerate() {
+            let (shape, velocity) = match (item.cast::<PyMoving>(), item.cast::<PyObstacle>()) {
+                (Ok(moving), _) => (moving.get().shape.clone(), moving.get().velocity),
+                (_, Ok(obstacle)) => (obstacle.get().core.clone(), [0.0; 3]),
+                _ => return Err(not_made_here(&format!("obstacle {i}"), item)),
+            };
+            all.shapes.push(shape);
+            all.velocities.push(velocity);
+        }
+        Ok(all)
+    }
+
+    /// The obstacles as Python objects: those that move are `Moving`.
+    pub fn objects(py: Python<'_>, shapes: &[Shape], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
+        let object = |(i, shape): (usize, &Shape)| match velocities.get(i) {
+            Some(velocity) if *velocity != [0.0; 3] => {
+                Ok(Py::new(py, PyMoving { shape: shape.clone(), velocity: *velocity })?.into_any())
+            }
+            _ => wrapped(py, shape),
+        };
+        shapes.iter().enumerate().map(object).collect()
+    }
+}
+
+fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
     if value.cast::<PyObstacle>().is_ok() {
         return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(value))));
     }
@@ -61,9 +91,4 @@ fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {
         Err(_) => Err(not_made_here(&format!("obstacle {i}"), item)),
     };
     items.iter().enumerate().map(shape).collect()
-}
-
-pub(super) fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
-    let got = summary(got);
-    invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
 }

@@ -7,10 +7,10 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::argument::Touch;
 use super::arrays::{faces, occupied, points};
-use crate::convert::{Array, table};
-use crate::error::raise;
+use super::touch::Touch;
+use crate::convert::{Array, summary, table};
+use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
@@ -154,4 +154,10 @@ fn rotation_rows(pose: &Pose) -> Option<[[f64; 3]; 3]> {
 
 fn rotation_text(pose: &Pose) -> String {
     rotation_rows(pose).map_or(String::new(), |rows| format!(", rotation={rows:?}"))
+}
+
+/// Err for something that is no obstacle; `place` names it.
+pub(super) fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
+    let got = summary(got);
+    invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
 }

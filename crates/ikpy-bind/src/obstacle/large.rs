@@ -4,9 +4,9 @@ use ikcore::shape::{Geometry, Shape};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use super::argument::{Touch, read_touch};
 use super::arrays::{Coordinates, faces, occupied, points, read_faces, read_occupied, read_points};
 use super::body::{PyObstacle, made};
+use super::touch::{Touch, read_touch};
 use crate::convert::{Array, point, table};
 use crate::monitor::on_a_thread;
 

@@ -9,17 +9,18 @@ mod large;
 mod moving;
 mod nearest;
 mod shapes;
+mod touch;
 
 use pyo3::prelude::*;
 
-pub use argument::{Obstacles, Touch, read_touch};
+pub use argument::{MovingObstacles, Obstacles};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
-pub use moving::MovingObstacles;
 use moving::PyMoving;
 pub use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
+pub use touch::{Touch, read_touch};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyObstacle>()?;

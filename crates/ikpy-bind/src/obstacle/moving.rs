@@ -4,8 +4,7 @@ use ikcore::shape::Shape;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use super::argument::{Obstacles, items, not_made_here};
-use super::body::PyObstacle;
+use super::body::{PyObstacle, not_made_here};
 use super::from_core::wrapped;
 use crate::convert::{copied, point};
 use crate::error::invalid;
@@ -22,8 +21,8 @@ use crate::hash::content_hash;
 #[pyclass(name = "Moving", module = "beetle_ik.obstacles", frozen, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyMoving {
-    shape: Shape,
-    velocity: [f64; 3],
+    pub(super) shape: Shape,
+    pub(super) velocity: [f64; 3],
 }
 
 #[pymethods]
@@ -61,44 +60,5 @@ impl PyMoving {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!("obstacles.Moving({}, {:?})", wrapped(py, &self.shape)?.bind(py).repr()?, self.velocity))
-    }
-}
-
-/// Obstacles of which some may move: shapes, and the velocity of each; no velocities if all are at rest.
-#[derive(Default)]
-pub struct MovingObstacles {
-    pub shapes: Vec<Shape>,
-    pub velocities: Vec<[f64; 3]>,
-}
-
-impl MovingObstacles {
-    /// Reads any sequence of obstacles.
-    pub fn read(value: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let given = items(value)?;
-        if given.iter().all(|item| item.cast::<PyMoving>().is_err()) {
-            return Ok(Self { shapes: Obstacles::read_shapes(value)?, velocities: vec![] });
-        }
-        let mut all = Self::default();
-        for (i, item) in given.iter().enumerate() {
-            let (shape, velocity) = match (item.cast::<PyMoving>(), item.cast::<PyObstacle>()) {
-                (Ok(moving), _) => (moving.get().shape.clone(), moving.get().velocity),
-                (_, Ok(obstacle)) => (obstacle.get().core.clone(), [0.0; 3]),
-                _ => return Err(not_made_here(&format!("obstacle {i}"), item)),
-            };
-            all.shapes.push(shape);
-            all.velocities.push(velocity);
-        }
-        Ok(all)
-    }
-
-    /// The obstacles as Python objects: those that move are `Moving`.
-    pub fn objects(py: Python<'_>, shapes: &[Shape], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
-        let object = |(i, shape): (usize, &Shape)| match velocities.get(i) {
-            Some(velocity) if *velocity != [0.0; 3] => {
-                Ok(Py::new(py, PyMoving { shape: shape.clone(), velocity: *velocity })?.into_any())
-            }
-            _ => wrapped(py, shape),
-        };
-        shapes.iter().enumerate().map(object).collect()
     }
 }

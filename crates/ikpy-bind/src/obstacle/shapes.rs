@@ -4,9 +4,9 @@ use ikcore::shape::{Geometry, Shape};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use super::argument::{Touch, read_touch};
 use super::arrays::{Coordinates, Rotation, read_points, read_rotation};
 use super::body::{PyObstacle, made};
+use super::touch::{Touch, read_touch};
 use crate::convert::{Array, copied, entries, point, table};
 use crate::monitor::on_a_thread;
 
