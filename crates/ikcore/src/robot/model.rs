@@ -343,6 +343,11 @@ impl Robot {
         robot
     }
 
+    /// The visual shapes of a URDF.
+    pub fn visuals(&self) -> &[Visual] {
+        &self.parts.visuals
+    }
+
     /// The same robot with these visual shapes.
     pub(crate) fn with_visuals(&self, visuals: Vec<Visual>) -> Self {
         let mut robot = self.clone();

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::model::Robot;
 use crate::math::Pose;
 use crate::shape::Shape;
 
@@ -31,11 +30,4 @@ pub enum VisualShape {
         /// Pose of the mesh in its link.
         origin: Pose,
     },
-}
-
-impl Robot {
-    /// The visual shapes of a URDF.
-    pub fn visuals(&self) -> &[Visual] {
-        &self.parts().visuals
-    }
 }

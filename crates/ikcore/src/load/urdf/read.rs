@@ -86,7 +86,7 @@ impl Robot {
         let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
         let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
         let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
-        let visuals = visuals::of(&document, &robot, &packages);
+        let visuals = visuals::of(&document.visuals, &robot, &packages);
         let robot = robot.with_visuals(visuals);
         let robot = match &options.hold[..] {
             [] => robot,

@@ -5,7 +5,6 @@ use std::path::absolute;
 
 use roxmltree::Node;
 
-use super::document::Document;
 use super::link_capsules::{UrdfMesh, mesh, origin, primitive};
 use super::package::Packages;
 use super::xml;
@@ -27,19 +26,18 @@ pub(super) fn read(root: Node) -> Vec<Visual> {
     visuals
 }
 
-/// The visual shapes of the links of `robot`, with files where they are found.
-pub(super) fn of(document: &Document, robot: &Robot, packages: &Packages) -> Vec<Visual> {
+/// Those of the links of `robot`, with files where they are found.
+pub(super) fn of(visuals: &[Visual], robot: &Robot, packages: &Packages) -> Vec<Visual> {
     let links: Vec<&str> = robot.all_link_names().collect();
-    let mut visuals = document.visuals.clone();
-    visuals.retain(|visual| links.contains(&visual.link.as_str()));
-    for visual in &mut visuals {
+    let mut found: Vec<Visual> = visuals.iter().filter(|each| links.contains(&each.link.as_str())).cloned().collect();
+    for visual in &mut found {
         if let VisualShape::Mesh { path, .. } = &mut visual.shape
             && let Ok(file) = packages.find(path)
         {
             *path = absolute(&file).unwrap_or(file).display().to_string();
         }
     }
-    visuals
+    found
 }
 
 fn shape_of(visual: Node) -> Option<VisualShape> {
