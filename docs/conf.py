@@ -18,7 +18,7 @@ version = release = beetle_ik.__version__
 extensions = [
     "docstrings",
     "matplotlib.sphinxext.plot_directive",
-    "myst_parser",
+    "myst_nb",
     "paper_figures",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
@@ -26,15 +26,25 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["build"]
+exclude_patterns = ["build", "gallery/*.ipynb"]
 default_role = "py:obj"  # one backquote in docstrings
 
 html_theme = "furo"
 html_title = "beetle-ik"
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["gallery.css"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
+
+# Each page is a notebook; those with Python blocks are executed.
+nb_custom_formats = {".md": ["notebooks.read", {}, False]}
+nb_execution_mode = "auto"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120  # s
+nb_merge_streams = True
 
 autodoc_default_options = {"members": True, "undoc-members": True, "member-order": "bysource"}
 autodoc_typehints = "none"
@@ -50,6 +60,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
     "ignore_pattern": r"15_wrong_model\.py$",  # a program for MuJoCo, with an argument
+    "thumbnail_size": (640, 480),
     "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),
     "remove_config_comments": True,

@@ -4,10 +4,13 @@ Steer a simulated arm from the browser
 
 The handle of the viewer is the operator's hand, and MuJoCo simulates the arm, with gravity and servos that yield. A
 loop of 500 Hz takes the handle as target, keeps the limits up to jerk and the clearance from a table, and commands the
-servos. The page shows the arm as it really stands. Keys move the handle too: W, A, S, D, R and F.
+servos. The page shows the arm as it really stands. Keys move the handle too: W, A, S, D, R and F; and the sticks of a
+gamepad.
 
 Here a program moves the handle, for two seconds. For a hand of your own, set ``SECONDS = float("inf")`` and
-``STEERED = False``, and open the address that is printed; Ctrl-C ends the loop.
+``STEERED = False``, and open the address that is printed; Ctrl-C ends the loop. For a gamepad set ``GAMEPAD = True``:
+GLFW, which comes with MuJoCo, reads it on the machine of the loop, which needs a screen for that. A page cannot pass
+one on. The machine that built this page has no gamepad: this part alone was not tried there.
 """
 
 import sys
@@ -23,6 +26,7 @@ from beetle_ik.sim import MujocoPlant
 DT = 0.002  # s
 SECONDS = 2.0
 STEERED = True
+GAMEPAD = False
 
 robot = bik.Robot.named("panda").with_capsules(radius=0.06)
 start = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
@@ -52,6 +56,30 @@ def bind(key: str, direction: tuple[int, int, int]) -> None:
 
 for key, direction in KEYS.items():
     bind(key, direction)
+
+# %%
+# The left stick moves the handle sideways, the right one up and down.
+STICKS = 16  # ticks from one look at them to the next
+SPEED = 0.3  # m/s
+DEAD = 0.1  # a stick at rest is not quite at zero
+
+
+def sticks() -> np.ndarray:
+    """Returns the velocity of the handle (m/s) that the sticks stand for; zero without a gamepad."""
+    glfw.poll_events()
+    state = glfw.get_gamepad_state(glfw.JOYSTICK_1)
+    if not state:
+        return np.zeros(3)
+    left, forward, _, up, *_ = -np.array(list(state.axes))
+    velocity = np.array([forward, left, up])
+    return SPEED * np.where(np.abs(velocity) > DEAD, velocity, 0.0)
+
+
+if GAMEPAD:
+    import glfw
+
+    if not glfw.init():
+        raise SystemExit("GLFW reads no gamepad without a screen")
 
 # %%
 # The page is refreshed 30 times a second, in a thread of its own: the loop does not wait for it.
@@ -84,6 +112,8 @@ try:
         while (left := due - time.perf_counter()) > 0.0:
             time.sleep(max(0.0, left - 2e-4))
         late.append(-left)
+        if GAMEPAD and len(late) % STICKS == 0:
+            viewer.target = viewer.target[:3, 3] + STICKS * DT * sticks()
         target = viewer.target
         step = tracker.step(target)
         plant.move(step.q)

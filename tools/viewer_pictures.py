@@ -157,11 +157,9 @@ def dragged(browser: Any, file: Path) -> None:
 def solved(browser: Any, file: Path) -> None:
     """Pictures all solutions of a pose."""
     robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
-    with bik.view(robot, port=0) as viewer:
+    target = bik.pose([0.45, -0.3, 0.5], rpy=[np.pi / 2, 0.0, 1.0])
+    with bik.view(robot, bik.solve(robot, target, obstacles=[]).q, port=0) as viewer:
         visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
-        viewer.follow = "solve"
-        viewer.target = bik.pose([0.3, 0.35, 0.45], rpy=[np.pi / 2, 0.0, 2.0])
-        visitor.until(lambda: not viewer.moves)
         visitor.open_tab("Postures")
         visitor.press("Show all solutions")
         visitor.page.get_by_label("velocity ellipsoid").check()
@@ -187,13 +185,24 @@ def played(browser: Any, file: Path) -> None:
         visitor.picture(file)
 
 
+def paired(browser: Any, file: Path) -> None:
+    """Pictures a robot with two arms, after one of its handles was dragged."""
+    file_of_robot = ROBOTS / "baxter_description/urdf/baxter.urdf"
+    robot = bik.Robot.from_urdf(file_of_robot, tip=["left_hand_link", "right_hand_link"], collision="hulls")
+    with bik.view(robot, port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        visitor.drag("/target/left_hand_link", 2, -0.15)
+        visitor.until(lambda: not viewer.moves)
+        visitor.picture(file)
+
+
 def main() -> None:
     """Writes the pictures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out
     with visits() as browser:
-        for draw in (dragged, solved, played):
+        for draw in (dragged, solved, played, paired):
             draw(browser, out / f"viewer_{draw.__name__}.png")
 
 

@@ -266,6 +266,12 @@ class Robot:
         `"hulls"` read meshes.
         """
     @property
+    def visuals(self) -> list[tuple[str, Obstacle | str, _Array, _Array | None]]:
+        """The visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of `bik.obstacles`, or the
+        path of a mesh file, as the URDF names it where it was not found; the placement takes it to the frame of the link, to scale.
+        Colours are red, green, blue and opacity, from 0 to 1; materials of the file come before them.
+        """
+    @property
     def collision_pairs(self) -> list[tuple[str, str]]:
         """Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
         an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from test_every_call import CALLS, MADE_BY_THE_LIBRARY
 
 import beetle_ik as bik
 
@@ -17,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if "```python\n" in page.read_text(encoding="utf-8"))
 FENCED = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
+SHOWN = re.compile(r"^```py\n(.*?)^```", re.MULTILINE | re.DOTALL)  # not run: of libraries that may not be installed
 # An indented block that begins with the import every example begins with.
 INDENTED = re.compile(r"^( +)import beetle_ik as bik\n(?:\1.*\n|\s*\n)*", re.MULTILINE)
 
@@ -83,6 +85,17 @@ def test_examples_in_docstrings_run(example: str, tmp_path: Path) -> None:
 
 def test_the_package_has_an_example() -> None:
     assert INDENTED.search(bik.__doc__ or "")
+
+
+def test_every_public_call_has_an_example() -> None:
+    pages = [page.read_text(encoding="utf-8") for page in [README, *(ROOT / "docs").rglob("*.md")]]
+    programs = [block for page in pages for pattern in (FENCED, SHOWN) for block in pattern.findall(page)]
+    programs += [file.read_text(encoding="utf-8") for file in (ROOT / "examples").glob("*.py")]
+    programs += [match[0] for _, text in documented() for match in INDENTED.finditer(text)]
+    called = set(re.findall(r"\.([A-Za-z_]\w*)", "\n".join(programs)))
+    errors = {name for name in bik.__all__ if name.endswith("Error")}
+    missing = [name for name in {*CALLS, *errors} - set(MADE_BY_THE_LIBRARY) if name.rpartition(".")[2] not in called]
+    assert not sorted(missing)
 
 
 def test_prompts_in_docstrings_give_what_they_show() -> None:

@@ -102,6 +102,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
         "Viewer.wait": lambda: bik.view(IIWA, port=0).wait,
+        "view": lambda: lambda: bik.view(IIWA, port=0, block=True),
         "time_optimal": lambda: waypoints(100_000),
         "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
         "track_model_free": lambda: (
@@ -216,7 +217,6 @@ SHORT: dict[str, str] = {
         ONE,
     ),
     "Plan.retime": PLANNED,
-    "view": "where it blocks, it calls Viewer.wait",
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
     **dict.fromkeys(
         ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],

@@ -7,21 +7,26 @@ import sys
 import threading
 import time
 from collections.abc import Collection, Iterator
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pair_of_pandas import pair_of_pandas
 from typer.testing import CliRunner
 
 import beetle_ik as bik
 from beetle_ik.cli import app
-from beetle_ik.viewing import address, start
+from beetle_ik.viewing import address, postures, start
 from beetle_ik.viewing.arm import Arm
 from beetle_ik.viewing.checks import motion_of
 from beetle_ik.viewing.displaced import displaced
+from beetle_ik.viewing.looks import looks
 from beetle_ik.viewing.worker import Request, Worker
 
 PANDA = bik.Robot.named("panda").with_capsules(radius=0.06)
+TIP = PANDA.tips[0]
 START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
 BELOW = bik.pose([0.0, 0.0, -0.15]) @ PANDA.fk(START)
 TABLE = bik.obstacles.Box((0.5, 0.0, 0.15), (0.5, 0.8, 0.1))
@@ -60,7 +65,7 @@ def ticks(arm: Arm) -> Iterator[float]:
 def test_the_arm_reaches_its_target(follow: str) -> None:
     arm = Arm(PANDA, START, [TABLE])
     arm.follow = follow  # type: ignore[assignment]
-    arm.target = BELOW
+    arm.aim(TIP, BELOW)
     assert min(ticks(arm)) >= MARGIN - 1e-9
     assert arm.outcome is not None
     assert arm.outcome.success
@@ -69,7 +74,7 @@ def test_the_arm_reaches_its_target(follow: str) -> None:
 
 def test_the_arm_keeps_within_its_velocity_limits() -> None:
     arm = Arm(PANDA, START, [])
-    arm.target = BELOW
+    arm.aim(TIP, BELOW)
     before = START
     while arm.advance():
         assert (np.abs(arm.q - before) <= PANDA.velocity_limit / 60 + 1e-12).all()
@@ -78,7 +83,7 @@ def test_the_arm_keeps_within_its_velocity_limits() -> None:
 
 def test_the_arm_stays_clear_of_an_obstacle_at_its_target() -> None:
     arm = Arm(PANDA, START, [TABLE])
-    arm.target = bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START)  # in the table
+    arm.aim(TIP, bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START))  # in the table
     assert min(ticks(arm)) >= MARGIN - 1e-9
     assert arm.outcome is not None
     assert arm.outcome.status is bik.Status.HELD_BY_OBSTACLE
@@ -95,7 +100,7 @@ def test_the_arm_yields_to_an_obstacle_moved_into_it() -> None:
 def test_without_clearance_the_arm_goes_through() -> None:
     arm = Arm(PANDA, START, [TABLE])
     arm.keeps_clear = False
-    arm.target = bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START)
+    arm.aim(TIP, bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START))
     assert min(ticks(arm)) < 0.0
     assert arm.outcome is not None
     assert arm.outcome.success
@@ -107,22 +112,50 @@ def test_an_arm_that_was_put_into_an_obstacle_rests_there() -> None:
     arm.put(through)
     assert not arm.advance()
     assert arm.q is through
-    np.testing.assert_array_equal(arm.target, PANDA.fk(through))
+    np.testing.assert_array_equal(arm.targets[TIP], PANDA.fk(through))
 
 
 def test_a_target_out_of_reach_is_approached_and_ends() -> None:
     arm = Arm(PANDA, START, [])
     arm.part = "position"
-    arm.target = bik.pose([2.0, 0.0, 0.333])
+    arm.aim(TIP, bik.pose([2.0, 0.0, 0.333]))
     list(ticks(arm))
     assert arm.outcome is not None
     assert not arm.outcome.success
-    assert np.linalg.norm(PANDA.fk(arm.q)[:3, 3] - arm.target[:3, 3]) < 1.2  # its reach is 0.85 m
+    assert np.linalg.norm(PANDA.fk(arm.q)[:3, 3] - arm.targets[TIP][:3, 3]) < 1.2  # its reach is 0.85 m
+
+
+def test_an_approach_that_touches_an_obstacle_is_not_made() -> None:
+    beyond = [1.5, 0.0, 0.4]
+    wall = bik.obstacles.Box((0.7, 0.0, 0.5), (0.02, 2.0, 2.0))
+    arm = Arm(PANDA, START, [wall])
+    arm.part, arm.follow = "position", "solve"
+    arm.aim(TIP, bik.pose(beyond))
+    assert bik.solve(PANDA, beyond, start=START, obstacles=[wall]).status is bik.Status.OUT_OF_REACH
+    assert min(ticks(arm)) >= MARGIN
+    assert arm.stays
+    arm.keeps_clear = False
+    list(ticks(arm))
+    assert not arm.stays
+
+
+def test_an_arm_that_hunts_about_a_posture_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hunting(_: Arm) -> SimpleNamespace:  # the null space beside a singular posture
+        return SimpleNamespace(
+            q=START + 0.01 * (-1) ** next(turns), position_error=0.01, rotation_error=0.0, success=False
+        )
+
+    turns = count()
+    monkeypatch.setattr(Arm, "_track", hunting)
+    arm = Arm(PANDA, START, [])
+    arm.aim(TIP, BELOW)
+    list(ticks(arm))
+    assert next(turns) < 100
 
 
 def test_solve_stays_out_of_an_obstacle() -> None:
     arm = Arm(PANDA, START, [TABLE])
-    arm.target = bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START)
+    arm.aim(TIP, bik.pose([0.0, 0.0, -0.45]) @ PANDA.fk(START))
     arm.solve()
     assert arm.q is START
     assert arm.outcome is not None
@@ -133,11 +166,154 @@ def test_pointing_leaves_the_turn_about_the_axis_free() -> None:
     arm = Arm(PANDA, START, [])
     arm.part = "pointing"
     turned = bik.pose([0, 0, 0], rpy=[0, 0, 3.0])
-    arm.target = PANDA.fk(START) @ turned
+    arm.aim(TIP, PANDA.fk(START) @ turned)
     list(ticks(arm))
     assert arm.outcome is not None
     assert arm.outcome.success
     assert np.abs(arm.q - START).max() < 1e-6
+
+
+# --- several tips ---
+
+PAIR = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
+
+
+@pytest.fixture
+def pair() -> Iterator[bik.Viewer]:
+    with bik.view(PAIR, port=0) as viewer:
+        yield viewer
+
+
+def test_each_tip_has_a_target(pair: bik.Viewer) -> None:
+    assert pair.follow == "solve"
+    before = pair.target
+    assert list(before) == PAIR.tips
+    pair.target = {"left_tool": before["left_tool"][:3, 3] + [0.0, 0.0, 0.1]}
+    settle(pair)
+    left, right = PAIR.fk(pair.q)
+    np.testing.assert_allclose(left[:3, 3], before["left_tool"][:3, 3] + [0.0, 0.0, 0.1], atol=1e-5)
+    np.testing.assert_allclose(right, before["right_tool"], atol=1e-5)
+    for tip in PAIR.tips:
+        assert pair.server.scene.get_handle_by_name(f"/target/{tip}") is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("target", np.eye(4), "target must be a dict with the tips 'left_tool', 'right_tool' as keys, got array([["),
+        ("target", {"left": np.eye(4)}, "target: no tip is named 'left'; tips: 'left_tool', 'right_tool'"),
+        ("target", {"left_tool": [1]}, "target of 'left_tool' must be a pose (4, 4) or a position (3,), got [1]"),
+        ("follow", "track", "follow must be one of 'solve', 'off', got 'track'"),
+    ],
+)
+def test_targets_of_tips_are_refused_by_name(pair: bik.Viewer, name: str, value: object, told: str) -> None:
+    with pytest.raises(bik.InvalidInputError) as refused:
+        setattr(pair, name, value)
+    assert str(refused.value).startswith(told)
+
+
+def test_results_for_several_tips_are_shown(pair: bik.Viewer) -> None:
+    q = pair.q
+    plan = bik.plan_point_to_point(PAIR, start_q=q, end_q=PAIR.clip(0.8 * q), limits=bik.Limits(acceleration=5.0))
+    pair.show(plan)
+    for _ in range(PATIENCE):
+        if np.abs(pair.q - q).max() > 0.05:
+            break
+        time.sleep(0.005)
+    else:
+        raise AssertionError("the plan is not played")
+    pair.show(bik.solve(PAIR, dict(zip(PAIR.tips, PAIR.fk(q), strict=True)), start=q))
+    np.testing.assert_allclose(pair.q, q, atol=1e-6)
+
+
+def test_several_tips_without_bodies_get_balls() -> None:
+    robot, notes = start.shown(PAIR.with_capsules([]), has_meshes=False)
+    assert notes[0].startswith("no bodies in the model: balls at the joints, of radius ")
+    q = start.configuration(robot, [])
+    assert bik.obstacles.clearance(robot, q) > 0.0
+    assert {body.link for body in robot.bodies} == set(robot.all_link_names)
+
+
+# --- how links look ---
+
+RED = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.01"/></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><phong>
+<diffuse><color>1 0 0 1</color></diffuse></phong></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh><source id="s">
+<float_array id="a" count="9">0 0 0 10 0 0 0 20 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<triangles count="1" material="m"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="w"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>"""
+
+
+def looking(folder: Path, visual: str, collision: str = "") -> bik.Robot:
+    """Returns an arm whose link "arm" looks so."""
+    (folder / "red.dae").write_text(RED)
+    (folder / "plain.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (folder / "broken.stl").write_text("no mesh")
+    shape = f"<collision>{collision}</collision>" if collision else ""
+    file = folder / "arm.urdf"
+    file.write_text(
+        f"""<robot name="r"><material name="blue"><color rgba="0 0 1 0.5"/></material><link name="base"/>
+        <link name="arm"><visual>{visual}</visual>{shape}</link>
+        <joint name="j" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>"""
+    )
+    return bik.Robot.from_urdf(file)
+
+
+def test_a_mesh_is_shown_in_metres_at_its_place_with_its_material(tmp_path: Path) -> None:
+    place = "<origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/>"
+    mesh = "<geometry><mesh filename='red.dae' scale='2 1 1'/></geometry><material name='blue'/>"
+    ((link, scene),), notes = looks(looking(tmp_path, place + mesh))
+    assert (link, notes) == ("arm", [])
+    np.testing.assert_allclose(scene.bounds, [[-0.2, 0.0, 1.0], [0.0, 0.2, 1.0]], atol=1e-12)
+    (part,) = scene.geometry.values()
+    assert part.visual.material.main_color.tolist() == [255, 0, 0, 255]
+
+
+def test_shapes_without_a_material_have_that_of_the_urdf(tmp_path: Path) -> None:
+    for shape in ("<mesh filename='plain.obj'/>", "<box size='1 1 1'/>"):
+        visual = f"<geometry>{shape}</geometry><material name='blue'/>"
+        ((_, scene),), _ = looks(looking(tmp_path, visual))
+        (part,) = scene.geometry.values()
+        assert part.visual.material.main_color.tolist() == [0, 0, 255, 128]
+        assert part.visual.material.alphaMode == "BLEND"
+
+
+def test_files_that_are_missing_or_broken_are_named(tmp_path: Path) -> None:
+    seen, notes = looks(looking(tmp_path, "<geometry><mesh filename='gone.stl'/></geometry>"))
+    assert (seen, notes) == ([], ["1 file of visual meshes not found, such as gone.stl"])
+    seen, notes = looks(looking(tmp_path, "<geometry><mesh filename='broken.stl'/></geometry>"))
+    assert seen == []
+    assert notes[0].startswith(f"cannot read '{tmp_path / 'broken.stl'}': ")
+
+
+def test_a_collision_mesh_takes_the_place_of_a_visual_one(tmp_path: Path) -> None:
+    mesh = "<geometry><mesh filename='plain.obj'/></geometry>"
+    ((link, scene),), _ = looks(looking(tmp_path, "<geometry><mesh filename='gone.stl'/></geometry>", mesh))
+    assert link == "arm"
+    np.testing.assert_allclose(scene.bounds, [[0, 0, 0], [1, 1, 0]])
+
+
+def test_bodies_around_meshes_are_hidden_and_attached_ones_are_not(tmp_path: Path) -> None:
+    mesh = "<geometry><mesh filename='plain.obj'/></geometry>"
+    robot = looking(tmp_path, mesh, "<geometry><sphere radius='1'/></geometry>")
+    robot = robot.with_attached("arm", bik.obstacles.Sphere((0, 0, 1), 0.1))
+    with bik.view(robot, port=0) as viewer:
+        shown = viewer.server.scene.get_handle_by_name
+        cover, attached = shown("/robot/arm/cover_0"), shown("/robot/attached/body_0")
+        assert shown("/robot/arm/look_0") is not None
+        assert cover is not None
+        assert not cover.visible
+        assert attached is not None
+        assert attached.visible
 
 
 # --- where it begins ---
@@ -150,7 +326,7 @@ def test_every_robot_begins_inside_its_limits_and_clear(name: str) -> None:
     assert (robot.clip(q) == q).all()
     assert bik.obstacles.clearance(robot, q) > 0.0
     assert robot.manipulability(q) > 0.0
-    assert notes[0].startswith("no bodies in the model: capsules of radius ")
+    assert notes[0].startswith("no bodies in the model: capsules along the links, of radius ")
 
 
 def test_joints_without_a_velocity_limit_get_one() -> None:
@@ -165,7 +341,7 @@ def test_shapes_that_were_not_read_are_named() -> None:
     <link name="tip">{body.format("mesh filename='no.stl'")}</link>
     <joint name="j" type="continuous"><origin xyz="0 0 0.5"/><parent link="base"/><child link="tip"/></joint></robot>"""
     robot, notes = start.shown(bik.Robot.from_urdf(urdf), has_meshes=False)
-    assert notes[0].startswith("1 collision shape not read: capsules of radius 20 mm along the links take")
+    assert notes[0].startswith("1 collision shape not read: capsules along the links, of radius 20 mm, take")
     assert bik.obstacles.clearance(robot, [0.0]) == np.inf
     _, notes = start.shown(bik.Robot.from_urdf(urdf), has_meshes=True)
     assert notes[0].startswith("1 collision shape not read, and not kept clear: Robot.from_urdf(..., coll")
@@ -234,6 +410,24 @@ def test_a_closed_viewer_leaves_no_thread() -> None:
     assert viewer.q.shape == (7,)
     with pytest.raises(bik.BeetleIkError, match=r"the viewer of 'panda' is closed: bik.view opens another one"):
         viewer.q = START
+
+
+def test_closing_does_not_wait_for_a_search(viewer: bik.Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, closed, ended = threading.Event(), threading.Event(), threading.Event()
+
+    def search(*_: object, **__: object) -> list[bik.SelfMotion]:
+        begun.set()
+        assert closed.wait(30)
+        ended.set()
+        return []
+
+    monkeypatch.setattr(postures, "self_motion", search)
+    viewer._worker.ask("page", viewer._parts._postures._find_self_motion)
+    assert begun.wait(10)
+    viewer.close()
+    assert not ended.is_set()
+    closed.set()
+    assert ended.wait(10)
 
 
 def test_a_callback_may_set_and_close(viewer: bik.Viewer) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pair_of_pandas import pair_of_pandas
 
 import beetle_ik as bik
 
@@ -155,3 +156,18 @@ def test_a_visitor_may_leave_with_the_handle_in_the_hand(viewer: bik.Viewer, vis
         time.sleep(0.01)
     assert viewer.outcome is not None
     assert viewer.outcome.success
+
+
+def test_each_tip_has_a_handle_of_its_own(browser: Any) -> None:
+    robot = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
+    with bik.view(robot, port=0) as viewer:
+        viewer.server.scene.configure_default_lights(cast_shadow=False)
+        visitor = Visitor(browser, viewer, width=700, height=360)
+        before = viewer.target
+        visitor.drag("/target/left_tool", 2, 0.1)
+        visitor.until(lambda: visitor.text("left_tool").startswith("0.0 mm"))
+        moved = viewer.target["left_tool"][:3, 3] - before["left_tool"][:3, 3]
+        assert moved @ before["left_tool"][:3, 2] == pytest.approx(0.1, abs=0.02)
+        np.testing.assert_array_equal(viewer.target["right_tool"], before["right_tool"])
+        np.testing.assert_allclose(robot.fk(viewer.q), list(viewer.target.values()), atol=1e-4)
+        assert visitor.text("right_tool").startswith("0.0 mm")

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use ikcore::load::{CollisionShapes, UrdfOptions};
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
-use ikcore::robot::{JointKind, Robot};
+use ikcore::robot::{JointKind, Robot, VisualShape};
 use proptest::prelude::*;
 
 /// Three links in a row: `a` turns about a tilted, unnormalised axis, `b` slides.
@@ -655,4 +655,26 @@ fn packages_are_found_in_given_folders() {
     assert_eq!(robot.unread_collision_shapes(), ["a mesh of link 'hand'"]);
     let options = UrdfOptions { collision: CollisionShapes::Ignored, ..UrdfOptions::default() };
     assert!(Robot::from_urdf_with(&file, &options).unwrap().unread_collision_shapes().is_empty());
+}
+
+#[test]
+fn visual_shapes_have_places_and_colours_and_outlive_changes_of_bodies() {
+    let text = r#"<robot name="arm"><material name="blue"><color rgba="0 0 1 0.5"/></material>
+      <link name="base"><visual><geometry><mesh filename="base.dae" scale="2 1 1"/></geometry><origin xyz="0 0 1"/>
+        <material name="blue"/></visual></link>
+      <link name="hand"><visual><geometry><sphere radius="0.1"/></geometry><material name="own"><color rgba="1 0 0 1"/></material>
+        </visual><visual><geometry><box size="1 1"/></geometry></visual>
+        <visual><geometry><box size="1 1 1"/></geometry><material name="unknown"/></visual></link>
+      <joint name="a" type="continuous"><parent link="base"/><child link="hand"/></joint></robot>"#;
+    let robot = load(text);
+    let [mesh, ball, block] = robot.visuals() else { panic!("{:?}", robot.visuals()) };
+    let VisualShape::Mesh { path, scale, origin } = &mesh.shape else { panic!("{mesh:?}") };
+    assert_eq!((path.as_str(), scale), ("base.dae", &[2.0, 1.0, 1.0]));
+    assert_same(origin, &pose::translation(0.0, 0.0, 1.0), 0.0);
+    assert_eq!((mesh.link.as_str(), mesh.color), ("base", Some([0.0, 0.0, 1.0, 0.5])));
+    assert_eq!((ball.link.as_str(), ball.color), ("hand", Some([1.0, 0.0, 0.0, 1.0])));
+    assert!(matches!(&block.shape, VisualShape::Solid(_)) && block.color.is_none());
+    assert_eq!(robot.with_capsules_along_links(0.1).unwrap().visuals(), robot.visuals());
+    assert!(Robot::from_bytes(&robot.to_bytes().unwrap()).unwrap() == robot);
+    assert_eq!(Robot::from_urdf(text, Some("hand"), Some("base")).unwrap().visuals().len(), 3);
 }

@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
 
-/// Version of the byte form. Since version 2 robots may have several tips.
+/// Version of the byte form. Since version 2 robots may have several tips, and visual shapes.
 const FORMAT: u8 = 2;
 
 /// The oldest version that can be read.

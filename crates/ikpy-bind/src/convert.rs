@@ -310,6 +310,11 @@ pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyAr
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
 }
 
+/// Converts a matrix to a read-only one of Python.
+pub fn matrix4_array<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    Ok(read_only(PyArray1::from_slice(py, matrix.transpose().as_slice()).reshape([4, 4])?))
+}
+
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
     // SAFETY: the array was made here and has no other owner yet.
     unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };

@@ -7,7 +7,7 @@ import typer
 
 from .. import Robot, Scene, UrdfError
 from .. import view as view_robot
-from .options import BaseLink, LinkRadius, SceneFile, Start, TipLink, complete_robot, load_robot, numbers
+from .options import BaseLink, LinkRadius, SceneFile, Start, TipLinks, complete_robot, load_robot, numbers
 
 _FILES = (".urdf", ".xacro", ".xml")
 
@@ -25,7 +25,7 @@ def view(
     link_radius: LinkRadius = None,
     host: Annotated[str, typer.Option(help="Address to serve at; 0.0.0.0: to other machines too.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port; if it is in use, the next free one. 0: any.")] = 8080,
-    tip: TipLink = None,
+    tip: TipLinks = None,
     base: BaseLink = None,
 ) -> None:
     """Show a robot in the browser: drag its tip, its joints and obstacles. Ctrl-C ends it."""
@@ -44,8 +44,8 @@ def view(
         raise typer.Exit from None  # the way to end it
 
 
-def _loaded(robot: str, base: str | None, tip: str | None) -> Robot:
-    file = Path(robot)
+def _loaded(robot: str, base: str | None, tip: list[str] | None) -> Robot:
+    file, tip = Path(robot), tip or None  # no option is an empty list
     if file.suffix not in _FILES:
         return load_robot(robot, None, base, tip)
     if file.suffix == ".xml":

@@ -8,7 +8,8 @@
     start       bodies, speeds and a configuration for robots that come without
     parts       what the page consists of
     page        what its parts share
-    surfaces    the robot's links in the scene, and its ghosts
+    looks       what is seen of the links: visual meshes
+    surfaces    the links in the scene, and ghosts of them
     handle, joints, obstacles, postures, playback, report
                 the parts of the page: each shows and changes one thing of the state
     displaced   obstacles, moved

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from .. import tasks
-from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, nearest, solve
+from .._core import Limits, Obstacle, Robot, Solution, Status, Step, Stop, Tracker, clearance, nearest, solve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .._core import Nearest, Task
 
     Array = NDArray[np.float64]
+    Targets = dict[str, Array]
 
 Follow = Literal["track", "solve", "off"]
 Part = Literal["pose", "position", "pointing"]
@@ -23,19 +24,24 @@ PARTS: tuple[Part, ...] = get_args(Part)
 
 DT = 1.0 / 60.0  # s, of a tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
+_MARGIN = 1e-3  # m, that of solvers
 _REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
 _ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
-_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived
+_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived,
+_HUNTING = 0.05  # rad, m: as has one that comes no farther than this, and no nearer to its target by more than
+_NEARER = 1e-4  # m, rad
 _PAUSE = 30  # ticks
 
 
 class Arm:
-    """A robot, its configuration, its target, the obstacles around it, and how it follows the target.
+    """A robot, its configuration, a target for each tip, the obstacles around it, and how it follows the targets.
 
     Attributes:
+        follows: the ways in which it can follow.
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
         moves: whether it is under way to the target.
+        stays: whether it stays where it is because it would collide at the last solution.
     """
 
     def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
@@ -43,25 +49,34 @@ class Arm:
         self.robot = robot
         self.q = q
         self.outcome: Step | Solution | None = None
-        self.moves = False
-        self._target = robot.fk(q)
+        self.moves = self.stays = False
+        self.follows = FOLLOWS if len(robot.tips) == 1 else FOLLOWS[1:]  # a tracker takes robots with one tip
+        self._targets = self.tips_at(q)
         self._obstacles = obstacles
-        self._follow: Follow = "track"
-        self._part: Part = "pose" if robot.dof >= 6 else "position"
+        self._follow = self.follows[0]
+        self._part: Part = "pose" if robot.dof >= 6 * len(robot.tips) else "position"
         self._keeps_clear = True
         self._tracker: Tracker | None = None
         self._escapes = False
-        self._anchor, self._ticks, self._tries_again = q, 0, True
+        self._anchor, self._error, self._ticks, self._tries_again = q, np.inf, 0, True
+
+    def tips_at(self, q: Array) -> Targets:
+        """Returns the pose (4, 4) of each tip at `q` (n,), by its name."""
+        return dict(zip(self.robot.tips, self.robot.fk(q).reshape(-1, 4, 4), strict=True))
 
     @property
-    def target(self) -> Array:
-        """The pose (4, 4) that the tip is to reach."""
-        return self._target
+    def targets(self) -> Targets:
+        """The pose (4, 4) that each tip is to reach, by its name; another dict after each change."""
+        return self._targets
 
-    @target.setter
-    def target(self, target: Array) -> None:
-        self._target = target
+    @targets.setter
+    def targets(self, targets: Targets) -> None:
+        self._targets = targets
         self._set_off()
+
+    def aim(self, tip: str, target: Array) -> None:
+        """Gives one tip another target (4, 4)."""
+        self.targets = self._targets | {tip: target}
 
     @property
     def obstacles(self) -> list[Obstacle]:
@@ -106,9 +121,13 @@ class Arm:
         self._restart()
 
     @property
-    def goal(self) -> Array:
-        """The target as solvers take it: a position (3,) if the orientation is free, otherwise a pose (4, 4)."""
-        return self.target[:3, 3] if self._part == "position" else self.target
+    def goal(self) -> Any:
+        """What solvers take: for each tip a position (3,) if the orientation is free, otherwise a pose (4, 4).
+
+        That of an only tip is no dict.
+        """
+        goals = {tip: each[:3, 3] if self._part == "position" else each for tip, each in self._targets.items()}
+        return goals if len(goals) > 1 else goals[self.robot.tips[0]]
 
     @property
     def task(self) -> Task | None:
@@ -126,10 +145,10 @@ class Arm:
         return nearest(self.robot, self.q, self._obstacles)
 
     def put(self, q: Array) -> None:
-        """Puts the arm at `q` (n,), to rest there. The target moves along with the tip, if the arm follows it."""
+        """Puts the arm at `q` (n,), to rest there. Targets move along with the tips, if the arm follows them."""
         self.q, self.outcome = q, None
         if self._follow != "off":
-            self._target = self.robot.fk(q)
+            self._targets = self.tips_at(q)
         self._tracker, self.moves = None, False
 
     def advance(self) -> bool:
@@ -141,8 +160,9 @@ class Arm:
             return False
         self.outcome = self._track()
         self.q = self.outcome.q
-        if np.abs(self.q - self._anchor).max() > _STILL:
-            self._anchor, self._ticks = self.q, 0
+        moved, error = np.abs(self.q - self._anchor).max(), _error(self.outcome)
+        if moved > _HUNTING or (moved > _STILL and error < self._error - _NEARER):
+            self._anchor, self._error, self._ticks = self.q, error, 0
         self._ticks += 1
         if self._ticks == _PAUSE:
             if self._tries_again and not self.outcome.success:
@@ -157,7 +177,9 @@ class Arm:
         found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
         self.outcome = found
         self._tracker, self.moves = None, False
-        if found.status is not Status.IN_COLLISION:
+        # A target out of reach is approached without looking at obstacles.
+        self.stays = self._keeps_clear and clearance(self.robot, found.q, self._obstacles) < _MARGIN
+        if not self.stays:
             self.q = found.q
 
     @property
@@ -188,4 +210,9 @@ class Arm:
 
     def _set_off(self) -> None:
         self.moves = self._follow != "off"
-        self._anchor, self._ticks, self._tries_again = self.q, 0, True
+        self._anchor, self._error, self._ticks, self._tries_again = self.q, np.inf, 0, True
+
+
+def _error(step: Step) -> float:
+    """Returns the distance from the target (m, rad)."""
+    return step.position_error + float(np.nan_to_num(step.rotation_error))

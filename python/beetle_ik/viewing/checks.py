@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .._core import Path
+    from .arm import Targets
 
     Array = NDArray[np.float64]
 
@@ -35,7 +37,26 @@ def inside_limits(robot: Robot, q: ArrayLike) -> Array:
     return checked
 
 
-def target_pose(target: ArrayLike, present: Array) -> Array:
+def target_poses(target: Any, present: Targets) -> Targets:
+    """Returns the targets `present` with those of `target`: a dict by the names of tips, or that of the only tip."""
+    if not isinstance(target, Mapping):
+        if len(present) > 1:
+            raise InvalidInputError(
+                f"target must be a dict with the tips {_named(present)} as keys, got {target!r:.60}"
+            )
+        (tip,) = present
+        return {tip: _target_pose("target", target, present[tip])}
+    for tip in target:
+        if tip not in present:
+            raise InvalidInputError(f"target: no tip is named {tip!r:.60}; tips: {_named(present)}")
+    return present | {tip: _target_pose(f"target of '{tip}'", each, present[tip]) for tip, each in target.items()}
+
+
+def _named(targets: Targets) -> str:
+    return ", ".join(map(repr, targets))
+
+
+def _target_pose(name: str, target: ArrayLike, present: Array) -> Array:
     """Returns a pose (4, 4), or a position (3,) with the orientation of the pose `present`."""
     try:
         given = np.asarray(target, dtype=float)
@@ -44,10 +65,10 @@ def target_pose(target: ArrayLike, present: Array) -> Array:
         if given.shape == (4, 4) and (given[3] == (0, 0, 0, 1)).all():
             return _fixed(pose(given[:3, 3], matrix=given[:3, :3]))
     except BeetleIkError as error:
-        raise InvalidInputError(f"target: {error}") from error
+        raise InvalidInputError(f"{name}: {error}") from error
     except (TypeError, ValueError):
         pass
-    raise InvalidInputError(f"target must be a pose (4, 4) or a position (3,), got {target!r:.60}")
+    raise InvalidInputError(f"{name} must be a pose (4, 4) or a position (3,), got {target!r:.60}")
 
 
 def path_points(path: Path | ArrayLike) -> Array:

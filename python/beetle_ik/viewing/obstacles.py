@@ -11,8 +11,9 @@ from .. import obstacles as shapes
 from .._core import pose
 from .._style import ORANGE, rgb
 from .displaced import displaced
+from .looks import soup
 from .page import set_value
-from .surfaces import soup, wxyz
+from .surfaces import wxyz
 
 if TYPE_CHECKING:
     import viser

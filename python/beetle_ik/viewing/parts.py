@@ -10,7 +10,7 @@ import numpy as np
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
 from .._style import BLACK, rgb
 from .checks import motion_of, postures_of
-from .handle import Handle
+from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
 from .playback import Playback
@@ -21,13 +21,13 @@ from .surfaces import Links
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from .looks import Look
     from .page import Page
-    from .surfaces import Meshes
 
     Array = NDArray[np.float64]
 
-_LOOK = np.array([0.15, 0.0, 0.3])  # of the camera, as a fraction of the arm
-_FROM = np.array([1.2, 1.0, 0.75])
+_FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
+_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -36,30 +36,33 @@ _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has
 class Parts:
     """The parts of the page, and what they do together."""
 
-    def __init__(self, page: Page, meshes: Meshes, notes: list[str]) -> None:
-        """Fills the page. `meshes` are those of the links, `notes` sentences about the robot."""
+    def __init__(self, page: Page, looks: list[Look], notes: list[str]) -> None:
+        """Fills the page. `looks` are those of the links, `notes` sentences about the robot."""
         self._page = page
         scene, gui = page.server.scene, page.server.gui
-        base = page.arm.robot.link_poses(page.arm.q)[0, :3, 3]
+        self._links = Links(scene, page.arm.robot, looks)
+        low, high = self._links.bounds(page.arm.q)
+        size = max(page.scale, float(np.linalg.norm(high - low)))
+        look = 0.5 * (low + high) + _ASIDE * size
         camera = page.server.initial_camera
-        camera.look_at, camera.position, camera.fov = base + _LOOK * page.scale, base + _FROM * page.scale, _FIELD
+        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
         gui.configure_theme(show_share_button=False)  # it would show the page to others
-        scene.add_grid("/floor", width=4 * page.scale, height=4 * page.scale, cell_size=0.1, section_size=0.5)
-        self._links = Links(scene, page.arm.robot, meshes)
+        floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
+        scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
         self.report = Report(page, notes)
         self._playback = Playback(page)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Target"):
-            handle = Handle(page)
+            handles = Handles(page)
         with tabs.add_tab("Joints"):
             joints = Joints(page)
         with tabs.add_tab("Obstacles"):
             obstacles = Obstacles(page)
-            bodies = gui.add_checkbox("bodies around the meshes", initial_value=False)
+            bodies = gui.add_checkbox("bodies around the meshes", False, visible=self._links.has_covers)
             page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
         with tabs.add_tab("Postures"):
             self._postures = Postures(page, self._links)
-        self._quick = (handle, obstacles, self._postures)
+        self._quick = (handles, obstacles, self._postures)
         self._slow = (joints, self.report)
         self._due = 0.0
         self.refresh()

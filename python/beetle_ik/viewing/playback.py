@@ -40,7 +40,7 @@ class Playback:
         page.on_input(self._bar, lambda: self._jump(self._bar.value))
         page.on_input(self._button, lambda: self._play(not self._playing))
         self._time = 0.0
-        self._left = (page.arm.q, page.arm.target)
+        self._left = (page.arm.q, page.arm.targets)
         """What the arm was left with; if it has something else, someone has taken over."""
 
     def show(self, motion: Trajectory) -> None:
@@ -52,7 +52,7 @@ class Playback:
         self._folder.visible = True
         times = np.linspace(0.0, motion.duration, _SAMPLES)
         q, qd, _ = motion.at(times)
-        self._drawn = [self._trace(self._page.arm.robot.fk(q)[:, :3, 3]), self._plot(times, qd)]
+        self._drawn = [self._trace(q), self._plot(times, qd)]
         self._play(True)
 
     def advance(self, elapsed: float) -> bool:
@@ -60,7 +60,7 @@ class Playback:
         arm = self._page.arm
         if not self._playing or self._motion is None:
             return False
-        if arm.q is not self._left[0] or arm.target is not self._left[1]:
+        if arm.q is not self._left[0] or arm.targets is not self._left[1]:
             self._play(False)  # someone has taken over
             return False
         self._time += elapsed
@@ -87,11 +87,14 @@ class Playback:
         arm = self._page.arm
         if self._motion is not None:
             arm.put(self._motion.at(self._time)[0])
-            self._left = (arm.q, arm.target)
+            self._left = (arm.q, arm.targets)
 
-    def _trace(self, points: NDArray[np.float64]) -> viser.LineSegmentsHandle:
+    def _trace(self, q: NDArray[np.float64]) -> viser.LineSegmentsHandle:
+        """Draws the ways of the tips."""
+        points = self._page.arm.robot.fk(q).reshape(len(q), -1, 4, 4)[..., :3, 3]
+        segments = np.stack((points[:-1], points[1:]), axis=2).reshape(-1, 2, 3)
         return self._page.server.scene.add_line_segments(
-            "/trace", np.stack((points[:-1], points[1:]), axis=1), rgb(BLUE), thickness=_TRACE, thickness_units="screen"
+            "/trace", segments, rgb(BLUE), thickness=_TRACE, thickness_units="screen"
         )
 
     def _plot(self, times: NDArray[np.float64], qd: NDArray[np.float64]) -> viser.GuiUplotHandle:

@@ -34,9 +34,10 @@ class Postures:
         self._text = gui.add_markdown("")
         self._solution = gui.add_slider("solution", min=0, max=1, step=1, initial_value=0, visible=False)
         hide = gui.add_button("Hide them")
-        follow = gui.add_button("Find the self-motion", hint="postures that keep the tip at the target")
+        one = len(page.arm.targets) == 1  # what follows is for one tip
+        follow = gui.add_button("Find the self-motion", visible=one, hint="postures that keep the tip at the target")
         self._along = gui.add_slider("self-motion", min=0, max=1, step=1, initial_value=0, visible=False)
-        self._wanted = gui.add_checkbox("velocity ellipsoid of the tip", initial_value=False)
+        self._wanted = gui.add_checkbox("velocity ellipsoid of the tip", False, visible=one)
         self._ellipsoid = page.server.scene.add_icosphere("/ellipsoid", color=rgb(GREEN), opacity=0.4, visible=False)
         self._solutions: NDArray[np.float64] = np.empty((0, page.arm.robot.dof))
         self._curve = self._solutions

@@ -41,7 +41,11 @@ class Report:
     def refresh(self) -> None:
         """Shows the state of the arm."""
         nearest = self._page.arm.nearest
-        paragraphs = [f"<b data-beetle-ik='status'>{html.escape(self._status())}</b>", _clearance(nearest)]
+        paragraphs = [
+            f"<b data-beetle-ik='status'>{html.escape(self._status())}</b>",
+            *self._tips(),
+            _clearance(nearest),
+        ]
         if self.problem:
             paragraphs.insert(0, f"<b style='color:{VERMILION}'>{html.escape(self.problem)}</b>")
         text = "".join(f"<p>{each}</p>" for each in paragraphs)
@@ -58,12 +62,23 @@ class Report:
         arm = self._page.arm
         if arm.outcome is None:
             return "at rest" if arm.follow != "off" else "moved from outside"
-        if isinstance(arm.outcome, Solution) and arm.outcome.status is Status.IN_COLLISION:
+        if isinstance(arm.outcome, Solution) and arm.stays:
             return "no clear solution: the arm stays"
-        position, rotation = arm.outcome.position_error, arm.outcome.rotation_error
-        turned = "" if math.isnan(rotation) else f", {math.degrees(rotation):.1f}°"
         word = _WORDS.get(arm.outcome.status, "under way" if arm.moves else "as near as it gets from here")
-        return f"{word}: {1e3 * position:.1f} mm{turned} from the target"
+        return f"{word}: {_errors(arm.outcome.position_error, arm.outcome.rotation_error)} from the target"
+
+    def _tips(self) -> list[str]:
+        """Returns a line for each of several tips."""
+        arm = self._page.arm
+        if len(arm.targets) == 1 or not isinstance(arm.outcome, Solution):
+            return []
+        escaped = [(html.escape(str(tip), quote=True), errors) for tip, errors in arm.outcome.errors.items()]
+        return [f"{tip}: <span data-beetle-ik='{tip}'>{_errors(*errors)}</span>" for tip, errors in escaped]
+
+
+def _errors(position: float, rotation: float) -> str:
+    turned = "" if math.isnan(rotation) else f", {math.degrees(rotation):.1f}°"
+    return f"{1e3 * position:.1f} mm{turned}"
 
 
 def _clearance(nearest: Nearest | None) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import BeetleIkError, Mesh, Obstacle, Robot, clearance
+from .._core import Obstacle, Robot, clearance
 from .._text import counted
 
 _THICKNESS = 0.04  # radius of capsules, as a fraction of the length of the arm
@@ -25,8 +25,13 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     elif robot.unread_collision_shapes or not robot.bodies:
         lacking = f"{unread} not read" if robot.unread_collision_shapes else "no bodies in the model"
         radius = max(_THICKNESS * length(robot), _THINNEST)
-        robot = robot.with_capsules([*robot.capsules, *robot.with_capsules(radius=radius).capsules])
-        notes.append(f"{lacking}: capsules of radius {1e3 * radius:.0f} mm along the links take their place")
+        if len(robot.tips) == 1:
+            places, added = "capsules along the links", robot.with_capsules(radius=radius).capsules
+        else:
+            origin = np.zeros(3)
+            places, added = "balls at the joints", [(link, origin, origin, radius) for link in robot.all_link_names]
+        robot = robot.with_capsules([*robot.capsules, *added])
+        notes.append(f"{lacking}: {places}, of radius {1e3 * radius:.0f} mm, take their place")
     unlimited = np.isinf(robot.velocity_limit)
     if unlimited.any():
         robot = robot.with_limits(velocity=np.where(unlimited, _SPEED, robot.velocity_limit))
@@ -34,18 +39,10 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     return robot, notes
 
 
-def meshes(robot: Robot) -> tuple[list[tuple[str, Mesh]], list[str]]:
-    """Returns the meshes of the robot, each (link, mesh in its frame), or a sentence that says why there are none."""
-    try:
-        return robot.collision_meshes(), []
-    except BeetleIkError as error:  # a file that has gone
-        return [], [str(error)]
-
-
 def length(robot: Robot) -> float:
-    """Returns the length of the chain (m) from joint to joint, with joints in the middle of their ranges."""
+    """Returns the length of the (first) chain (m) from joint to joint, with joints in the middle of their ranges."""
     q = middle(robot)
-    origins = np.vstack((robot.link_poses(q)[:, :3, 3], robot.fk(q)[:3, 3]))
+    origins = np.vstack((robot.link_poses(q)[:, :3, 3], robot.fk(q).reshape(-1, 4, 4)[0, :3, 3]))
     return float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
 
 
@@ -62,7 +59,7 @@ def configuration(robot: Robot, obstacles: list[Obstacle]) -> NDArray[np.float64
         return robot.stances["ready"]
     center = middle(robot)
     candidates = np.vstack((center, 0.5 * (center + robot.random_configurations(_CANDIDATES, seed=0))))
-    agility = robot.manipulability(candidates)
+    agility = robot.manipulability(candidates) if len(robot.tips) == 1 else np.ones(len(candidates))
     good = (agility > _SINGULAR * np.median(agility)) & (clearance(robot, candidates, obstacles) > _CLEAR)
     heights = np.array([robot.link_poses(q)[:, 2, 3] for q in candidates])
     above = good & (heights.min(axis=1) >= heights[:, 0] - _FLOOR)

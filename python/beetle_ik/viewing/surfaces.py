@@ -2,103 +2,90 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import cycle
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._core import Capsule, Ellipsoid, Sphere
 from .._style import LINKS, SKY, rgb
-from .._surface import simplified
+from .looks import soup
 
 if TYPE_CHECKING:
     import viser
     from numpy.typing import NDArray
 
-    from .._core import Mesh, Robot
+    from .._core import Body, Robot
+    from .looks import Look
 
-    Meshes = list[tuple[str, Mesh]]
     Array = NDArray[np.float64]
 
-_MOST = 100_000  # triangles of a link
-_TRANSLUCENT = 0.25
+_TRANSLUCENT = 0.3
 _SAME = 7  # decimals of corners that are the same
 _SMOOTH = (Capsule, Ellipsoid, Sphere)
 
 
-class Surface(NamedTuple):
-    """Triangles (t, 3, 3) (m) in the frame of a link, and their colour."""
-
-    link: str
-    triangles: Array
-    color: tuple[int, int, int]
-    is_body: bool
-    """Whether it encloses a mesh of the same link."""
-    smooth: bool = False
-
-    def mesh(self) -> dict[str, Any]:
-        """Returns what viser takes: vertices, faces, and how light falls on them. Shared corners are smooth."""
-        vertices, faces = soup(self.triangles)
-        if self.smooth:
-            _, first, corners = np.unique(vertices.round(_SAME), axis=0, return_index=True, return_inverse=True)
-            vertices, faces = vertices[first], corners.reshape(-1, 3)
-        return {"vertices": vertices, "faces": faces, "flat_shading": not self.smooth}
-
-
-def surfaces(robot: Robot, meshes: Meshes) -> list[Surface]:
-    """Returns the meshes of a robot, and the bodies of its links."""
-    colors = dict(zip(robot.all_link_names, cycle(map(rgb, LINKS)), strict=False))
-    made = [Surface(link, simplified(mesh.triangles, _MOST), colors[link], is_body=False) for link, mesh in meshes]
-    covered = {surface.link for surface in made}
-    for body in robot.bodies:
-        if getattr(body.shape, "radius", 1.0):  # a rod without thickness has no surface
-            color = rgb(SKY if body.link in covered else LINKS[1])  # one colour: neighbours overlap at their joint
-            smooth = isinstance(body.shape, _SMOOTH)
-            made.append(Surface(body.link, body.shape.triangles, color, body.link in covered, smooth))
-    return made
-
-
 class Links:
-    """The links of a robot as frames of a scene, which carry their surfaces.
+    """The links of a robot as frames of a scene, which carry what is seen of them.
 
-    Bodies of links that have meshes are drawn only where they are asked for: they enclose the meshes.
+    Bodies of links that have a look are drawn only where they are asked for: they enclose what is seen.
     """
 
-    def __init__(self, scene: viser.SceneApi, robot: Robot, meshes: Meshes) -> None:
-        """Adds the frames and the surfaces; `place` moves them."""
+    def __init__(self, scene: viser.SceneApi, robot: Robot, looks: list[Look]) -> None:
+        """Adds the frames and what they carry; `place` moves them."""
         self._scene, self._robot = scene, robot
-        self._surfaces = surfaces(robot, meshes)
-        self._frames = [
-            # A slash in a name would make it a child of another link.
-            scene.add_frame(f"/robot/{link.replace('/', '|')}", show_axes=False)
-            for link in robot.all_link_names
-        ]
+        self._frames = {
+            link: scene.add_frame(f"/robot/{node_name(link)}", show_axes=False) for link in robot.all_link_names
+        }
         self._poses = np.full((len(self._frames), 4, 4), np.nan)
-        self._bodies = [handle for surface, handle in self._draw() if surface.is_body]
+        self._looks = looks
+        for i, look in enumerate(looks):
+            scene.add_glb(f"{self._frames[look.link].name}/look_{i}", look.scene.export(file_type="glb"))
+        seen = {look.link for look in looks}
+        bodies = [body for body in robot.bodies if getattr(body.shape, "radius", 1.0)]  # a rod without has no surface
+        self._naked = [body for body in bodies if body.link not in seen]
+        for i, body in enumerate(self._naked):
+            self._draw(f"body_{i}", body, LINKS[1])  # one colour: neighbours overlap at their joint
+        covers = [body for body in bodies if body.link in seen]
+        self._covers = [
+            self._draw(f"cover_{i}", body, SKY, opacity=_TRANSLUCENT, visible=False) for i, body in enumerate(covers)
+        ]
         self._ghosts: list[Any] = []
 
-    def _draw(self) -> Iterator[tuple[Surface, viser.MeshHandle]]:
-        frames = dict(zip(self._robot.all_link_names, self._frames, strict=True))
-        for i, surface in enumerate(self._surfaces):
-            yield surface, self._scene.add_mesh_simple(
-                f"{frames[surface.link].name}/{i}", **surface.mesh(), color=surface.color, side="double",
-                opacity=_TRANSLUCENT if surface.is_body else None, visible=not surface.is_body,
-            )  # fmt: skip
+    def _draw(self, name: str, body: Body, color: str, **how: Any) -> viser.MeshHandle:
+        vertices, faces, flat = _mesh(body)
+        path = f"{self._frames[body.link].name}/{name}"
+        return self._scene.add_mesh_simple(
+            path, vertices, faces, color=rgb(color), flat_shading=flat, side="double", **how
+        )
+
+    def bounds(self, q: Array) -> tuple[Array, Array]:
+        """Returns the least and the greatest coordinates (3,) of links and what is seen of them at `q` (n,)."""
+        poses = dict(zip(self._frames, self._robot.all_link_poses(q), strict=True))
+        points = [pose[:3, 3:].T for pose in poses.values()]
+        for look in self._looks:
+            corners = np.stack(np.meshgrid(*look.scene.bounds.T), axis=-1).reshape(-1, 3)
+            points.append(corners @ poses[look.link][:3, :3].T + poses[look.link][:3, 3])
+        every = np.concatenate(points)
+        return every.min(axis=0), every.max(axis=0)
+
+    @property
+    def has_covers(self) -> bool:
+        """Whether there are bodies that `show_bodies` shows."""
+        return bool(self._covers)
 
     def show_bodies(self, shown: bool) -> None:
-        """Shows or hides the bodies around the meshes."""
-        for handle in self._bodies:
+        """Shows or hides the bodies around what is seen."""
+        for handle in self._covers:
             handle.visible = shown
 
     def place(self, q: Array) -> None:
         """Moves the links that `q` (n,) moves."""
         poses = self._robot.all_link_poses(q)
         moved = np.flatnonzero((poses != self._poses).any(axis=(1, 2)))
-        quaternions = wxyz(poses[moved])
-        for i, quaternion in zip(moved, quaternions, strict=True):
-            self._frames[i].wxyz = quaternion
-            self._frames[i].position = poses[i, :3, 3]
+        frames = list(self._frames.values())
+        for i, quaternion in zip(moved, wxyz(poses[moved]), strict=True):
+            frames[i].wxyz = quaternion
+            frames[i].position = poses[i, :3, 3]
         self._poses = poses
 
     def show_ghosts(self, configurations: Array) -> None:
@@ -109,20 +96,30 @@ class Links:
         if not len(configurations):
             return
         poses = np.array([self._robot.all_link_poses(q) for q in configurations])
-        for i, surface in enumerate(self._surfaces):
-            if surface.is_body:
-                continue
-            places = poses[:, self._robot.all_link_names.index(surface.link)]
+        looks = [(look.link, look.scene.to_mesh()) for look in self._looks]
+        meshes = [(link, mesh.vertices, mesh.faces) for link, mesh in looks]
+        meshes += [(body.link, *_mesh(body)[:2]) for body in self._naked]
+        for i, (link, vertices, faces) in enumerate(meshes):
+            places = poses[:, self._robot.all_link_names.index(link)]
             ghosts = self._scene.add_batched_meshes_simple(
-                f"/ghosts/{i}", **surface.mesh(), batched_wxyzs=wxyz(places), batched_positions=places[:, :3, 3],
+                f"/ghosts/{i}", vertices, faces, batched_wxyzs=wxyz(places), batched_positions=places[:, :3, 3],
                 batched_colors=rgb(SKY), opacity=_TRANSLUCENT, lod="off", cast_shadow=False,
             )  # fmt: skip
             self._ghosts.append(ghosts)
 
 
-def soup(triangles: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Returns vertices (3 t, 3) and faces (t, 3) of triangles (t, 3, 3)."""
-    return triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+def _mesh(body: Body) -> tuple[Array, NDArray[np.int64], bool]:
+    """Returns vertices and faces of a body, and whether faces are flat: light falls smoothly on shared corners."""
+    vertices, faces = soup(body.shape.triangles)
+    if not isinstance(body.shape, _SMOOTH):
+        return vertices, faces, True
+    _, first, corners = np.unique(vertices.round(_SAME), axis=0, return_index=True, return_inverse=True)
+    return vertices[first], corners.reshape(-1, 3), False
+
+
+def node_name(name: str) -> str:
+    """Returns a name for the scene; a slash would make it a child of another node."""
+    return name.replace("/", "|")
 
 
 def wxyz(poses: Array) -> Array:

@@ -7,18 +7,19 @@ import html
 import logging
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from .._arguments import require, require_one_tip
+from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from .._needs import library
 from .._scene import Scene
 from . import start
 from .address import free_port
-from .arm import DT, FOLLOWS, Arm
-from .checks import configuration, inside_limits, path_points, target_pose
+from .arm import DT, Arm
+from .checks import configuration, inside_limits, path_points, target_poses
+from .looks import looks
 from .page import Page
 from .parts import Parts
 from .worker import Request, Worker
@@ -54,9 +55,10 @@ def view(
     """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
 
     The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
-    clear. The page has sliders for the joints, all solutions, the self-motion, and plays motions back. Meshes are those
-    that `robot.collision_meshes()` reads; links without them show their bodies, and a robot without bodies gets
-    capsules along its links. In a notebook the viewer shows inline.
+    clear. One with several tips has a handle for each, and follows them as `solve` does. The page has sliders for the
+    joints, all solutions, the self-motion, and plays motions back. Links look as `robot.visuals` says where files are
+    found, otherwise like their collision meshes or bodies; a robot without bodies gets capsules along its links. In a
+    notebook the viewer shows inline.
 
     Args:
         robot: the robot.
@@ -106,9 +108,8 @@ class Viewer:
     ) -> None:
         """Serves the page; `view` describes the arguments."""
         require("robot", robot, Robot)
-        require_one_tip("view", robot)
-        meshes, missing = start.meshes(robot)
-        self.robot, notes = start.shown(robot, has_meshes=bool(meshes))
+        seen, missing = looks(robot)
+        self.robot, notes = start.shown(robot, has_meshes=bool(seen))
         scene = list(Scene(() if obstacles is None else obstacles))
         begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
         line = None if path is None else path_points(path)
@@ -117,16 +118,16 @@ class Viewer:
         self.server: viser.ViserServer = module.ViserServer(host=host, port=port, label=robot.name, verbose=False)
         self.url = f"http://{f'[{host}]' if ':' in host else host}:{port}"
         self._lock = threading.RLock()
-        self._closed = threading.Event()
-        self._callbacks: list[Callable[[Array], object]] = []
+        self._closed, self._first_close = threading.Event(), threading.Lock()
+        self._callbacks: list[Callable[[Any], object]] = []
         self._arm = Arm(self.robot, begin, scene)
-        self._told = self._arm.target
+        self._told = self._arm.targets
         self._moves = False
         self._last_tick = time.monotonic()
         self._worker = Worker(self._work, DT)
         try:
             page = Page(self.server, self._arm, self._worker.ask, start.length(self.robot))
-            self._parts = Parts(page, meshes, [*missing, *notes])
+            self._parts = Parts(page, seen, [*missing, *notes])
             if line is not None:
                 self._parts.draw_path(line)
             self._worker.start()
@@ -153,14 +154,18 @@ class Viewer:
         self._change(lambda: self._arm.put(checked))
 
     @property
-    def target(self) -> Array:
-        """The pose (4, 4) of the handle, which the arm follows. A position (3,) (m) keeps its orientation."""
-        return self._arm.target
+    def target(self) -> Any:
+        """The pose (4, 4) of the handle, which the arm follows. A position (3,) (m) keeps its orientation.
+
+        Of a robot with several tips a dict of poses by their names; those that are not set stay.
+        """
+        targets = self._arm.targets
+        return dict(targets) if len(targets) > 1 else targets[self.robot.tips[0]]
 
     @target.setter
-    def target(self, target: ArrayLike) -> None:
-        checked = target_pose(target, self._arm.target)
-        self._change(lambda: setattr(self._arm, "target", checked))
+    def target(self, target: ArrayLike | Mapping[str, ArrayLike]) -> None:
+        checked = target_poses(target, self._arm.targets)
+        self._change(lambda: setattr(self._arm, "targets", checked))
 
     @property
     def obstacles(self) -> Scene:
@@ -174,7 +179,7 @@ class Viewer:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the handle: "track", "solve" or "off".
+        """How the arm follows the handle: "track", "solve" or "off"; one with several tips by "solve" or "off".
 
         "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
         and the handle stays where it is.
@@ -183,8 +188,9 @@ class Viewer:
 
     @follow.setter
     def follow(self, follow: Follow) -> None:
-        if follow not in FOLLOWS:
-            raise InvalidInputError(f"follow must be one of {', '.join(map(repr, FOLLOWS))}, got {follow!r:.60}")
+        if follow not in self._arm.follows:
+            known = ", ".join(map(repr, self._arm.follows))
+            raise InvalidInputError(f"follow must be one of {known}, got {follow!r:.60}")
         self._change(lambda: setattr(self._arm, "follow", follow))
 
     @property
@@ -210,8 +216,8 @@ class Viewer:
         """
         self._change(lambda: self._parts.show(result))
 
-    def on_target(self, callback: Callable[[Array], object]) -> None:
-        """Has `callback(target)` called with each new pose (4, 4) of the handle, in the thread of the viewer.
+    def on_target(self, callback: Callable[[Any], object]) -> None:
+        """Has `callback(target)` called with each new `target`, in the thread of the viewer.
 
         While it runs, the arm waits; what it raises is logged and shown on the page.
         """
@@ -229,10 +235,9 @@ class Viewer:
 
     def close(self) -> None:
         """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
-        with self._lock:
-            if self._closed.is_set():
-                return
-            self._closed.set()
+        if not self._first_close.acquire(blocking=False):  # never released
+            return
+        self._closed.set()
         atexit.unregister(self.close)
         self._worker.close()
         self.server.stop()
@@ -256,13 +261,15 @@ class Viewer:
                 self._parts.report.problem = ""
             for request in requests:
                 self._guarded(request)
+            if self._closed.is_set():  # meanwhile
+                return False
             self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
             self._guarded(partial(self._parts.refresh, moving=self._moves))
-            target = self._arm.target
-        if target is not self._told:
-            self._told = target
+            targets = self._arm.targets
+        if targets is not self._told:
+            self._told = targets
             for callback in self._callbacks:
-                self._guarded(partial(callback, target))
+                self._guarded(partial(callback, self.target))
         return self._moves
 
     def _guarded(self, action: Callable[[], object]) -> object:
@@ -272,6 +279,8 @@ class Viewer:
         except BeetleIkError as error:
             problem = str(error)
         except Exception as error:  # of a callback
+            if self._closed.is_set():
+                return None  # there is no page to show anything on
             _log.exception("an error in the viewer of '%s'", self.robot.name)
             problem = f"{type(error).__name__}: {error}"
         self._parts.report.problem = problem

@@ -6,6 +6,8 @@ from collections.abc import Callable, Collection
 
 Request = Callable[[], None]
 
+_PATIENCE = 0.1  # s
+
 
 class Worker:
     """A thread that works off requests, at most once a tick, and goes on ticking while there is motion.
@@ -36,12 +38,15 @@ class Worker:
             self._changed.notify()
 
     def close(self) -> None:
-        """Ends the thread, and waits for it unless it is the caller. Requests that still wait are dropped."""
+        """Ends the thread, and waits a moment for it, unless it is the caller. Requests that still wait are dropped.
+
+        A search that the thread is in the middle of goes on without anyone waiting for it, and its result is dropped.
+        """
         with self._changed:
             self._closed = True
             self._changed.notify()
         if threading.current_thread() is not self._thread:
-            self._thread.join()
+            self._thread.join(_PATIENCE)
 
     def _run(self) -> None:
         due, moving = time.monotonic(), False

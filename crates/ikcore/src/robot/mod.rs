@@ -18,6 +18,7 @@
 //! | `mobile_base` | a robot on a base that moves |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
+//! | `visual` | how links look |
 //! | `serialization` | robots as bytes |
 
 mod arms;
@@ -45,6 +46,7 @@ mod serialization;
 mod stance;
 mod tip_chain;
 mod tips;
+mod visual;
 
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
@@ -59,6 +61,7 @@ pub(crate) use links::FrameBuffer;
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;
+pub use visual::{Visual, VisualShape};
 
 pub use off_chain::HeldJoint;
 pub(crate) use off_chain::{OffChain, OffChainLink};

@@ -13,6 +13,7 @@ use super::pair_rule::PairRule;
 use super::parts::Parts;
 use super::stance::Stance;
 use super::tip_chain::TipChains;
+use super::visual::Visual;
 use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
@@ -339,6 +340,18 @@ impl Robot {
     pub(crate) fn with_stances(&self, stances: Vec<Stance>) -> Self {
         let mut robot = self.clone();
         robot.parts.stances = stances;
+        robot
+    }
+
+    /// The visual shapes of a URDF.
+    pub fn visuals(&self) -> &[Visual] {
+        &self.parts.visuals
+    }
+
+    /// The same robot with these visual shapes.
+    pub(crate) fn with_visuals(&self, visuals: Vec<Visual>) -> Self {
+        let mut robot = self.clone();
+        robot.parts.visuals = visuals;
         robot
     }
 

@@ -9,6 +9,7 @@ use super::description::Description;
 use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::stance::Stance;
+use super::visual::Visual;
 use crate::error::Result;
 use crate::math::Pose;
 
@@ -30,6 +31,7 @@ pub(crate) struct Parts {
     pub stances: Vec<Stance>,
     /// Links of further tips, beside that at the end of the chain.
     pub tips: Vec<String>,
+    pub visuals: Vec<Visual>,
 }
 
 impl Parts {
@@ -46,6 +48,7 @@ impl Parts {
             may_touch: vec![],
             stances: vec![],
             tips: vec![],
+            visuals: vec![],
         }
     }
 
@@ -72,6 +75,6 @@ pub(super) struct PartsOfOneTip {
 impl From<PartsOfOneTip> for Parts {
     fn from(stored: PartsOfOneTip) -> Self {
         let PartsOfOneTip { description, off_chain, base, tool, bodies, pairs, may_touch, stances } = stored;
-        Self { description, off_chain, base, tool, bodies, pairs, may_touch, stances, tips: vec![] }
+        Self { description, off_chain, base, tool, bodies, pairs, may_touch, stances, tips: vec![], visuals: vec![] }
     }
 }

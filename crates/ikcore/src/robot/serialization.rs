@@ -20,6 +20,9 @@ impl Robot {
     /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, of another type, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let robot = Self::assembled(stored::from_bytes_of_any::<Parts, PartsOfOneTip>("robot", bytes)?)?;
+        for visual in robot.visuals() {
+            robot.link_number(&visual.link)?;
+        }
         for body in robot.bodies() {
             robot.link_number(&body.link)?;
             if !body.shape.can_be_carried() {

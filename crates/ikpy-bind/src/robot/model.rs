@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use ikcore::load::read_link_mesh;
-use ikcore::robot::Robot;
-use numpy::PyArray1;
+use ikcore::nalgebra::{Matrix4, Vector3};
+use ikcore::robot::{Robot, Visual, VisualShape};
+use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyString, PyTuple};
 
 use super::body::PyBody;
-use crate::convert::{copied, counted, row};
+use crate::convert::{copied, counted, matrix4_array, row};
 use crate::error::raise;
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
@@ -23,6 +24,21 @@ use crate::tips::TipKeys;
 
 /// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
+
+/// (link, shape or file, placement (4, 4), colour (4,)).
+type VisualParts<'py> = (String, Py<PyAny>, Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray1<f64>>>);
+
+fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'py>> {
+    let (shape, placement) = match &visual.shape {
+        VisualShape::Solid(shape) => (wrapped(py, shape)?, Matrix4::identity()),
+        VisualShape::Mesh { path, scale, origin } => {
+            let scale = Matrix4::new_nonuniform_scaling(&Vector3::from(*scale));
+            (PyString::new(py, path).into_any().unbind(), origin.to_homogeneous() * scale)
+        }
+    };
+    let color = visual.color.map(|color| copied(py, &color));
+    Ok((visual.link.clone(), shape, matrix4_array(py, &placement)?, color))
+}
 
 /// A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
 /// Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
@@ -194,6 +210,14 @@ impl PyRobot {
     #[getter]
     fn unread_collision_shapes(&self) -> Vec<String> {
         self.core.unread_collision_shapes().to_vec()
+    }
+
+    /// The visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of `bik.obstacles`, or the
+    /// path of a mesh file, as the URDF names it where it was not found; the placement takes it to the frame of the link, to scale.
+    /// Colours are red, green, blue and opacity, from 0 to 1; materials of the file come before them.
+    #[getter]
+    fn visuals<'py>(&self, py: Python<'py>) -> PyResult<Vec<VisualParts<'py>>> {
+        self.core.visuals().iter().map(|visual| visual_parts(py, visual)).collect()
     }
 
     /// Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without

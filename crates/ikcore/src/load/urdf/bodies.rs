@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 
 use super::document::Document;
-use super::link_capsules::{CollisionMesh, Primitive};
+use super::link_capsules::{Primitive, UrdfMesh};
 use super::package::Packages;
 use crate::error::{Error, Result, shortened};
 use crate::load::cover_cache::covered_mesh;
@@ -63,7 +63,7 @@ pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, pa
     Ok(bodies)
 }
 
-impl CollisionMesh {
+impl UrdfMesh {
     /// The mesh in the file at `path`.
     fn at(&self, path: &Path) -> LinkMesh {
         let path = path.display().to_string();
@@ -72,7 +72,7 @@ impl CollisionMesh {
 }
 
 /// Adds the hull of a mesh, or the capsules that cover it.
-fn add_mesh(bodies: &mut Bodies, mesh: &CollisionMesh, path: &Path, wanted: CollisionShapes) -> Result<()> {
+fn add_mesh(bodies: &mut Bodies, mesh: &UrdfMesh, path: &Path, wanted: CollisionShapes) -> Result<()> {
     let hull = if wanted == CollisionShapes::Hulls { hull(mesh, path)? } else { None };
     if let Some(hull) = hull {
         bodies.push(hull);
@@ -85,8 +85,8 @@ fn add_mesh(bodies: &mut Bodies, mesh: &CollisionMesh, path: &Path, wanted: Coll
 }
 
 /// The convex hull of a mesh; `None` for a mesh in a plane, which has none.
-fn hull(mesh: &CollisionMesh, path: &Path) -> Result<Option<Body>> {
-    let CollisionMesh { link, file, scale, origin } = mesh;
+fn hull(mesh: &UrdfMesh, path: &Path) -> Result<Option<Body>> {
+    let UrdfMesh { link, file, scale, origin } = mesh;
     let shape = read_mesh(path, *scale)?;
     let Geometry::Mesh(triangles) = shape.geometry() else { return Ok(None) };
     let body = |shape| Body { link: link.clone(), shape, source: BodySource::Mesh(file.clone()) };
@@ -94,8 +94,8 @@ fn hull(mesh: &CollisionMesh, path: &Path) -> Result<Option<Body>> {
 }
 
 /// Capsules that cover a mesh, and how well.
-fn fitted(mesh: &CollisionMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
-    let CollisionMesh { link, file, scale, origin } = mesh;
+fn fitted(mesh: &UrdfMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
+    let UrdfMesh { link, file, scale, origin } = mesh;
     let cover = covered_mesh(path, *scale, MOST)?;
     let bodies = cover.shapes.iter().map(|shape| {
         let (a, b, radius) = shape.enclosing_capsule();
@@ -108,8 +108,8 @@ fn fitted(mesh: &CollisionMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
 }
 
 /// The file of a mesh.
-fn found(mesh: &CollisionMesh, packages: &Packages) -> Result<PathBuf> {
-    let CollisionMesh { link, file, .. } = mesh;
+fn found(mesh: &UrdfMesh, packages: &Packages) -> Result<PathBuf> {
+    let UrdfMesh { link, file, .. } = mesh;
     packages.find(file).map_err(|looked| {
         let places = looked.iter().map(|place| place.display().to_string()).take(3).collect::<Vec<_>>().join(", ");
         let problem = format!(

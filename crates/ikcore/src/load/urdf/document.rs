@@ -1,12 +1,13 @@
-//! URDF text as a checked list of links and joints. Ignores everything else but collision shapes.
+//! URDF text as a checked list of links and joints. Ignores everything else but collision and visual shapes.
 
 use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
 use super::link_capsules::{self, LinkCapsules};
-use super::xml;
+use super::{visuals, xml};
 use crate::error::{Error, Result, shortened, suggestion};
+use crate::robot::Visual;
 
 /// A checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
 pub(super) struct Document {
@@ -19,6 +20,7 @@ pub(super) struct Document {
     joint_lines: Vec<u32>,
     /// Collision shapes of each link, by name.
     pub(super) capsules: HashMap<String, LinkCapsules>,
+    pub(super) visuals: Vec<Visual>,
 }
 
 /// A joint as the text describes it, with the defaults of URDF filled in.
@@ -103,7 +105,7 @@ impl Document {
         }
         let joint_lines = xml::lines(&text, xml::children(root, "joint"));
         let joint_numbers = joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
-        Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules })
+        Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules, visuals: visuals::read(root) })
     }
 
     /// Index of the joint of this name.

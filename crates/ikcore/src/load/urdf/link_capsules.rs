@@ -30,12 +30,12 @@ pub(super) struct Primitive {
 pub(super) struct UnreadShape {
     /// In words, such as "a mesh of link 'hand'".
     pub(super) name: String,
-    pub(super) mesh: Option<CollisionMesh>,
+    pub(super) mesh: Option<UrdfMesh>,
 }
 
 /// A mesh of a link, in a file.
 #[derive(Debug, Clone)]
-pub(super) struct CollisionMesh {
+pub(super) struct UrdfMesh {
     pub(super) link: String,
     /// As it is written in the URDF.
     pub(super) file: String,
@@ -63,7 +63,7 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
 }
 
 /// A shape at `origin` in its link; `None` for unknown shapes, and for sizes that cannot be read.
-fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primitive> {
+pub(super) fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primitive> {
     let (half, radius) = axis(shape)?;
     let [a, b] = [-1.0, 1.0].map(|sign| (origin * Point3::from(sign * half)).coords.into());
     let (center, turn) = (origin.translation.vector.into(), origin.rotation);
@@ -76,10 +76,10 @@ fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primitive> {
 }
 
 /// A mesh with its place; `None` for other shapes, and for a mesh whose attributes cannot be read.
-fn mesh(link: &str, collision: Node, shape: Node) -> Option<CollisionMesh> {
+pub(super) fn mesh(link: &str, element: Node, shape: Node) -> Option<UrdfMesh> {
     let file = shape.attribute("filename").filter(|_| shape.tag_name().name() == "mesh")?;
     let scale = xml::vector(shape, "scale", "scale").ok()?.unwrap_or([1.0; 3]);
-    Some(CollisionMesh { link: link.into(), file: file.into(), scale, origin: origin(collision)? })
+    Some(UrdfMesh { link: link.into(), file: file.into(), scale, origin: origin(element)? })
 }
 
 /// Half of the axis, and the radius, of the capsule that encloses a shape at the origin; `None` for unknown shapes.
@@ -107,8 +107,8 @@ fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
 }
 
 /// Pose of the shape in its link; `None` if it cannot be read.
-fn origin(collision: Node) -> Option<Pose> {
-    let Some(origin) = xml::children(collision, "origin").next() else { return Some(Pose::identity()) };
+pub(super) fn origin(element: Node) -> Option<Pose> {
+    let Some(origin) = xml::children(element, "origin").next() else { return Some(Pose::identity()) };
     let xyz = xml::vector(origin, "xyz", "xyz").ok()?.unwrap_or_default();
     let rpy = xml::vector(origin, "rpy", "rpy").ok()?;
     if rpy.is_none() && origin.has_attribute("quat_xyzw") {

@@ -9,6 +9,7 @@ use super::chain;
 use super::document::Document;
 use super::package::Packages;
 use super::tree::Tree;
+use super::visuals;
 use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
 
@@ -85,6 +86,8 @@ impl Robot {
         let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
         let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
         let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
+        let visuals = visuals::of(&document.visuals, &robot, &packages);
+        let robot = robot.with_visuals(visuals);
         let robot = match &options.hold[..] {
             [] => robot,
             hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,

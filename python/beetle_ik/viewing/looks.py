@@ -1,0 +1,111 @@
+"""How the links of a robot look: their visual meshes, read by trimesh with their materials."""
+
+from __future__ import annotations
+
+from itertools import cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .._core import BeetleIkError
+from .._needs import library
+from .._style import LINKS, rgb
+from .._surface import simplified
+from .._text import counted
+
+if TYPE_CHECKING:
+    import trimesh
+    from numpy.typing import NDArray
+
+    from .._core import Obstacle, Robot
+
+    Array = NDArray[np.float64]
+    Color = tuple[int, ...]
+
+_MOST = 100_000  # triangles of a mesh
+
+
+class Look(NamedTuple):
+    """What is seen of a link: a scene of trimesh in its frame."""
+
+    link: str
+    scene: trimesh.Scene
+
+
+def looks(robot: Robot) -> tuple[list[Look], list[str]]:
+    """Returns how the links look, and sentences about files that are missing or broken.
+
+    These are the visual shapes; for links without one, meshes of collision shapes.
+    """
+    colors: dict[str, Color] = dict(zip(robot.all_link_names, cycle(map(rgb, LINKS)), strict=False))
+    made, missing, notes = [], [], []
+    for link, shape, placement, color in robot.visuals:
+        if isinstance(shape, str) and not Path(shape).is_file():
+            missing.append(shape)
+            continue
+        try:
+            scene = _read(shape) if isinstance(shape, str) else _surface(shape)
+            scene.apply_transform(placement)
+            _paint(scene, colors[link] if color is None else tuple(np.round(255 * color).astype(int).tolist()))
+        except Exception as error:  # the parsers raise whatever comes up
+            notes.append(f"cannot read '{shape}': {error}")
+            continue
+        if not scene.is_empty:
+            made.append(Look(link, scene))
+    if missing:
+        notes.append(f"{counted(len(missing), 'file')} of visual meshes not found, such as {missing[0]}")
+    try:
+        collision_meshes = robot.collision_meshes()
+    except BeetleIkError as error:  # a file that has gone
+        return made, [*notes, str(error)]
+    seen = {look.link for look in made}
+    for link, mesh in collision_meshes:
+        if link not in seen:
+            scene = _surface(mesh)
+            _paint(scene, colors[link])
+            made.append(Look(link, scene))
+    return made, notes
+
+
+def _read(file: str) -> trimesh.Scene:
+    """Returns the content of a mesh file, in metres."""
+    scene: trimesh.Scene = library("trimesh", "trimesh", "the viewer", extra="view").load_scene(file)
+    return scene if scene.units is None else scene.convert_units("meters")  # COLLADA says what its units are
+
+
+def _surface(shape: Obstacle) -> trimesh.Scene:
+    from trimesh import Scene, Trimesh
+
+    return Scene(Trimesh(*soup(shape.triangles)))
+
+
+def _paint(scene: trimesh.Scene, color: Color) -> None:
+    """Gives meshes without a material this colour, shows both sides of all, and makes large ones smaller."""
+    from trimesh import Trimesh
+    from trimesh.visual import TextureVisuals
+    from trimesh.visual.material import PBRMaterial, SimpleMaterial
+
+    for name, mesh in list(scene.geometry.items()):
+        if not isinstance(mesh, Trimesh):  # lines and points
+            scene.delete_geometry(name)
+            continue
+        visual: Any = mesh.visual
+        material = getattr(visual, "material", None)
+        if not visual.defined:
+            mode = "OPAQUE" if color[3:] in ((), (255,)) else "BLEND"
+            material = PBRMaterial(baseColorFactor=color, metallicFactor=0.0, roughnessFactor=1.0, alphaMode=mode)
+            mesh.visual = TextureVisuals(material=material)
+        elif isinstance(material, SimpleMaterial):
+            material = visual.material = material.to_pbr()
+        if isinstance(material, PBRMaterial):
+            material.doubleSided = True
+        if len(mesh.faces) > _MOST:
+            small = Trimesh(*soup(simplified(mesh.triangles, _MOST)))
+            small.visual = TextureVisuals(material=material)
+            scene.geometry[name] = small
+
+
+def soup(triangles: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Returns vertices (3 t, 3) and faces (t, 3) of triangles (t, 3, 3)."""
+    return triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
