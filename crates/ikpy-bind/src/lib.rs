@@ -27,6 +27,7 @@ mod solve_all;
 mod solve_arguments;
 mod solver;
 mod task;
+mod tip_keys;
 mod tips;
 mod tracking;
 mod trajectory;

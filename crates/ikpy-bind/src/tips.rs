@@ -1,37 +1,17 @@
-//! Targets of several tips: dicts whose keys are names of tips, or pairs of them.
-
-use std::sync::Arc;
+//! Targets of several tips: dicts by [`TipKeys`].
 
 use ikcore::ik::SolveOptions;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Subject, TargetRow, Task, TipError, TipTask, Tolerance};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
+use pyo3::types::{PyBytes, PyDict};
 
-use crate::convert::summary;
 use crate::error::{invalid, raise};
 use crate::pickling;
 use crate::robot::PyRobot;
 use crate::task::read_task;
-
-/// The name of a tip, or of a tip and the one that is seen from it.
-pub type TipKey = Vec<String>;
-
-/// What the targets of a call are for.
-#[derive(Debug, Clone)]
-pub struct TipKeys(Arc<[TipKey]>);
-
-impl TipKeys {
-    /// The tips of a robot.
-    pub fn of(robot: &Robot) -> Self {
-        Self(robot.tips().map(|tip| vec![tip.to_owned()]).collect())
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &TipKey> {
-        self.0.iter()
-    }
-}
+use crate::tip_keys::{TipKey, TipKeys, in_words, key_object, read_key, subject, tips_in_words};
 
 /// A target for the only tip, or one for each of some tips.
 pub enum Asked<T> {
@@ -280,44 +260,6 @@ fn of_each<'py>(
         each[place] = Some(value);
     }
     Ok(each)
-}
-
-fn read_key(what: &str, key: &Bound<'_, PyAny>) -> PyResult<TipKey> {
-    let names = match (key.cast::<PyString>(), key.cast::<PyTuple>()) {
-        (Ok(_), _) => key.extract::<String>().map(|name| vec![name]),
-        (_, Ok(pair)) if pair.len() == 2 => pair.extract::<Vec<String>>(),
-        _ => Err(invalid(String::new())),
-    };
-    let wrong =
-        |_| invalid(format!("keys of {what} are names of tips, or pairs of them (from, of), got {}", summary(key)));
-    names.map_err(wrong)
-}
-
-fn subject(robot: &Robot, key: &TipKey) -> PyResult<Subject> {
-    let number = |name: &String| robot.tip_number(name).map_err(raise);
-    match &key[..] {
-        [tip] => number(tip).map(Subject::Tip),
-        [from, of, ..] => Ok(Subject::Pair { from: number(from)?, of: number(of)? }),
-        [] => Err(invalid("a key without a tip".into())),
-    }
-}
-
-fn key_object<'py>(py: Python<'py>, key: &TipKey) -> PyResult<Bound<'py, PyAny>> {
-    match &key[..] {
-        [tip] => Ok(PyString::new(py, tip).into_any()),
-        names => Ok(PyTuple::new(py, names)?.into_any()),
-    }
-}
-
-fn in_words(key: &TipKey) -> String {
-    match &key[..] {
-        [tip] => format!("'{tip}'"),
-        names => format!("('{}')", names.join("', '")),
-    }
-}
-
-fn tips_in_words(robot: &Robot) -> String {
-    robot.tips().map(|tip| format!("'{tip}'")).collect::<Vec<_>>().join(", ")
 }
 
 /// The errors of what was `asked` at the configurations `qs` (m, n); `targets` returns those of a row.

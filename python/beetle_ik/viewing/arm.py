@@ -37,7 +37,6 @@ class Arm:
     """A robot, its configuration, a target for each tip, the obstacles around it, and how it follows the targets.
 
     Attributes:
-        follows: the ways in which it can follow.
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
         moves: whether it is under way to the target.
@@ -50,10 +49,9 @@ class Arm:
         self.q = q
         self.outcome: Step | Solution | None = None
         self.moves = self.stays = False
-        self.follows = FOLLOWS if len(robot.tips) == 1 else FOLLOWS[1:]  # a tracker takes robots with one tip
         self._targets = self.tips_at(q)
         self._obstacles = obstacles
-        self._follow = self.follows[0]
+        self._follow: Follow = "track"
         self._part: Part = "pose" if robot.dof >= 6 * len(robot.tips) else "position"
         self._keeps_clear = True
         self._tracker: Tracker | None = None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import pose
-from .arm import PARTS
+from .arm import FOLLOWS, PARTS
 from .page import set_value
 from .surfaces import node_name, wxyz
 
@@ -29,7 +29,7 @@ class Handles:
         gui = page.server.gui
         self._handles = [_Handle(page, tip) for tip in arm.targets]
         self._part = gui.add_dropdown("what counts", PARTS, initial_value=arm.part)
-        self._follow = gui.add_dropdown("the arm follows", arm.follows, initial_value=arm.follow)
+        self._follow = gui.add_dropdown("the arm follows", FOLLOWS, initial_value=arm.follow)
         self._clear = gui.add_checkbox("keep clear", arm.keeps_clear, hint="of obstacles, and of the arm's own links")
         solve = gui.add_button("Solve", hint="jump to a solution, where following comes to no end")
         back = gui.add_button("Handle to the tip" if len(self._handles) == 1 else "Handles to the tips")

@@ -70,7 +70,7 @@ class Report:
     def _tips(self) -> list[str]:
         """Returns a line for each of several tips."""
         arm = self._page.arm
-        if len(arm.targets) == 1 or not isinstance(arm.outcome, Solution):
+        if len(arm.targets) == 1 or arm.outcome is None:
             return []
         escaped = [(html.escape(str(tip), quote=True), errors) for tip, errors in arm.outcome.errors.items()]
         return [f"{tip}: <span data-beetle-ik='{tip}'>{_errors(*errors)}</span>" for tip, errors in escaped]

@@ -17,7 +17,7 @@ from .._needs import library
 from .._scene import Scene
 from . import start
 from .address import free_port
-from .arm import DT, Arm
+from .arm import DT, FOLLOWS, Arm
 from .checks import configuration, inside_limits, path_points, target_poses
 from .looks import looks
 from .page import Page
@@ -55,10 +55,10 @@ def view(
     """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
 
     The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
-    clear. One with several tips has a handle for each, and follows them as `solve` does. The page has sliders for the
-    joints, all solutions, the self-motion, and plays motions back. Links look as `robot.visuals` says where files are
-    found, otherwise like their collision meshes or bodies; a robot without bodies gets capsules along its links. In a
-    notebook the viewer shows inline.
+    clear. One with several tips has a handle for each. The page has sliders for the joints, all solutions, the
+    self-motion, and plays motions back. Links look as `robot.visuals` says where files are found, otherwise like their
+    collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the viewer shows
+    inline.
 
     Args:
         robot: the robot.
@@ -179,7 +179,7 @@ class Viewer:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the handle: "track", "solve" or "off"; one with several tips by "solve" or "off".
+        """How the arm follows the handle: "track", "solve" or "off".
 
         "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
         and the handle stays where it is.
@@ -188,8 +188,8 @@ class Viewer:
 
     @follow.setter
     def follow(self, follow: Follow) -> None:
-        if follow not in self._arm.follows:
-            known = ", ".join(map(repr, self._arm.follows))
+        if follow not in FOLLOWS:
+            known = ", ".join(map(repr, FOLLOWS))
             raise InvalidInputError(f"follow must be one of {known}, got {follow!r:.60}")
         self._change(lambda: setattr(self._arm, "follow", follow))
 

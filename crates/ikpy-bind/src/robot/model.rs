@@ -20,7 +20,7 @@ use crate::monitor::on_a_thread;
 use crate::obstacle::wrapped;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
-use crate::tips::TipKeys;
+use crate::tip_keys::TipKeys;
 
 /// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);

@@ -20,7 +20,8 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
 use crate::robot::PyRobot;
-use crate::tips::{Asked, TaskArguments, TipErrors, TipKeys, TipSettings, ToleranceArgument, read_tolerance};
+use crate::tip_keys::TipKeys;
+use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
