@@ -46,7 +46,9 @@ fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
 fn slip(robot: &Robot, q: &[f64]) -> f64 {
     let [left, right] = ["left_tool", "right_tool"].map(|tip| robot.link_fk(tip, q).unwrap());
     let away = tray().inverse() * left.inverse() * right;
-    away.translation.vector.norm().max(away.rotation.angle())
+    // The angle of a rotation is known to the root of the rounding only; this is its sine, times the root of 2.
+    let turn = away.rotation.matrix() - away.rotation.matrix().transpose();
+    away.translation.vector.norm().max(0.5 * turn.norm())
 }
 
 /// Limits without rates, with acceleration, and with jerk.
