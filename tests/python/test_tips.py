@@ -209,7 +209,6 @@ CALLS: dict[str, Callable[[], object]] = {
         PAIR, start_q=Q[0], end_q=Q[1], objective="tip_travel"
     ),
     "MujocoPlant": lambda: sim.MujocoPlant(PAIR),
-    "view": lambda: bik.view(PAIR, port=0),
     "self_motion": lambda: bik.self_motion(PAIR, POSES[0, 0]),
     "manipulability": lambda: PAIR.manipulability(Q[0]),
     "with_tool": lambda: PAIR.with_tool(np.eye(4)),
