@@ -286,3 +286,26 @@ fn the_same_stream_gives_the_same_bits() {
     };
     assert_eq!(run(), run());
 }
+
+#[test]
+fn an_arm_that_is_held_comes_to_rest() {
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
+    let start = [0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8];
+    let table = Shape::cuboid([0.5, 0.0, 0.15], [0.5, 0.8, 0.1], None).unwrap();
+    let mut below = robot.fk(&start).unwrap();
+    below.translation.z -= 0.45;
+    for limits in all_limits(&robot) {
+        let options = TrackOptions {
+            surroundings: surroundings(vec![table.clone()]),
+            limits: Some(limits),
+            ..TrackOptions::default()
+        };
+        let mut session = Session::new(&robot, &start, 1.0 / 60.0, &options).unwrap();
+        for _ in 0..600 {
+            session.step(&Target::from(&below), &mut Unattended).unwrap();
+        }
+        assert_eq!(session.step(&Target::from(&below), &mut Unattended).unwrap().status, Status::HeldByObstacle);
+        let fastest = session.qd().iter().fold(0.0, |fastest: f64, rate| fastest.max(rate.abs()));
+        assert!(fastest < 1e-6, "{fastest} rad/s");
+    }
+}

@@ -298,7 +298,9 @@ impl KeptMotion {
         let stop = StopMotion::new(wish.q, &brake, limited);
         let rest: Point = (0..wish.q.len()).map(|j| stop.end(j)).collect();
         let wanted = q.clone();
+        let mut may_stay = false;
         if self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted) {
+            may_stay = wish.limited.is_none() && self.rows.are_kept_at(&brake);
             self.step_beside_rows(wish, q);
         }
         let certified = self.certifies(wish, q) || {
@@ -312,7 +314,9 @@ impl KeptMotion {
                 between(&brake, &best, part, q);
                 self.certifies(wish, q)
             });
-        if !certified {
+        // Otherwise an arm that is held could swing along its self-motion for ever.
+        let stays = may_stay && gets_farther(wish, &brake, q) && self.certifies(wish, &brake);
+        if stays || !certified {
             q.copy_from_slice(&brake);
         }
         *q != wanted
@@ -434,6 +438,14 @@ impl KeptMotion {
 fn beside<'a>(wish: &'a Wish<'a>, towards: Towards) -> Beside<'a> {
     let (lower, upper) = (wish.lower(), wish.upper());
     Beside { robot: wish.robot, aim: wish.aim.as_ref(), lower, upper, towards, holds_pairs: true }
+}
+
+/// Whether the command `q` leaves the task less done than `from` does.
+fn gets_farther(wish: &Wish<'_>, from: &[f64], q: &[f64]) -> bool {
+    wish.aim.as_ref().is_some_and(|aim| {
+        let [before, after] = [from, q].map(|q| aim.assess(wish.robot, q).score);
+        !after.solved && after.value > before.value
+    })
 }
 
 /// The command of the fastest stop.

@@ -70,6 +70,11 @@ impl RowMotion {
         }
     }
 
+    /// Whether `q` keeps all inequalities.
+    pub fn are_kept_at(&self, q: &[f64]) -> bool {
+        self.rows.iter().all(|row| dot(&row.gradient, q) >= row.least)
+    }
+
     /// Writes the point after the step from `start` into `out`.
     pub fn write(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
         self.linearize(step, start);
