@@ -56,16 +56,17 @@ def main() -> None:
     parser.add_argument("--robots", type=Path, help="folder of example-robot-data (default: where it is installed)")
     parser.add_argument("--out", type=Path, default=Path())
     arguments = parser.parse_args()
-    lines = [["robot", "library", "both poses met", "median ms", "95 % ms", "settings"]]
+    lines = [["robot", "library", "both poses met", "median [ms]", "95 % [ms]"]]
     for rig in rigs(arguments.robots or installed()):
         for library, measured in measure(rig, arguments.pairs, arguments.slow).items():
             met = "" if library is OneAfterTheOther else f"{measured.met} / {len(measured.times)}"
             times = [f"{np.percentile(measured.times, share):.3g}" for share in (50, 95)]
-            lines.append([rig.name, library.name, met, *times, library.settings])
-            print(*lines[-1][:5], sep=", ", flush=True)
+            lines.append([rig.name, library.name, met, *times])
+            print(*lines[-1], sep=", ", flush=True)
     arguments.out.mkdir(parents=True, exist_ok=True)
     with (arguments.out / "two_hands.csv").open("w", newline="") as file:
         csv.writer(file).writerows(lines)
+    print(*(f"{library.name}: {library.settings}" for library in LIBRARIES), sep="\n")
 
 
 def installed() -> Path:

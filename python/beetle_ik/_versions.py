@@ -13,7 +13,7 @@ EXTRAS = {
     "report": ["jinja2"],
     "robots": ["robot_descriptions", "xacro"],
     "sim": ["mujoco"],
-    "view": ["viser"],
+    "view": ["pycollada", "trimesh", "viser"],
     "vision": ["scikit-image"],
 }
 """The packages that each extra adds."""
