@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use smallvec::{SmallVec, smallvec};
+use smallvec::SmallVec;
 
 use super::{MAX_DOF, STACK_DOF};
 
@@ -14,7 +14,7 @@ pub struct Columns(SmallVec<[[f64; 6]; STACK_DOF]>);
 impl Default for Columns {
     #[inline]
     fn default() -> Self {
-        Self(smallvec![[0.0; 6]; STACK_DOF])
+        Self(SmallVec::from_buf([[0.0; 6]; STACK_DOF]))
     }
 }
 
