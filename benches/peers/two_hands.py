@@ -17,9 +17,9 @@ import pinocchio as pin
 
 import beetle_ik as bik
 
-from .stepping import DAMPING, LM_DAMPING, QUADRATIC_PROGRAM
+from .local import MAX_STEPS
+from .stepping import DAMPING, LM_DAMPING, QUADRATIC_PROGRAM, Stepping
 
-MAX_STEPS = 200
 TOLERANCE = 1e-6  # m, rad
 Poses = dict[str, np.ndarray]  # (4, 4) by the name of the tip
 
@@ -184,34 +184,21 @@ class OneAfterTheOther(Library):
         return None
 
 
-class Stepping(Library):
-    """A library whose call is one step by a quadratic program, iterated."""
+class Iterated(Library, Stepping):
+    """A library whose call is one step by a quadratic program."""
+
+    _tolerance = TOLERANCE
+    _no_step = Exception  # each library has its own for a program without a solution
 
     def solve(self, wanted: Poses) -> np.ndarray | None:
         self._aim(wanted)
-        for _ in range(MAX_STEPS):
-            if self._error() <= TOLERANCE:
-                return self._configuration()
-            try:
-                self._step()
-            except Exception:
-                return None
-        return None
+        return self._descend()
 
     def _aim(self, wanted: Poses) -> None:
         raise NotImplementedError
 
-    def _error(self) -> float:
-        raise NotImplementedError
 
-    def _step(self) -> None:
-        raise NotImplementedError
-
-    def _configuration(self) -> np.ndarray:
-        raise NotImplementedError
-
-
-class FrameTasks(Stepping):
+class FrameTasks(Iterated):
     """What mink and pink have in common."""
 
     settings = f"one task a hand, {QUADRATIC_PROGRAM}, {MAX_STEPS} steps"
@@ -279,7 +266,7 @@ class Pink(FrameTasks):
         return self._state.q.copy()
 
 
-class Placo(Stepping):
+class Placo(Iterated):
     name = "placo"
     settings = f"KinematicsSolver with joint limits, one soft frame task a hand, {MAX_STEPS} steps"
 

@@ -38,7 +38,7 @@ pub struct BaseLimits {
     pub acceleration: Vec<f64>,
 }
 
-/// Rotation vectors have to be shorter (rad): at one turn their entries stop to move anything.
+/// Rotation vectors have to be shorter (rad): at a full turn the rotation no longer follows all of their entries.
 const LONGEST_VECTOR: f64 = 0.95 * TAU;
 
 impl MobileBase {
