@@ -56,6 +56,12 @@
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
 
+#[cfg(not(target_pointer_width = "64"))]
+compile_error!("ikcore needs a 64-bit processor: seeds, hashes and stored bytes are defined for 64-bit sizes");
+
+#[cfg(not(target_endian = "little"))]
+compile_error!("ikcore needs a little-endian processor: stored bytes and the lanes of its kernels assume that order");
+
 pub mod batch;
 mod closed_form;
 pub mod error;
