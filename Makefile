@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo lint lint-rust lint-python bench coverage docs papers
+.PHONY: help demo test test-rust test-python zoo campaign soak lint lint-rust lint-python bench coverage docs papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
 unexport MAKEFLAGS MFLAGS
@@ -31,6 +31,14 @@ test-python: lint-python
 
 zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
 	$(BIN)/python -m pytest tests/zoo
+
+# Failing cases and counts are in target/campaign/; `python -m campaign table target/campaign/ledger.csv` makes the table.
+campaign: $(VENV)/with-test  ## attacks on every promise: SEED=, and CASES= of each attack or MINUTES= in all (default: 10 minutes)
+	PYTHONPATH=tests $(BIN)/python -m campaign run --seed $(or $(SEED),0) --workers $(or $(WORKERS),2) --out target/campaign \
+	    $(if $(CASES),--cases $(CASES)) $(if $(MINUTES),--minutes $(MINUTES),$(if $(CASES),,--minutes 10))
+
+soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
+	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
 
 lint: lint-rust lint-python  ## formatting, clippy, ruff, types and the docstrings that editors show
 
