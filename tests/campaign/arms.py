@@ -107,7 +107,7 @@ def written(joints: list[Joint], name: str = "robot") -> str:
 
 
 def bounds(joints: list[Joint]) -> tuple[Array, Array]:
-    """Lowest and highest value of each free joint, by the URDF: (n,), a joint that others follow inside their limits too."""
+    """Lowest and highest value of each free joint (n,), by the URDF: those that follow it keep their limits too."""
     lower, upper = (np.full(len(joints), bound) for bound in (-np.inf, np.inf))
     follow = masters(joints)
     factor, offset = _couplings(joints)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zlib
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -28,8 +29,8 @@ class BrokenError(Exception):
 class Attack(ABC):
     """One promise, attacked.
 
-    `draw` makes a case as plain data, `program` writes it as Python, and `judge` looks at the variables that the program
-    leaves. What runs is the text of the program itself, so a failing case is repeated by pasting it.
+    `draw` makes a case as plain data, `program` writes it as Python, and `judge` looks at the variables that it leaves.
+    What runs is the text of the program itself, so a failing case is repeated by pasting it.
     """
 
     name: ClassVar[str]
@@ -54,7 +55,7 @@ class Attack(ABC):
         """
         return 1
 
-    def judge_refusal(self, case: Case, error: Exception) -> None:
+    def judge_refusal(self, case: Case, error: Exception) -> None:  # noqa: B027
         """Checks an exception of `refusals`.
 
         Raises:
@@ -88,17 +89,17 @@ def tried(attack: Attack, case: Case) -> Verdict:
     try:
         exec(compile(HEADER + attack.program(case), f"<{attack.name}>", "exec"), left)
     except attack.refusals as error:
-        return _judged(lambda: attack.judge_refusal(case, error), refused=True)
+        return _judged(attack.judge_refusal, case, error, refused=True)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a panic is no Exception
         return Verdict(1, failure=f"raises {type(error).__name__}", detail=str(error))
-    return _judged(lambda: attack.judge(case, left), refused=False)
+    return _judged(attack.judge, case, left, refused=False)
 
 
-def _judged(judge: Any, *, refused: bool) -> Verdict:
+def _judged(judge: Callable[[Case, Any], int | None], case: Case, outcome: Any, *, refused: bool) -> Verdict:
     try:
-        return Verdict(judge() or 1, refused)
+        return Verdict(judge(case, outcome) or 1, refused)
     except BrokenError as broken:
         return Verdict(1, refused, broken.what, str(broken.detail))
     except Exception as error:

@@ -27,7 +27,7 @@ def shape(random: np.random.Generator, center: Any, extent: float, hard: bool) -
     rpy = (0.0, 0.0, 0.0) if hard and random.random() < 0.3 else arms.triple(random.uniform(-3, 3, 3))
     kind = str(random.choice(KINDS))
     return {
-        "kind": {"is": kind},
+        "kind": kind,
         "center": arms.triple(center),
         "rpy": rpy,
         "size": arms.triple(np.maximum(size, 1e-4)),
@@ -52,7 +52,7 @@ def corners(given: Shape) -> np.ndarray:
 def written(given: Shape) -> str:
     """The expression that makes the obstacle."""
     center, (x, y, z), turn = given["center"], given["size"], rotation(given)
-    match given["kind"]["is"]:
+    match given["kind"]:
         case "sphere":
             return f"bik.obstacles.Sphere({center}, {x})"
         case "box":
@@ -71,7 +71,7 @@ def written(given: Shape) -> str:
 def placed(given: Shape) -> Placed:
     """The shape and its place for coal."""
     x, y, z = given["size"]
-    match given["kind"]["is"]:
+    match given["kind"]:
         case "sphere":
             made = coal.Sphere(x)
         case "box":

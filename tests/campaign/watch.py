@@ -122,7 +122,7 @@ def _kill_late(plan: Plan, workers: list[Worker]) -> None:
 def _replace(
     plan: Plan, ledger: Ledger, selector: selectors.BaseSelector, workers: list[Worker], worker: Worker
 ) -> None:
-    """Counts the case at which a worker ended, and starts another worker behind it; a worker that is through just ends."""
+    """Counts the case at which a worker ended, and starts another one behind it, unless all cases are tried."""
     selector.unregister(worker.process.stdout)  # type: ignore[arg-type]
     code = worker.end()
     workers.remove(worker)

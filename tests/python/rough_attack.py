@@ -1,11 +1,12 @@
 """An attack whose cases end their process, hang, or break a promise."""
 
+# ruff: noqa: ARG002
+
 import os
 import time
 from typing import Any, ClassVar
 
 import numpy as np
-
 from campaign.attack import Attack, BrokenError, Case
 
 

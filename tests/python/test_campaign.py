@@ -6,10 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-
-import beetle_ik as bik
 
 pytest.importorskip("coal")
 pytest.importorskip("pinocchio")
@@ -47,24 +44,76 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
 SPOILED = {
-    "poses": ("poses = poses + 1e-9", "pose differs"),
-    "solved": ("solution = Changed(solution, q=solution.q + 1e-4)", "position_error is not the error"),
-    "out_of_reach": ("solution = Changed(solution, q=solution.q * nan)", "q is not finite"),
-    "complete_sets": ("found = Changed(found, q=found.q[1:])", "a complete set lacks a solution"),
-    "same_bits": ("alone = Changed(alone, q=alone.q + 1e-15)", "other bits by alone"),
-    "budgets": ("seen.append((np.zeros(1), 0.0))", "the budget is not exact"),
-    "tracker_lives": ("log += [('q', tracker.q + 1.0)]", "a command is outside the position limits"),
-    "state_to_state": ("motion = bik.Trajectory(motion.time, motion.coefficients + [1e-4, 0, 0, 0])", "the motion misses its start"),
-    "time_optimal": ("motion = bik.Trajectory(motion.time, 1.1 * motion.coefficients)", "the velocity is beyond its limit"),
-    "trajectories": ("most = [0.5 * rate for rate in most]", "the largest derivative 1 is too small"),
-    "distances": ("distance += 1e-5", "the distance is above the true one"),
-    "clear_solutions": ("every = [Changed(found[0], success=True, q=q) for q in robot.random_configurations(300)]", "a solution is called clear"),
-    "clear_plans": ("c = plan.trajectory.coefficients.copy(); c[..., 0] += 1e-4; plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, c))", "the plan misses its ends"),
-    "clear_ticks": ("ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]", "the clearance of a tick is above the true one"),
-    "urdf": ("pose = pose * nan", "a robot was read whose poses are not finite"),
-    "scene_json": ("again = bik.Scene()", "a saved scene is loaded differently"),
-    "csv": ("again = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]])", "a motion is written and read differently"),
-}  # fmt: skip
+    "poses": (
+        "poses = poses + 1e-9",
+        "pose differs",
+    ),
+    "solved": (
+        "solution = Changed(solution, q=solution.q + 1e-4)",
+        "position_error is not the error",
+    ),
+    "out_of_reach": (
+        "solution = Changed(solution, q=solution.q * nan)",
+        "q is not finite",
+    ),
+    "complete_sets": (
+        "found = Changed(found, q=found.q[1:])",
+        "a complete set lacks a solution",
+    ),
+    "same_bits": (
+        "alone = Changed(alone, q=alone.q + 1e-15)",
+        "other bits by alone",
+    ),
+    "budgets": (
+        "seen.append((np.zeros(1), 0.0))",
+        "the budget is not exact",
+    ),
+    "tracker_lives": (
+        "log += [('q', tracker.q + 1.0)]",
+        "a command is outside the position limits",
+    ),
+    "state_to_state": (
+        "motion = bik.Trajectory(motion.time, motion.coefficients + [1e-4, 0, 0, 0])",
+        "the motion misses its start",
+    ),
+    "time_optimal": (
+        "motion = bik.Trajectory(motion.time, 1.1 * motion.coefficients)",
+        "the velocity is beyond its limit",
+    ),
+    "trajectories": (
+        "most = [0.5 * rate for rate in most]",
+        "the largest derivative 1 is too small",
+    ),
+    "distances": (
+        "distance += 1e-5",
+        "the distance is above the true one",
+    ),
+    "clear_solutions": (
+        "every = [Changed(found[0], success=True, q=q) for q in robot.random_configurations(300)]",
+        "a solution is called clear",
+    ),
+    "clear_plans": (
+        "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
+        "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
+        "the plan misses its ends",
+    ),
+    "clear_ticks": (
+        "ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]",
+        "the clearance of a tick is above the true one",
+    ),
+    "urdf": (
+        "pose = pose * nan",
+        "a robot was read whose poses are not finite",
+    ),
+    "scene_json": (
+        "again = bik.Scene()",
+        "a saved scene is loaded differently",
+    ),
+    "csv": (
+        "again = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]])",
+        "a motion is written and read differently",
+    ),
+}
 
 
 class Changed:

@@ -42,11 +42,11 @@ class Arguments(Attack):
         parameters = callable_names()[name]
         count = min(len(parameters), int(random.integers(2, 4)) if hard else 1)
         chosen = random.choice(parameters, count, replace=False)
-        return {"call": {"is": name}, "arguments": [(str(each), {"is": hostile.value(random)}) for each in chosen]}
+        return {"call": name, "arguments": [(str(each), hostile.value(random)) for each in chosen]}
 
     def program(self, case: Case) -> str:
-        name = case["call"]["is"]
-        arguments = "".join(f", {key!r}: {value['is']}" for key, value in case["arguments"])
+        name = case["call"]
+        arguments = "".join(f", {key!r}: {value}" for key, value in case["arguments"])
         return (
             f"{SETUP}call, right = CALLS[{name!r}], needed({name!r})\n"
             "right = {key: value for key, value in right.items() if key in inspect.signature(call).parameters}\n"
@@ -58,7 +58,7 @@ class Arguments(Attack):
         if getattr(result, "success", None) is True:
             for name in ("q", "x", "value", "position_error", "cost"):
                 if not np.isfinite(getattr(result, name, 0.0)).all():
-                    raise BrokenError("success, and not finite", f"{case['call']['is']}: {name}")
+                    raise BrokenError("success, and not finite", f"{case['call']}: {name}")
         return 1
 
 

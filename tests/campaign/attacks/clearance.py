@@ -78,10 +78,10 @@ class Clear(Attack):
             scene.append(shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False))
         margin = random.choice([0.0, 0.001, 0.02])
         return {
-            "robot": {"is": name},
-            "ends": {"are": ends.tolist()},
+            "robot": name,
+            "ends": ends.tolist(),
             "scene": scene,
-            "margin": {"is": float(margin)},
+            "margin": float(margin),
             "seed": int(random.integers(2**31)),
         }
 
@@ -92,17 +92,17 @@ class Clear(Attack):
 
     def made(self, case: Case) -> str:
         """The lines that make robot, configurations and scene."""
-        name, scene = case["robot"]["is"], "".join(f"    {shapes.written(thing)},\n" for thing in case["scene"])
+        name, scene = case["robot"], "".join(f"    {shapes.written(thing)},\n" for thing in case["scene"])
         return (
             f"robot = bik.Robot.named({name!r}).with_capsules(radius={ROBOTS[name]})\n"
-            f"ends = np.array({case['ends']['are']})\nscene = bik.Scene([\n{scene}])\n"
+            f"ends = np.array({case['ends']})\nscene = bik.Scene([\n{scene}])\n"
         )
 
     def check_clear(self, case: Case, robot: bik.Robot, q: np.ndarray, said: float, what: str) -> None:
         """Checks a configuration that is called clear."""
         exact = shapes.clearance(robot, q, [shapes.placed(thing) for thing in case["scene"]])
-        if exact < case["margin"]["is"] - EXACT:
-            raise BrokenError(f"{what} is called clear", f"{exact} of {case['margin']['is']} m")
+        if exact < case["margin"] - EXACT:
+            raise BrokenError(f"{what} is called clear", f"{exact} of {case['margin']} m")
         check_said(said, exact, what)
 
 
@@ -113,8 +113,8 @@ class ClearSolutions(Clear):
     def program(self, case: Case) -> str:
         return (
             f"{self.made(case)}targets = robot.fk(ends)\n"
-            f"found = bik.solve_batch(robot, targets, obstacles=scene, margin={case['margin']['is']}, threads=1)\n"
-            f"every = bik.solve_all(robot, targets[0], obstacles=scene, margin={case['margin']['is']})"
+            f"found = bik.solve_batch(robot, targets, obstacles=scene, margin={case['margin']}, threads=1)\n"
+            f"every = bik.solve_all(robot, targets[0], obstacles=scene, margin={case['margin']})"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -125,7 +125,7 @@ class ClearSolutions(Clear):
         blocked = [i for i, solution in enumerate(left["found"]) if solution.status == bik.Status.IN_COLLISION]
         scene = [shapes.placed(thing) for thing in case["scene"]]
         for i in blocked:
-            if robot.dof == 6 and shapes.clearance(robot, left["ends"][i], scene) > case["margin"]["is"] + EXACT:
+            if robot.dof == 6 and shapes.clearance(robot, left["ends"][i], scene) > case["margin"] + EXACT:
                 raise BrokenError("a clear solution exists, and IN_COLLISION is said", left["ends"][i].tolist())
         return len(left["found"]) + len(left["every"])
 
@@ -136,9 +136,11 @@ class ClearPlans(Clear):
     deadline = 120.0
 
     def program(self, case: Case) -> str:
+        jerk = case["seed"] % 3 == 0
         return (
-            f"{self.made(case)}limits = bik.Limits(velocity=2.0, acceleration=5.0{', jerk=50.0' if case['seed'] % 3 == 0 else ''})\n"
-            f"plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], limits=limits, obstacles=scene, margin={case['margin']['is']})"
+            f"{self.made(case)}limits = bik.Limits(velocity=2.0, acceleration=5.0{', jerk=50.0' * jerk})\n"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            "plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], **given)"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -164,7 +166,8 @@ class ClearTicks(Clear):
         orders = ("velocity=1.5", "velocity=1.5, acceleration=5.0", "velocity=1.5, acceleration=5.0, jerk=50.0")
         return (
             f"{self.made(case)}limits = bik.Limits({orders[case['seed'] % 3]})\n"
-            f"tracker = bik.Tracker(robot, ends[0], dt=0.01, limits=limits, obstacles=scene, margin={case['margin']['is']})\n"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            "tracker = bik.Tracker(robot, ends[0], dt=0.01, **given)\n"
             "ways = []\n"
             "for tick in range(160):\n"
             "    if tick % 40 == 0:  # the last obstacle goes and comes back\n"
@@ -174,7 +177,7 @@ class ClearTicks(Clear):
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
-        robot, margin = left["robot"], case["margin"]["is"]
+        robot, margin = left["robot"], case["margin"]
         scene = [shapes.placed(thing) for thing in case["scene"]]
         kept = [scene[:-1], scene]
         clear = False

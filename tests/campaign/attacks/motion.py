@@ -128,7 +128,7 @@ class TimeOptimal(Attack):
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """Hard paths turn back, rest in some joints, have waypoints near each other, and limits of several magnitudes."""
+        """Hard paths turn back, rest in some joints, have waypoints near each other, and very different limits."""
         n, k = int(random.integers(1, 8)), int(random.integers(2, 12))
         points = np.cumsum(random.normal(0.0, 0.5, (k, n)), axis=0)
         spread = 2.5 if hard else 0.5
@@ -141,29 +141,29 @@ class TimeOptimal(Attack):
         limits = [tuple((np.exp(random.uniform(-spread, spread, 3)) * (1.5, 5.0, 50.0)).tolist()) for _ in range(n)]
         return {
             "points": [tuple(row) for row in points.tolist()],
-            "limits": {"are": limits},
+            "limits": limits,
             "jerk": bool(random.random() < 0.3),
-            "spline": {"is": str(random.choice(["natural", "natural", "clamped", "not-a-knot"]))},
+            "spline": str(random.choice(["natural", "natural", "clamped", "not-a-knot"])),
         }
 
     def program(self, case: Case) -> str:
         kinds = ("velocity", "acceleration", "jerk")[: 3 if case["jerk"] else 2]
         limits = ", ".join(
-            f"{kind}={list(row)}" for kind, row in zip(kinds, zip(*case["limits"]["are"], strict=True), strict=False)
+            f"{kind}={list(row)}" for kind, row in zip(kinds, zip(*case["limits"], strict=True), strict=False)
         )
         return (
             f"points = {case['points']}\nlimits = bik.Limits({limits})\n"
-            f"motion = bik.time_optimal(points, limits, spline={case['spline']['is']!r})"
+            f"motion = bik.time_optimal(points, limits, spline={case['spline']!r})"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         motion, points = left["motion"], np.array(case["points"])
-        velocity, acceleration, jerk = np.array(case["limits"]["are"]).T
+        velocity, acceleration, jerk = np.array(case["limits"]).T
         limits = {"velocity": velocity, "acceleration": acceleration} | ({"jerk": jerk} if case["jerk"] else {})
         check_rates(motion, limits, 1e-7)
         if np.abs(motion.q[[0, -1]] - points[[0, -1]]).max() > ENDS * (1 + np.abs(points).max()):
             raise BrokenError("the motion misses its ends", motion.q[[0, -1]].tolist())
-        if not case["jerk"] and case["spline"]["is"] == "natural":
+        if not case["jerk"] and case["spline"] == "natural":
             theirs = toppra_duration(points, velocity, acceleration)
             if theirs is not None and motion.duration > 1.01 * theirs:
                 raise BrokenError("slower than toppra", (motion.duration, theirs))
@@ -213,18 +213,20 @@ class Trajectories(Attack):
             }
             for step in [0.0, *steps]
         ]
-        return {"rows": rows, "order": {"is": int(random.integers(0, 3))}}
+        return {"rows": rows, "order": int(random.integers(0, 3))}
 
     def program(self, case: Case) -> str:
         time = np.cumsum([row["step"] for row in case["rows"]]).tolist()
         given = "".join(
-            f", {name}={[list(row[name]) for row in case['rows']]}" for name in ("qd", "qdd")[: case["order"]["is"]]
+            f", {name}={[list(row[name]) for row in case['rows']]}" for name in ("qd", "qdd")[: case["order"]]
         )
         return (
-            f"import pickle\nmotion = bik.Trajectory.from_samples({time}, {[list(row['q']) for row in case['rows']]}{given})\n"
+            f"import pickle\nq = {[list(row['q']) for row in case['rows']]}\n"
+            f"motion = bik.Trajectory.from_samples({time}, q{given})\n"
             "motion.to_npz('motion.npz')\nmotion.to_csv('motion.csv')\n"
             "npz, csv = bik.Trajectory.from_npz('motion.npz'), bik.Trajectory.from_csv('motion.csv')\n"
-            "copy, most = pickle.loads(pickle.dumps(motion)), (motion.max_velocity(), motion.max_acceleration(), motion.max_jerk())"
+            "most = motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()\n"
+            "copy = pickle.loads(pickle.dumps(motion))"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:

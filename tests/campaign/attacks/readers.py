@@ -25,10 +25,10 @@ class Reader(Attack):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         files = sorted((CORPUS / self.folder).iterdir())
         file = files[random.integers(len(files))]
-        return {"suffix": {"is": file.suffix}, "data": hostile.deformed(file.read_bytes(), random, hard)}
+        return {"suffix": file.suffix, "data": hostile.deformed(file.read_bytes(), random, hard)}
 
     def program(self, case: Case) -> str:
-        file = "case" + case["suffix"]["is"]
+        file = "case" + case["suffix"]
         return f"open({file!r}, 'wb').write({case['data']!r})\n{self.call.format(file=file)}"
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
@@ -41,7 +41,8 @@ class Urdf(Reader):
     promise = "A damaged URDF is read or refused by name, and a robot that was read works"
     folder = "urdf"
     call = (
-        "robot = bik.Robot.from_urdf({file!r}, tip=['tool', 'b'][b'name=\"p\"' in open({file!r}, 'rb').read()], collision=None)\n"
+        "tip = 'b' if b'name=\"p\"' in open({file!r}, 'rb').read() else 'tool'\n"
+        "robot = bik.Robot.from_urdf({file!r}, tip=tip, collision=None)\n"
         "q = robot.random_configurations(3)\npose = robot.fk(q)\nagain = bik.solve(robot, pose[0])"
     )
 
@@ -57,7 +58,8 @@ class Srdf(Reader):
     folder = "srdf"
     call = (
         f"urdf = {str(CORPUS / 'urdf' / 'arm.urdf')!r}\n"
-        "robot = bik.Robot.from_urdf(urdf, tip='tool', srdf={file!r})\npairs, stances = robot.collision_pairs, robot.stances"
+        "robot = bik.Robot.from_urdf(urdf, tip='tool', srdf={file!r})\n"
+        "pairs, stances = robot.collision_pairs, robot.stances"
     )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -105,7 +107,11 @@ class Csv(SceneFile):
         if not np.isfinite(motion.coefficients).all():
             raise BrokenError("a motion was read that is not finite", motion.coefficients.tolist())
         off = np.abs(motion.q - again.q).max(initial=0.0)
-        if off > 1e-12 * (1 + np.abs(motion.q).max(initial=0.0)) or motion.joint_names != again.joint_names:
+        powers = np.diff(motion.time)[:, None, None] ** np.arange(motion.coefficients.shape[2])
+        if (
+            off > 1e-12 * (1 + np.abs(motion.coefficients * powers).max(initial=0.0))
+            or motion.joint_names != again.joint_names
+        ):
             raise BrokenError("a motion is written and read differently", off)
         return 1
 
@@ -145,8 +151,9 @@ class Mesh(Reader):
     promise = "A damaged mesh (STL, OBJ, DAE) is read or refused by name, and the bodies that cover it are finite"
     folder = "mesh"
     call = (
-        "urdf = \"<robot name='r'><link name='a'/><link name='b'><collision><geometry><mesh filename='{file}'/></geometry>\"\n"
-        "urdf += \"</collision></link><joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>\"\n"
+        "urdf = \"<robot name='r'><link name='a'/><link name='b'><collision><geometry>\"\n"
+        "urdf += \"<mesh filename='{file}'/></geometry></collision></link>\"\n"
+        "urdf += \"<joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>\"\n"
         "open('mesh.urdf', 'w').write(urdf)\nrobot = bik.Robot.from_urdf('mesh.urdf', collision='hulls')\n"
         "far = bik.obstacles.clearance(robot, [0.0], [bik.obstacles.Sphere((3, 0, 0), 0.1)])"
     )

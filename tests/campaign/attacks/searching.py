@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-import beetle_ik as bik
-
 from .. import arms
 from ..attack import Attack, BrokenError, Case
 from .solving import TURN, check_solution, inside, refuse_only_locked, size, wanted
@@ -43,7 +41,8 @@ class CompleteSets(Attack):
         return {"joints": joints, "starts": int(random.integers(2**31))}
 
     def program(self, case: Case) -> str:
-        return f"{arms.written(case['joints'])}target = np.array({wanted(case).tolist()})\nfound = bik.solve_all(robot, target)"
+        target = wanted(case).tolist()
+        return f"{arms.written(case['joints'])}target = np.array({target})\nfound = bik.solve_all(robot, target)"
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         found, target, joints = left["found"], wanted(case), case["joints"]
@@ -74,7 +73,8 @@ class SameBits(Attack):
     page = "batches"
     options = (
         "", "goals=bik.goals.Centring()", "solver=bik.BAS(), stop=bik.Stop(max_evaluations=300)",
-        "solver=bik.PSO(), stop=bik.Stop(max_evaluations=300)", "task=bik.tasks.Position()", "task=bik.tasks.Pointing()",
+        "solver=bik.PSO(), stop=bik.Stop(max_evaluations=300)", "task=bik.tasks.Position()",
+        "task=bik.tasks.Pointing()",
         "solver=bik.MultiStart(bik.LevenbergMarquardt())", "prefer='best', goals=bik.goals.Manipulability()",
     )  # fmt: skip
 
@@ -85,14 +85,14 @@ class SameBits(Attack):
         return {
             "joints": joints,
             "shift": arms.triple(random.normal(0.0, 0.1, 3) * (random.random() < 0.3)),
-            "option": {"is": option},
+            "option": option,
             "seed": int(random.integers(1000)),
         }
 
     def program(self, case: Case) -> str:
         poses = arms.kinematics(case["joints"], arms.configurations(case["joints"]))[0]
         poses[:, :3, 3] += np.array(case["shift"])
-        options = f"seed={case['seed']}, {self.options[case['option']['is']]}"
+        options = f"seed={case['seed']}, {self.options[case['option']]}"
         return (
             f"import pickle\n{arms.written(case['joints'])}targets = np.array({poses.tolist()})\n"
             f"given = dict({options})\n"
@@ -144,8 +144,9 @@ class Budgets(Attack):
     )
     functions = ("float(np.sum((x - 0.3) ** 2))", "float(np.sum(x**4 - x**2))", "float(np.abs(x).max())")
     hard_functions = (
-        "nan", "inf if x[0] > 0 else float(np.sum(x**2))", "-1e308 * float(np.sum(x**2))", "float(np.sign(x[0]))", "0.0",
-        "float(np.sum(x**2)) if len(seen) % 7 else nan", "float(np.sum(np.sin(1e6 * x)))", "-inf if abs(x[0]) < 0.1 else 1.0",
+        "nan", "inf if x[0] > 0 else float(np.sum(x**2))", "-1e308 * float(np.sum(x**2))", "float(np.sign(x[0]))",
+        "float(np.sum(x**2)) if len(seen) % 7 else nan", "float(np.sum(np.sin(1e6 * x)))", "0.0",
+        "-inf if abs(x[0]) < 0.1 else 1.0",
     )  # fmt: skip
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
@@ -154,18 +155,20 @@ class Budgets(Attack):
         width = np.abs(random.normal(size=count)) * (random.choice([0.0, 1e-12, 1.0, 1e6]) if hard else 1.0)
         functions = self.hard_functions if hard else self.functions
         return {
-            "solver": {"is": str(random.choice(self.solvers))}, "function": {"is": str(random.choice(functions))},
+            "solver": str(random.choice(self.solvers)), "function": str(random.choice(functions)),
             "box": [(float(low), float(low + wide)) for low, wide in zip(lower, width, strict=True)],
-            "budget": int(random.choice([1, 2, 7, 50] if random.random() < 0.3 else [50, 51, 97, 333])), "seed": int(random.integers(100)),
+            "budget": int(random.choice([1, 2, 7, 50] if random.random() < 0.3 else [50, 51, 97, 333])),
+            "seed": int(random.integers(100)),
         }  # fmt: skip
 
     def program(self, case: Case) -> str:
         lower, upper = ([ends[side] for ends in case["box"]] for side in (0, 1))
-        solver = "" if case["solver"]["is"] == "None" else f", solver={case['solver']['is']}"
+        solver = "" if case["solver"] == "None" else f", solver={case['solver']}"
         return (
             "seen = []\n\n\ndef function(x):\n"
-            f"    value = {case['function']['is']}\n    seen.append((x.copy(), value))\n    return value\n\n\n"
-            f"found = bik.minimize(function, {lower}, {upper}, seed={case['seed']}, stop=bik.Stop(max_evaluations={case['budget']}){solver})"
+            f"    value = {case['function']}\n    seen.append((x.copy(), value))\n    return value\n\n\n"
+            f"stop = bik.Stop(max_evaluations={case['budget']})\n"
+            f"found = bik.minimize(function, {lower}, {upper}, seed={case['seed']}, stop=stop{solver})"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:

@@ -52,7 +52,9 @@ def check_solution(case: Case, solution: bik.Solution, target: np.ndarray, *, ro
 
 class Solved(Attack):
     name = "solved"
-    promise = "A target that is reported as reached is reached, inside the limits; one that can be reached is not called out of reach"
+    promise = (
+        "A target is reached inside limits if that is said, and is not called out of reach if the arm can be there"
+    )
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
@@ -66,7 +68,8 @@ class Solved(Attack):
         options = f", start={arms.configurations(case['joints'])[1].tolist()}" if case.get("start") else ""
         options += ", prefer='nearest'" if case.get("nearest") else ""
         return (
-            f"{arms.written(case['joints'])}target = np.array({wanted(case).tolist()}){'[:3, 3]' if case['position'] else ''}\n"
+            f"{arms.written(case['joints'])}target = np.array({wanted(case).tolist()})"
+            f"{'[:3, 3]' if case['position'] else ''}\n"
             f"solution = bik.solve(robot, target{options})"
         )
 
@@ -94,7 +97,7 @@ class OutOfReach(Attack):
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """An easy target is anywhere about the arm, a hard one is at the edge of reach or just off a pose that is reached."""
+        """An easy target is anywhere about the arm, a hard one is just off a pose that is reached."""
         joints = arms.easy_arm(random, int(random.integers(2, 8)))
         arms.put(joints, random, hard)
         scale = 1.0 + 10.0 ** random.uniform(-7, -1) * random.choice([-1.0, 1.0]) if hard else 1.0

@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-import beetle_ik as bik
-
 from .. import arms
 from ..attack import Attack, BrokenError, Case
 from .solving import refuse_only_locked
@@ -16,7 +14,7 @@ SLACK = 1e-9  # of a limit
 ROUNDING = 8.0 * np.finfo(float).eps  # of a finite difference, relative to the joint positions
 KINDS = ("velocity", "acceleration", "jerk")
 
-# What each step of a life does, in the order of the log: ("q", q) after a tick, ("reset", q, qd, qdd), ("refused", kind).
+# The log tells, in order: ("q", q) after a tick, ("reset", q, qd, qdd), ("refused", what, unchanged, message).
 LIFE = """
 log = []
 for what, *more in life:
@@ -34,7 +32,8 @@ for what, *more in life:
         else:
             log.append(("q", tracker.step(more[0]).q))
     except bik.BeetleIkError as error:
-        log.append(("refused", what, before[0].tobytes() == tracker.q.tobytes() and before[1] == tracker.time, str(error)))
+        unchanged = before[0].tobytes() == tracker.q.tobytes() and before[1] == tracker.time
+        log.append(("refused", what, unchanged, str(error)))
 """
 
 
@@ -44,7 +43,7 @@ class TrackerLives(Attack):
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """A hard life has late, missing and repeated targets, NaN, resets in motion, stops, and jumps far out of reach."""
+        """A hard life has late, missing and repeated targets, NaN, resets in motion, stops, and jumps out of reach."""
         joints = arms.easy_arm(random, int(random.integers(1, 8)))
         arms.put(joints, random, False, 6)
         for joint in joints:
@@ -59,7 +58,7 @@ class TrackerLives(Attack):
             shift = arms.triple(random.normal(size=3) * (10.0 if kind == "jump" else noise))
             life.append(
                 {
-                    "do": {"is": kind},
+                    "do": kind,
                     "to": int(random.integers(6)),
                     "shift": shift,
                     "times": int(random.integers(1, 15)),
@@ -67,9 +66,9 @@ class TrackerLives(Attack):
                 }
             )
         return {
-            "joints": joints, "life": life, "orders": {"is": int(random.integers(1, 4))}, "pose": bool(random.random() < 0.6),
-            "dt": {"is": float(random.choice([1e-3, 2e-3, 5e-3, 2e-2]))}, "timeout": bool(hard and random.random() < 0.3),
-            "filter": {"is": str(random.choice(["None"] * 4 + ["bik.filters.LowPass(5.0)", "bik.filters.OneEuro()"]))},
+            "joints": joints, "life": life, "orders": int(random.integers(1, 4)), "pose": bool(random.random() < 0.6),
+            "dt": float(random.choice([1e-3, 2e-3, 5e-3, 2e-2])), "timeout": bool(hard and random.random() < 0.3),
+            "filter": str(random.choice(["None"] * 4 + ["bik.filters.LowPass(5.0)", "bik.filters.OneEuro()"])),
         }  # fmt: skip
 
     def program(self, case: Case) -> str:
@@ -77,7 +76,7 @@ class TrackerLives(Attack):
         poses = arms.kinematics(joints, at)[0]
         life: list[tuple[Any, ...]] = []
         for event in case["life"]:
-            kind, target = event["do"]["is"], poses[event["to"] % len(poses)].copy()
+            kind, target = event["do"], poses[event["to"] % len(poses)].copy()
             target[:3, 3] += event["shift"]
             told = target.tolist() if case["pose"] else target[:3, 3].tolist()
             match kind:
@@ -108,17 +107,17 @@ class TrackerLives(Attack):
         limits = ", ".join(f"{kind}={values.tolist()}" for kind, values in rates.items())
         return (
             f"{arms.written(joints)}life = {life!r}\n"
-            f"tracker = bik.Tracker(robot, {at[0].tolist()}, dt={case['dt']['is']}, limits=bik.Limits({limits}), "
-            f"timeout={0.1 if case['timeout'] else None}, target_filter={case['filter']['is']}){LIFE}"
+            f"tracker = bik.Tracker(robot, {at[0].tolist()}, dt={case['dt']}, limits=bik.Limits({limits}), "
+            f"timeout={0.1 if case['timeout'] else None}, target_filter={case['filter']}){LIFE}"
         )
 
     def limits(self, case: Case) -> dict[str, np.ndarray]:
         """The limits of the free joints."""
         rates = np.array([joint["rates"] for joint in arms.free(case["joints"])])
-        return dict(zip(KINDS[: case["orders"]["is"]], rates.T, strict=False))
+        return dict(zip(KINDS[: case["orders"]], rates.T, strict=False))
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
-        dt, limits, ticks = case["dt"]["is"], self.limits(case), 0
+        dt, limits, ticks = case["dt"], self.limits(case), 0
         at = arms.configurations(case["joints"])[0]
         lives: list[list[np.ndarray]] = [[at, at, at]]
         for what, *more in left["log"]:
@@ -141,7 +140,7 @@ class TrackerLives(Attack):
 
 
 def check_refusal(entry: list[Any], allowed: str) -> None:
-    """What is refused leaves the tracker as it was; only NaN, resets that cannot stop, and stamps without limits are."""
+    """Checks that only NaN, resets and stamps without limits are refused, and leave the tracker as it was."""
     what, unchanged, message = entry
     if not unchanged:
         raise BrokenError("a refused call changes the tracker", message)
