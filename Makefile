@@ -5,8 +5,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo test-sdist test-aarch64 miri audit lint lint-rust lint-python bench \
-    coverage docs papers
+.PHONY: help demo test test-rust test-python zoo campaign soak test-sdist test-aarch64 miri audit lint lint-rust lint-python \
+    bench coverage docs papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
 unexport MAKEFLAGS MFLAGS
@@ -33,6 +33,14 @@ test-python: lint-python
 zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
 	$(BIN)/python -m pytest tests/zoo
 
+# Failing cases and counts are in target/campaign/; `python -m campaign table target/campaign/ledger.csv` makes the table.
+campaign: $(VENV)/with-test  ## attacks on every promise: SEED=, and CASES= of each attack or MINUTES= in all (default: 10 minutes)
+	PYTHONPATH=tests $(BIN)/python -m campaign run --seed $(or $(SEED),0) --workers $(or $(WORKERS),2) --out target/campaign \
+	    $(if $(CASES),--cases $(CASES)) $(if $(MINUTES),--minutes $(MINUTES),$(if $(CASES),,--minutes 10))
+
+soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
+	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
 # What pip does where it finds no wheel; then the package of the core, as crates.io would build it.
 test-sdist: $(BIN)/maturin  ## the source distribution and the crates build and pass their tests where nothing else is
 	rm -rf target/sdist
@@ -51,7 +59,8 @@ test-aarch64:  ## the tests of the core on an emulated 64-bit ARM processor
 # through millions of angles would take hours.
 miri:  ## the unsafe code of `math` under Miri, which finds undefined behaviour
 	RUSTFLAGS='-C target-feature=+avx2,+fma' PROPTEST_CASES=2 MIRIFLAGS='-Zmiri-disable-isolation -Zmiri-deterministic-floats' \
-	    cargo +nightly miri test --locked -p ikcore --lib --target-dir target/miri math::arithmetic math::f64x4 math::f32x8
+	    cargo +nightly miri test --locked -p ikcore --lib --target-dir target/miri math:: -- \
+	    --skip agrees_with_the_standard_library --skip single_precision_agrees
 
 # cargo install cargo-deny --locked
 audit: $(VENV)/with-test  ## known vulnerabilities, licences and origins of everything that is built in or installed
