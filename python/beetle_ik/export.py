@@ -145,6 +145,11 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
 
 
 def read_arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+    """Returns all arrays of an npz file.
+
+    Raises:
+        InvalidInputError: the file is not an npz file or is damaged. Names it.
+    """
     with path_of(file).open("rb") as stream:
         if not zipfile.is_zipfile(stream):
             raise InvalidInputError(f"{os.fspath(file)}: not an npz file")

@@ -16,7 +16,7 @@ from .._progress import Bar
 from .reachability_map import ReachabilityMap
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from .._core import Obstacle, Task
 
@@ -48,20 +48,22 @@ def reachability(
     voxel about that axis, so that the voxels at one distance from it and one height differ by the limits of the first
     joint alone. Obstacles and checks of the robot against itself end that.
 
-    An orientation is reached where a solution is found within the tolerances of `solve`. Of arms with a closed form and at
-    most six joints, all others cannot be reached, but for those within rounding of a limit or of the edge of the reach.
-    Elsewhere `evaluations` bounds the search, and a few orientations that can be reached are missed.
+    An orientation is reached where a solution is found within the tolerances of `solve`. Of arms with a closed form and
+    at most six joints, all others cannot be reached, but for those within rounding of a limit or of the edge of the
+    reach. Elsewhere `evaluations` bounds the search, and a few orientations that can be reached are missed.
 
     Args:
         robot: an arm with one tip.
         voxel: edge of the voxels (m).
-        directions: number of directions of the tip's z axis, a spherical Fibonacci set. A tip that keeps a direction, as
-            of planar arms and SCARAs, has no other.
+        directions: number of directions of the tip's z axis, a spherical Fibonacci set. A tip that keeps a direction,
+            as of planar arms and SCARAs, has no other.
         rolls: number of rolls about each direction.
-        region: two opposite corners of a box (2, 3) (m) in the frame of the robot's base, extended to whole voxels, whose
-            faces are at multiples of `voxel` from the first axis; None: all that the tip can reach.
+        region: two opposite corners of a box (2, 3) (m) in the frame of the robot's base, extended to whole voxels,
+            whose faces are at multiples of `voxel` from the first axis; None: all that the tip can reach.
         task: the part of a pose that matters; `tasks.Pointing()` has no rolls, `tasks.Position()` one orientation.
-        obstacles, margin, self_collision: what solutions keep clear of, as for `solve`.
+        obstacles: what solutions keep clear of, in the frame of the robot's base, as for `solve`.
+        margin: distance to keep (m), as for `solve`.
+        self_collision: whether links must not touch each other, as for `solve`.
         evaluations: most evaluations of a pose: values of the parameter of a redundant arm with a closed form, and
             evaluations of the forward kinematics for arms without one.
         quality: whether to measure manipulability and clearance of the best configuration found in each voxel.
@@ -89,6 +91,7 @@ def reachability(
         raise BeetleIkError("store= needs zarr: pip install 'beetle-ik[distributed]'")
     reached = np.empty((*grid.shape, grid.bytes), np.uint8)
     measured = [np.empty(grid.shape, np.float32) for _ in range(2)] if quality else []
+    wholes: list[NDArray[Any]] = [reached, *measured]
     options = asked | {"evaluations": evaluations, "quality": quality, "threads": threads}
     numbers = np.arange(prod(grid.chunks))
     with _shown(progress) as update:
@@ -98,9 +101,9 @@ def reachability(
             chunks = map_chunks(robot, grid, group.tolist(), **options, progress=report)
             for number, arrays in zip(group.tolist(), chunks, strict=True):
                 place = tuple(slice(*ends) for ends in grid.chunk(number))
-                for whole, part in zip((reached, *measured), arrays, strict=False):
+                for whole, part in zip(wholes, arrays, strict=False):
                     whole[place] = part
-                done += arrays[0].shape[0] * arrays[0].shape[1] * arrays[0].shape[2]
+                done += prod(arrays[0].shape[:3])
     return ReachabilityMap(robot, grid, reached, *measured)
 
 

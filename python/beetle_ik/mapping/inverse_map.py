@@ -51,7 +51,8 @@ class InverseReachabilityMap:
         """Returns the share of yaws at which an upright base reaches a target, for each place (x, y).
 
         Args:
-            x, y: coordinates of the places (i,) and (j,) (m).
+            x: coordinates of the places (i,) (m).
+            y: coordinates of the places (j,) (m).
             target: pose (4, 4) of the tip; None: the origin.
             height: height of the base (m).
             yaws: number of yaws, spread evenly over a turn.

@@ -41,10 +41,10 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     if "reachability_map" not in arrays:
         raise InvalidInputError(f"{place}: not a reachability map")
     if (version := arrays["reachability_map"]) != FORMAT:
-        raise InvalidInputError(f"{place}: a map of format {version}; this library reads format {FORMAT}: compute it again")
+        other = f"{place}: a map of format {version}, and this library reads format {FORMAT}"
+        raise InvalidInputError(f"{other}: compute it again")
     try:
-        stored = Robot._restore(arrays["robot"].tobytes())
-        grid = MapGrid._restore(arrays["grid"].tobytes())
+        stored, grid = _restored(Robot, arrays["robot"]), _restored(MapGrid, arrays["grid"])
         found = ReachabilityMap(stored, grid, arrays["bits"], *(arrays.get(name) for name in _QUALITY))
     except (KeyError, BeetleIkError) as error:
         raise InvalidInputError(f"{place}: damaged reachability map: {error!s:.200}") from error
@@ -63,5 +63,10 @@ def require_same_robot(what: str, mapped: Robot, robot: Robot | None) -> None:
 
 
 def _stored(value: Robot | MapGrid) -> NDArray[np.uint8]:
-    _, (stored,) = value.__reduce__()
+    reduced: Any = value.__reduce__()
+    _, (stored,) = reduced
     return np.frombuffer(stored, np.uint8)
+
+
+def _restored(kind: Any, stored: NDArray[np.uint8]) -> Any:
+    return kind._restore(stored.tobytes())
