@@ -16,6 +16,6 @@ mod workers;
 
 pub use batch_options::{BatchOptions, OnInvalid};
 pub use plan_batch::{PlanProblem, plan_batch, plan_status};
-pub use results::{Batch, BatchItem};
+pub use results::{Batch, BatchItem, message_of_counts};
 pub use solve_batch::solve_batch;
 pub use targets::Targets;
