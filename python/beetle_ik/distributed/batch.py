@@ -184,8 +184,9 @@ def solve_batch(
     # Without targets, the core checks all other arguments.
     none = _solved(robot, keys, options, 0, [array[:0] for array in inputs], threads)
     columns = {name: Column(array.dtype, array.shape[1:]) for name, array in _columns(none).items()}
-    identity = {name: description(value) for name, value in {"robot": robot, "tips": keys, **options}.items()}
-    job = Job("solve_batch", identity, Layout(columns, rows, chunk_rows), inputs, solve)
+    asked = {"robot": robot, "tips": keys, **options, "rows": rows, "rows_per_chunk": chunk_rows}
+    identity = {name: description(value) for name, value in asked.items()}
+    job = Job("solve_batch", identity, Layout(columns, (rows,), (chunk_rows,)), inputs, solve)
     found = run(job, client, folder, threads=threads, progress=progress, any_instruction_set=any_instruction_set)
     return BatchArrays(
         **{name: found[name] for name in _COLUMNS},
@@ -216,11 +217,12 @@ def _solve_rows(
     robot: Robot,
     keys: Sequence[Any] | None,
     options: Mapping[str, Any],
-    rows: slice,
+    _chunk: int,
+    rows: tuple[slice],
     inputs: Sequence[Any],
     threads: int | None,
 ) -> Mapping[str, NDArray[Any]]:
-    return _columns(_solved(robot, keys, options, rows.start, inputs, threads))
+    return _columns(_solved(robot, keys, options, rows[0].start, inputs, threads))
 
 
 def _columns(batch: BatchSolution) -> dict[str, NDArray[Any]]:
@@ -240,7 +242,7 @@ def _errors(keys: Sequence[Any], found: Mapping[str, Any]) -> dict[Any, tuple[An
 def _message(status: Any, layout: Layout) -> str:
     counts = np.zeros(len(Status), int)
     for chunk in range(layout.chunks):
-        counts += np.bincount(status[layout.rows_of(chunk)], minlength=len(Status))
+        counts += np.bincount(status[layout.region(chunk)], minlength=len(Status))
     return _core._batch_message(counts.tolist())
 
 

@@ -1,4 +1,4 @@
-"""Work cut into chunks of rows: computed here or by the workers of a dask client, kept in memory or in a store.
+"""Work cut into chunks: computed here or by the workers of a dask client, kept in memory or in a store.
 
 A chunk is a pure function of the job, its number and its inputs. So it may be computed anywhere, and again after a
 worker was lost; what a store holds is not computed again.
@@ -12,6 +12,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -30,7 +31,8 @@ if TYPE_CHECKING:
 
     Array: TypeAlias = NDArray[np.generic]
     Chunks: TypeAlias = Generator[tuple[int, Mapping[str, Array]]]
-    Compute: TypeAlias = Callable[[slice, Sequence[Array], int | None], Mapping[str, Array]]
+    Region: TypeAlias = tuple[slice, ...]
+    Compute: TypeAlias = Callable[[int, Region, Sequence[Array], int | None], Mapping[str, Array]]
 
 _QUEUED = 2  # chunks a thread of a worker: one in work, one that waits
 ANY = "any"
@@ -39,7 +41,7 @@ ANY = "any"
 
 @dataclass(frozen=True)
 class Job:
-    """Rows to compute, in chunks."""
+    """Items to compute, in chunks."""
 
     call: str
     """The public call, by its name."""
@@ -47,9 +49,11 @@ class Job:
     """What the results depend on besides the inputs, as JSON."""
     layout: Layout
     inputs: Sequence[Any]
-    """Arrays of `layout.rows` rows. Of zarr arrays the workers read their rows; rows of others are sent to them."""
+    """Arrays cut like the results. Of zarr arrays the workers read their part; parts of others are sent to them."""
     compute: Compute
-    """Returns the columns of some rows, from the rows of the inputs and a number of threads. It is pickled."""
+    """Returns the columns of a chunk, from its number, its region, its parts of the inputs and the number of threads.
+    It is pickled.
+    """
 
 
 class Build(NamedTuple):
@@ -59,14 +63,14 @@ class Build(NamedTuple):
     instructions: str
 
 
-class _Rows(NamedTuple):
-    """Rows of a zarr array, read where they are needed."""
+class _Part(NamedTuple):
+    """A part of a zarr array, read where it is needed."""
 
     array: Any
-    rows: slice
+    region: Region
 
     def read(self) -> Array:
-        return np.asarray(self.array[self.rows])
+        return np.asarray(self.array[self.region])
 
 
 def run(
@@ -89,16 +93,16 @@ def run(
     build = Build(__version__, ANY if any_instruction_set else _instructions)
     layout = job.layout
     kept = None if store is None else Store.prepare(store, layout, {"call": job.call, **build._asdict(), **job.options})
-    columns = {} if kept else {name: np.empty((layout.rows, *c.shape), c.dtype) for name, c in layout.columns.items()}
+    columns = {} if kept else {name: np.empty((*layout.shape, *c.shape), c.dtype) for name, c in layout.columns.items()}
     results = _here(job, kept, threads) if client is None else _on_workers(job, client, store, build)
-    done = 0
+    done, total = 0, prod(layout.shape)
     with reports(progress) as report, closing(results):
         for chunk, arrays in results:
-            rows = layout.rows_of(chunk)
+            region = layout.region(chunk)
             for name, array in arrays.items():
-                columns[name][rows] = array
-            done += rows.stop - rows.start
-            report(done, layout.rows)
+                columns[name][region] = array
+            done += prod(part.stop - part.start for part in region)
+            report(done, total)
     if kept is None:
         return columns
     kept.finish()
@@ -107,8 +111,7 @@ def run(
 
 def _here(job: Job, store: Store | None, threads: int | None) -> Chunks:
     for chunk in range(job.layout.chunks):
-        rows = job.layout.rows_of(chunk)
-        inputs = [np.asarray(array[rows]) for array in job.inputs]
+        inputs = [np.asarray(array[job.layout.region(chunk)]) for array in job.inputs]
         yield chunk, _computed(job.compute, job.layout, chunk, inputs, store, threads)
 
 
@@ -124,7 +127,7 @@ def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> C
     def submit_more() -> None:
         room = _QUEUED * _threads_of(client) - len(chunk_of)
         for chunk in islice(left, max(room, 0)):
-            inputs = [_to_send(array, job.layout.rows_of(chunk)) for array in job.inputs]
+            inputs = [_to_send(array, job.layout.region(chunk)) for array in job.inputs]
             future = client.submit(_on_a_worker, compute, build, job.layout, chunk, inputs, store, pure=False)
             chunk_of[future] = chunk
             ended.add(future)
@@ -155,8 +158,8 @@ def _threads_of(client: Client) -> int:
     return max(threads, 1)
 
 
-def _to_send(array: Any, rows: slice) -> Any:
-    return np.ascontiguousarray(array[rows]) if isinstance(array, np.ndarray) else _Rows(array, rows)
+def _to_send(array: Any, region: Region) -> Any:
+    return np.ascontiguousarray(array[region]) if isinstance(array, np.ndarray) else _Part(array, region)
 
 
 def _same(value: bytes) -> bytes:
@@ -168,7 +171,7 @@ def _on_a_worker(
 ) -> Mapping[str, Array]:
     """Computes a chunk in one thread: the others of the worker have chunks of their own."""
     _require_same_build(build)
-    arrays = [part.read() if isinstance(part, _Rows) else part for part in inputs]
+    arrays = [part.read() if isinstance(part, _Part) else part for part in inputs]
     kept = None if store is None else Store(store, layout)
     return _computed(_unpickled(compute), layout, chunk, arrays, kept, 1)
 
@@ -177,12 +180,12 @@ def _computed(
     compute: Compute, layout: Layout, chunk: int, inputs: Sequence[Array], store: Store | None, threads: int | None
 ) -> Mapping[str, Array]:
     """Returns the columns of a chunk, or writes them to the store, unless it holds them, and returns none."""
-    rows = layout.rows_of(chunk)
+    region = layout.region(chunk)
     if store is None:
-        return compute(rows, inputs, threads)
+        return compute(chunk, region, inputs, threads)
     made_from = digest(inputs)
     if not store.holds(chunk, made_from):
-        store.write(chunk, compute(rows, inputs, threads), made_from)
+        store.write(chunk, compute(chunk, region, inputs, threads), made_from)
     return {}
 
 

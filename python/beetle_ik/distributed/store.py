@@ -1,4 +1,4 @@
-"""Results of a job on disk: a zarr group with one array per column, written chunk by chunk.
+"""The results of a job on disk: a zarr group with one array per column, written chunk by chunk.
 
 The array `chunks` holds two hashes for each chunk: of what it was computed from, and of its results. They are written
 last, so a chunk whose results do not match them is not finished. Nothing in the store depends on time or on who
@@ -11,6 +11,7 @@ import errno
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -33,27 +34,34 @@ _ENCODING = {"name": "default", "separator": "."}  # files, not a folder for eac
 
 
 class Column(NamedTuple):
-    """One array of a store: the type and shape of each of its rows."""
+    """One array of a store: the type and shape of each of its items."""
 
     dtype: np.dtype[Any]
     shape: tuple[int, ...] = ()
 
 
 class Layout(NamedTuple):
-    """What a store is made of."""
+    """What a store is made of: items in a grid of one or several axes, cut into chunks."""
 
     columns: Mapping[str, Column]
-    rows: int
-    chunk_rows: int
+    shape: tuple[int, ...]
+    chunk_shape: tuple[int, ...]
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The number of chunks along each axis; the last ones may be smaller."""
+        return tuple(-(-items // chunk) for items, chunk in zip(self.shape, self.chunk_shape, strict=True))
 
     @property
     def chunks(self) -> int:
-        """The number of chunks; the last may have fewer rows."""
-        return -(-self.rows // self.chunk_rows)
+        """The number of chunks. They count along the last axis first."""
+        return prod(self.counts)
 
-    def rows_of(self, chunk: int) -> slice:
-        """The rows of a chunk."""
-        return slice(chunk * self.chunk_rows, min((chunk + 1) * self.chunk_rows, self.rows))
+    def region(self, chunk: int) -> tuple[slice, ...]:
+        """The items of a chunk."""
+        place = np.unravel_index(chunk, self.counts)
+        axes = zip(place, self.chunk_shape, self.shape, strict=True)
+        return tuple(slice(int(i) * length, min((int(i) + 1) * length, end)) for i, length, end in axes)
 
 
 def store_path(store: object) -> Path:
@@ -91,7 +99,7 @@ class Store:
             InvalidInputError: the folder cannot be written, holds something else, or the store of another job.
         """
         zarr = _zarr()
-        wanted = {"format": _FORMAT, **identity, "rows": layout.rows, "rows_per_chunk": layout.chunk_rows}
+        wanted = {"format": _FORMAT, **identity}
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if (folder / "zarr.json").exists():
@@ -112,16 +120,16 @@ class Store:
         Raises:
             InvalidInputError: it was computed from something else.
         """
-        hashes = self._read(_FINISHED, slice(chunk, chunk + 1))
+        hashes = self._read(_FINISHED, (slice(chunk, chunk + 1),))
         if hashes is None or not hashes.any():
             return False
-        rows = self._layout.rows_of(chunk)
-        columns = [self._read(name, rows) for name in self._layout.columns]
+        region = self._layout.region(chunk)
+        columns = [self._read(name, region) for name in self._layout.columns]
         found = [column for column in columns if column is not None]
         if len(found) < len(columns) or not np.array_equal(digest(found), hashes[0, 1]):
             return False
         if not np.array_equal(hashes[0, 0], inputs):
-            where = f"rows {rows.start} to {rows.stop - 1} of the store '{self._folder}'"
+            where = f"rows {region[0].start} to {region[0].stop - 1} of the store '{self._folder}'"
             raise InvalidInputError(f"store: {where} were computed from other targets or starts: give another folder")
         return True
 
@@ -131,12 +139,12 @@ class Store:
         Raises:
             OSError: it cannot be written; names the chunk. The other chunks are as before.
         """
-        rows = self._layout.rows_of(chunk)
+        region = self._layout.region(chunk)
         columns = {name: np.ascontiguousarray(arrays[name]) for name in self._layout.columns}
         hashes = np.stack([inputs, digest(list(columns.values()))])
         with self._names_chunk(chunk):
             for name, column in columns.items():
-                self._array(name)[rows] = column
+                self._array(name)[region] = column
             self._array(_FINISHED)[chunk : chunk + 1] = hashes[None]
 
     def finish(self) -> None:
@@ -147,7 +155,8 @@ class Store:
     def _create_arrays(self) -> None:
         layout = self._layout
         for name, (dtype, shape) in layout.columns.items():
-            self._create(name, (layout.rows, *shape), (layout.chunk_rows, *shape), dtype, _absent(dtype))
+            whole, chunk = (*layout.shape, *shape), (*layout.chunk_shape, *shape)
+            self._create(name, whole, chunk, dtype, _absent(dtype))
         self._create(_FINISHED, (layout.chunks, 2, 32), (1, 2, 32), np.dtype(np.uint8), 0)
 
     def _create(
@@ -170,10 +179,10 @@ class Store:
         """Returns a column that writes chunks of NaN too: they are known to be finished by their bytes."""
         return self.group[name].with_config({"write_empty_chunks": True})
 
-    def _read(self, name: str, rows: slice) -> NDArray[np.generic] | None:
-        """Reads rows of a column; None if their file is damaged."""
+    def _read(self, name: str, region: tuple[slice, ...]) -> NDArray[np.generic] | None:
+        """Reads a chunk of a column; None if its file is damaged."""
         try:
-            values: NDArray[np.generic] = self.group[name][rows]
+            values: NDArray[np.generic] = self.group[name][region]
         except ValueError:
             return None
         return values
