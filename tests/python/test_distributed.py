@@ -121,6 +121,17 @@ def test_targets_are_read_from_a_zarr_array(store: Path) -> None:
     )
 
 
+def test_no_targets_give_no_chunks(store: Path) -> None:
+    for folder in (None, store):
+        none = distributed.solve_batch(None, PANDA, np.zeros((0, 3)), store=folder)
+        assert (len(none), none.q.shape, none.message) == (0, (0, 7), "no targets")
+
+
+def test_a_finished_store_is_as_large_as_its_targets(store: Path) -> None:
+    stored = distributed.solve_batch(None, PANDA, POSITIONS, store=store, seed=4)
+    assert stored.q.chunks == (51, 7)
+
+
 def test_progress_counts_targets() -> None:
     told_of: list[tuple[int, int]] = []
     in_chunks(None, progress=lambda done, total: told_of.append((done, total)))

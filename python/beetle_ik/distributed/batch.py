@@ -79,7 +79,8 @@ class BatchArrays:
 
     def __len__(self) -> int:
         """Returns the number of targets."""
-        return len(self.q)
+        count: int = self.q.shape[0]
+        return count
 
     def __repr__(self) -> str:
         """Says how many were solved, and where the arrays are."""
@@ -92,7 +93,7 @@ def solve_batch(
     targets: ArrayLike | Mapping[str, ArrayLike] | Mapping[_TipKey, ArrayLike],
     *,
     store: str | os.PathLike[str] | None = None,
-    rows_per_chunk: int = 16384,
+    rows_per_chunk: int = 32768,
     any_instruction_set: bool = False,
     starts: ArrayLike | None = None,
     threads: int | None = None,
@@ -186,7 +187,7 @@ def solve_batch(
     columns = {name: Column(array.dtype, array.shape[1:]) for name, array in _columns(none).items()}
     asked = {"robot": robot, "tips": keys, **options, "rows": rows, "rows_per_chunk": chunk_rows}
     identity = {name: description(value) for name, value in asked.items()}
-    job = Job("solve_batch", identity, Layout(columns, (rows,), (chunk_rows,)), inputs, solve)
+    job = Job("solve_batch", identity, Layout(columns, (rows,), (min(chunk_rows, max(rows, 1)),)), inputs, solve)
     found = run(job, client, folder, threads=threads, progress=progress, any_instruction_set=any_instruction_set)
     return BatchArrays(
         **{name: found[name] for name in _COLUMNS},

@@ -119,7 +119,7 @@ def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> C
     """Yields chunks as they end. Few are in work at a time, so memory does not grow with their number."""
     as_completed = library("distributed", "dask", "client=", extra="distributed").as_completed
     # Made by a task: the scheduler can make it again for a new worker.
-    compute = client.submit(_same, pickle.dumps(job.compute), pure=False)
+    work = client.submit(_same, pickle.dumps((job.compute, job.layout, store)), pure=False)
     left = iter(range(job.layout.chunks))
     chunk_of: dict[Any, int] = {}
     ended = as_completed()
@@ -128,7 +128,7 @@ def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> C
         room = _QUEUED * _threads_of(client) - len(chunk_of)
         for chunk in islice(left, max(room, 0)):
             inputs = [_to_send(array, job.layout.region(chunk)) for array in job.inputs]
-            future = client.submit(_on_a_worker, compute, build, job.layout, chunk, inputs, store, pure=False)
+            future = client.submit(_on_a_worker, work, build, chunk, inputs, pure=False)
             chunk_of[future] = chunk
             ended.add(future)
 
@@ -166,14 +166,12 @@ def _same(value: bytes) -> bytes:
     return value
 
 
-def _on_a_worker(
-    compute: bytes, build: Build, layout: Layout, chunk: int, inputs: Sequence[Any], store: Path | None
-) -> Mapping[str, Array]:
+def _on_a_worker(work: bytes, build: Build, chunk: int, inputs: Sequence[Any]) -> Mapping[str, Array]:
     """Computes a chunk in one thread: the others of the worker have chunks of their own."""
     _require_same_build(build)
     arrays = [part.read() if isinstance(part, _Part) else part for part in inputs]
-    kept = None if store is None else Store(store, layout)
-    return _computed(_unpickled(compute), layout, chunk, arrays, kept, 1)
+    compute, layout, store = _opened(work)
+    return _computed(compute, layout, chunk, arrays, store, 1)
 
 
 def _computed(
@@ -190,9 +188,10 @@ def _computed(
 
 
 @lru_cache(maxsize=2)
-def _unpickled(compute: bytes) -> Compute:
-    found: Compute = pickle.loads(compute)
-    return found
+def _opened(work: bytes) -> tuple[Compute, Layout, Store | None]:
+    """Returns what all chunks of a job share, kept from one to the next."""
+    compute, layout, store = pickle.loads(work)
+    return compute, layout, None if store is None else Store(store, layout)
 
 
 def _require_same_build(wanted: Build) -> None:

@@ -89,6 +89,7 @@ class Store:
             raise FileNotFoundError(errno.ENOENT, what, str(folder)) from None
         self._folder = folder
         self._layout = layout
+        self._opened: dict[str, Any] = {}
 
     @classmethod
     def prepare(cls, folder: Path, layout: Layout, identity: Mapping[str, Any]) -> Store:
@@ -176,13 +177,15 @@ class Store:
         )
 
     def _array(self, name: str) -> Any:
-        """Returns a column that writes chunks of NaN too: they are known to be finished by their bytes."""
-        return self.group[name].with_config({"write_empty_chunks": True})
+        """Opens a column, once. It writes chunks of NaN too, which zarr leaves out otherwise."""
+        if name not in self._opened:
+            self._opened[name] = self.group[name].with_config({"write_empty_chunks": True})
+        return self._opened[name]
 
     def _read(self, name: str, region: tuple[slice, ...]) -> NDArray[np.generic] | None:
         """Reads a chunk of a column; None if its file is damaged."""
         try:
-            values: NDArray[np.generic] = self.group[name][region]
+            values: NDArray[np.generic] = self._array(name)[region]
         except ValueError:
             return None
         return values
