@@ -54,7 +54,8 @@
 //! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
-//! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
+//! | 8 | [`tracking`], [`planning`], [`posture`], [`map`] |
+//! | 9 | [`batch`] |
 
 pub mod batch;
 mod closed_form;
@@ -65,6 +66,7 @@ pub mod kinematics;
 pub mod limits;
 pub mod load;
 pub mod manipulability;
+pub mod map;
 pub mod math;
 pub mod minimize;
 pub mod motion;

@@ -1,0 +1,67 @@
+"""Maps as npz files."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
+from .._files import whole_file
+from ..export import read_arrays
+from .reachability_map import ReachabilityMap
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+FORMAT = 1
+"""Version of the file; a file of another version is refused."""
+
+_QUALITY = ("manipulability", "clearance")
+
+
+def write(map: ReachabilityMap, file: str | os.PathLike[str]) -> None:  # noqa: A002
+    """Writes a map; the file appears complete or not at all."""
+    arrays: dict[str, Any] = {
+        "reachability_map": np.array(FORMAT),
+        "robot": _stored(map.robot),
+        "grid": _stored(map.grid),
+        "bits": map.bits,
+    }
+    arrays |= {name: getattr(map, name) for name in _QUALITY if getattr(map, name) is not None}
+    with whole_file(file) as stream:
+        np.savez_compressed(stream, **arrays)
+
+
+def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
+    """Reads a map, of `robot` if that is given."""
+    place = os.fspath(file)
+    arrays = read_arrays(file)
+    if "reachability_map" not in arrays:
+        raise InvalidInputError(f"{place}: not a reachability map")
+    if (version := arrays["reachability_map"]) != FORMAT:
+        raise InvalidInputError(f"{place}: a map of format {version}; this library reads format {FORMAT}: compute it again")
+    try:
+        stored = Robot._restore(arrays["robot"].tobytes())
+        grid = MapGrid._restore(arrays["grid"].tobytes())
+        found = ReachabilityMap(stored, grid, arrays["bits"], *(arrays.get(name) for name in _QUALITY))
+    except (KeyError, BeetleIkError) as error:
+        raise InvalidInputError(f"{place}: damaged reachability map: {error!s:.200}") from error
+    require_same_robot(f"{place}: the map", stored, robot)
+    return found
+
+
+def require_same_robot(what: str, mapped: Robot, robot: Robot | None) -> None:
+    """Raises `InvalidInputError` unless the robots are equal."""
+    if robot is None or mapped == robot:
+        return
+    other = f"of robot '{mapped.name}', not of '{robot.name}'"
+    if mapped.name == robot.name:
+        other = f"of another robot '{robot.name}': joints, limits, base, tool or bodies differ"
+    raise InvalidInputError(f"{what} is {other}")
+
+
+def _stored(value: Robot | MapGrid) -> NDArray[np.uint8]:
+    _, (stored,) = value.__reduce__()
+    return np.frombuffer(stored, np.uint8)
