@@ -245,7 +245,7 @@ def test_a_store_of_other_targets_is_refused(store: Path) -> None:
 
 def test_a_store_of_another_version_is_refused(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     in_chunks(store)
-    monkeypatch.setattr("beetle_ik.distributed.chunks.__version__", "9.9.9")
+    monkeypatch.setattr("beetle_ik.chunked.chunks.__version__", "9.9.9")
     difference = f"version is '{bik.__version__}' there and '9.9.9' here"
     message = f"store: '{store}' holds another job: {difference}: give another folder"
     assert_told(lambda: in_chunks(store), Invalid, message)

@@ -120,7 +120,7 @@ def test_a_worker_of_another_version_is_refused(client: Any) -> None:
     worker = next(iter(client.scheduler_info()["workers"]))
 
     def pretend(name: str, value: str) -> None:
-        from beetle_ik.distributed import chunks
+        from beetle_ik.chunked import chunks
 
         setattr(chunks, name, value)
 

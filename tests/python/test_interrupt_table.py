@@ -81,6 +81,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Trajectory.at": lambda: with_times(wave(100_000).at, 6_000_000),
         "Trajectory.sample": lambda: sampled(wave(100_000)),
         "Trajectory.from_samples": lambda: lambda: wave(3_000_000),
+        "distributed.reachability": lambda: lambda: distributed.reachability(None, IIWA, voxel=0.02),
         "distributed.solve_batch": lambda: (
             lambda: distributed.solve_batch(None, IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS)
         ),

@@ -1,4 +1,4 @@
-"""Work that outgrows one machine: batches in chunks, on the workers of a dask cluster, kept in a store that goes on.
+"""Work that outgrows one machine: batches and maps in chunks, on the workers of a dask cluster, kept in stores.
 
 It needs the extra `distributed`: dask, and zarr for stores.
 
@@ -10,8 +10,10 @@ It needs the extra `distributed`: dask, and zarr for stores.
 """
 
 from .batch import BatchArrays, solve_batch
+from .maps import reachability
 
-__all__ = ["BatchArrays", "solve_batch"]
+__all__ = ["BatchArrays", "reachability", "solve_batch"]
 
 # Names as users write them, in messages and pages.
-BatchArrays.__module__ = solve_batch.__module__ = "beetle_ik.distributed"
+for _public in (BatchArrays, reachability, solve_batch):
+    _public.__module__ = "beetle_ik.distributed"

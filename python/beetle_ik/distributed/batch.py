@@ -17,9 +17,9 @@ from .. import _core
 from .._arguments import require
 from .._core import BatchSolution, InvalidInputError, Limits, Robot, Status, Stop
 from .._text import counted
-from .chunks import Job, require_client, run
-from .fingerprint import description
-from .store import Column, Layout, store_path
+from ..chunked.chunks import Job, require_client, run
+from ..chunked.fingerprint import description
+from ..chunked.store import Column, Layout, store_path
 
 if TYPE_CHECKING:
     from distributed import Client

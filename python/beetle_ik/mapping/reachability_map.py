@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
     from .inverse_map import InverseReachabilityMap
 
+QUALITY = ("manipulability", "clearance")
+"""What may be measured beside the bits."""
+
 _ROWS = 1 << 16  # poses looked up at once
 
 

@@ -92,7 +92,7 @@ class Store:
         self._opened: dict[str, Any] = {}
 
     @classmethod
-    def prepare(cls, folder: Path, layout: Layout, identity: Mapping[str, Any]) -> Store:
+    def prepare(cls, folder: Path, layout: Layout, identity: Mapping[str, Any], attached: Arrays) -> Store:
         """Makes the store of a job, or opens the one that is there, finished or not.
 
         Raises:
@@ -110,7 +110,7 @@ class Store:
                 # Written first, in one file: an empty store of this job continues like any other.
                 zarr.create_group(store=folder, attributes={_ATTRIBUTE: wanted}, zarr_format=3)
             store = cls(folder, layout)
-            store._create_arrays()
+            store._create_arrays(attached)
         except OSError as error:
             raise InvalidInputError(f"store: folder '{folder}' cannot be written: {error.strerror}") from error
         return store
@@ -153,8 +153,13 @@ class Store:
         for file in self._folder.rglob("*.partial"):
             file.unlink(missing_ok=True)
 
-    def _create_arrays(self) -> None:
+    def _create_arrays(self, attached: Arrays) -> None:
         layout = self._layout
+        for name, array in attached.items():
+            self._create(name, array.shape, array.shape, array.dtype, 0)
+            found = self._read(name, (slice(None),))
+            if found is None or not np.array_equal(found, array):
+                self._array(name)[:] = array
         for name, (dtype, shape) in layout.columns.items():
             whole, chunk = (*layout.shape, *shape), (*layout.chunk_shape, *shape)
             self._create(name, whole, chunk, dtype, _absent(dtype))
@@ -200,6 +205,30 @@ class Store:
             raise OSError(error.errno, what, str(self._folder)) from error
 
 
+def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
+    """Reads all arrays of a finished store of `call`.
+
+    Raises:
+        BeetleIkError: zarr is not installed.
+        InvalidInputError: the folder is not such a store, or is not finished or damaged. Names it.
+    """
+    there = _description(folder)
+    if there is None or there.get("call") != call:
+        raise InvalidInputError(f"{folder}: not a store of {call}")
+    if there.get("format") != _FORMAT:
+        raise InvalidInputError(f"{folder}: a store of format {there.get('format')}; this library reads {_FORMAT}")
+    group = _zarr().open_group(store=folder, mode="r", zarr_format=3)
+    try:
+        arrays = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
+        finished = arrays.pop(_FINISHED).any(axis=(1, 2))
+    except (KeyError, ValueError) as error:
+        raise InvalidInputError(f"{folder}: damaged store: {error!s:.200}; the call that made it repairs it") from error
+    if not finished.all():
+        done = f"{np.count_nonzero(finished)} of {len(finished)} chunks are done"
+        raise InvalidInputError(f"{folder}: {done}: the call that began the store goes on")
+    return arrays
+
+
 def _zarr() -> Any:
     return library("zarr", "zarr", "store=", extra="distributed")
 
@@ -218,12 +247,18 @@ def _require_empty(folder: Path) -> None:
         raise InvalidInputError(f"store: folder '{folder}' holds other files: {listed(others)}: give another folder")
 
 
-def _require_same_job(folder: Path, wanted: Mapping[str, Any]) -> None:
+def _description(folder: Path) -> dict[str, Any] | None:
+    """Returns what a store says of its job; None where there is no store of this library."""
     try:
         there = _zarr().open_group(store=folder, mode="r", zarr_format=3).attrs.asdict().get(_ATTRIBUTE)
     except (ValueError, KeyError, TypeError, FileNotFoundError):
-        there = None
-    if not isinstance(there, dict):
+        return None
+    return there if isinstance(there, dict) else None
+
+
+def _require_same_job(folder: Path, wanted: Mapping[str, Any]) -> None:
+    there = _description(folder)
+    if there is None:
         raise InvalidInputError(f"store: folder '{folder}' is not a store of beetle-ik: give another folder")
     names = [*there, *(name for name in wanted if name not in there)]
     differences = [

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
 from math import prod
@@ -54,6 +54,8 @@ class Job:
     """Returns the columns of a chunk, from its number, its region, its parts of the inputs and the number of threads.
     It is pickled.
     """
+    attached: Mapping[str, Array] = field(default_factory=dict)
+    """What a store holds besides the results, to be read without the call."""
 
 
 class Build(NamedTuple):
@@ -92,7 +94,8 @@ def run(
     """
     build = Build(__version__, ANY if any_instruction_set else _instructions)
     layout = job.layout
-    kept = None if store is None else Store.prepare(store, layout, {"call": job.call, **build._asdict(), **job.options})
+    identity = {"call": job.call, **build._asdict(), **job.options}
+    kept = None if store is None else Store.prepare(store, layout, identity, job.attached)
     columns = {} if kept else {name: np.empty((*layout.shape, *c.shape), c.dtype) for name, c in layout.columns.items()}
     results = _here(job, kept, threads) if client is None else _on_workers(job, client, store, build)
     done, total = 0, prod(layout.shape)
