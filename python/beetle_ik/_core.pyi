@@ -1806,11 +1806,15 @@ class SolutionSet:
     def __getitem__(self, index: _Several, /) -> list[Solution]: ...
     def __iter__(self) -> Iterator[Solution]: ...
 
+def _batch_message(counts: Sequence[int]) -> str:
+    """Sums up a batch of which `counts[status]` targets ended with `status`."""
+
 def solve_batch(
     robot: Robot,
     targets: _Targets,
     *,
     starts: ArrayLike | None = None,
+    first_row: int = 0,
     threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
@@ -1837,6 +1841,8 @@ def solve_batch(
         targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
             them, as for `solve`.
         starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
+        first_row: the row of the first target in the batch that these are part of. `solve_batch(robot, targets[k:], first_row=k)` gives
+            the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of all.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
             other rows and marks this one `Status.INVALID`, with q NaN.

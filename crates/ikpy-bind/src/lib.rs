@@ -58,6 +58,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_function(wrap_pyfunction!(batch::batch_message, module)?)?;
     module.add_class::<reach::PyMapGrid>()?;
     module.add_function(wrap_pyfunction!(reach::map_chunks, module)?)?;
     module.add_class::<posture::PyCircleSwarm>()?;

@@ -1,28 +1,27 @@
-"""Computes a map, a group of chunks after another."""
+"""Computes a map, chunk by chunk."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
-from math import prod
+from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._arguments import require
-from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot, map_chunks
-from .._progress import Bar
-from .reachability_map import ReachabilityMap
+from .._core import MapGrid, Robot, map_chunks
+from ..chunked.chunks import Job, require_client, run
+from ..chunked.fingerprint import description
+from ..chunked.store import Column, Layout, store_path
+from .map_file import attached
+from .reachability_map import QUALITY, ReachabilityMap
 
 if TYPE_CHECKING:
+    from distributed import Client
     from numpy.typing import ArrayLike, NDArray
 
-    from .._core import Obstacle, Task
-
-_GROUPS = 20  # calls of the core: each holds its own results beside the map
-
-Progress = bool | Callable[[int, int], object] | None
+    from .._core import Obstacle, Task, _Progress
 
 
 def reachability(
@@ -39,7 +38,7 @@ def reachability(
     evaluations: int = 200,
     quality: bool = False,
     threads: int | None = None,
-    progress: Progress = None,
+    progress: _Progress = None,
     store: str | os.PathLike[str] | None = None,
 ) -> ReachabilityMap:
     """Computes which poses an arm reaches: cubic voxels, with the same orientations at the centre of each.
@@ -68,62 +67,69 @@ def reachability(
             evaluations of the forward kinematics for arms without one.
         quality: whether to measure manipulability and clearance of the best configuration found in each voxel.
         threads: number of threads; None: one per core. The map has the same bits for any number.
-        progress: True shows a progress bar; a callable is called with (done, total), in voxels.
-        store: a zarr store to compute into.
+        progress: True shows a progress bar; a callable is called with (done, total), in voxels, after each chunk.
+        store: folder of a zarr group to compute into. The same call goes on after it was interrupted;
+            `ReachabilityMap.load` reads the finished store.
 
     Returns:
         A `ReachabilityMap`.
 
     Raises:
         InvalidInputError: a robot with several tips, or whose tip moves in too few directions for the task; a voxel,
-            region or count that makes no map.
+            region or count that makes no map; a store that cannot be written, or is of another map.
+        OSError: a chunk cannot be written to the store, which keeps the others.
     """
+    poses = {"voxel": voxel, "directions": directions, "rolls": rolls, "region": region}
+    kept_clear = {"obstacles": obstacles, "margin": margin, "self_collision": self_collision}
+    asked = {"task": task, **kept_clear, "evaluations": evaluations, "quality": quality}
+    return computed(None, robot, poses, asked, threads=threads, progress=progress, store=store)
+
+
+def computed(
+    client: Client | None,
+    robot: Robot,
+    poses: Mapping[str, Any],
+    asked: Mapping[str, Any],
+    *,
+    threads: int | None,
+    progress: object,
+    store: str | os.PathLike[str] | None,
+    any_instruction_set: bool = False,
+) -> ReachabilityMap:
+    """Computes a map here or on the workers of a client; `poses` and `asked` are arguments of `reachability`."""
+    require_client(client, threads)
     require("robot", robot, Robot)
-    require("quality", quality, bool)
-    asked: dict[str, Any] = {
-        "task": task,
-        "obstacles": None if obstacles is None else list(obstacles),
-        "margin": margin,
-        "self_collision": self_collision,
+    require("quality", asked["quality"], bool)
+    require("any_instruction_set", any_instruction_set, bool)
+    folder = None if store is None else store_path(store)
+    obstacles = asked["obstacles"]
+    options = {**asked, "obstacles": None if obstacles is None else list(obstacles)}
+    of_grid = {name: options[name] for name in ("task", "obstacles", "margin", "self_collision")}
+    grid = MapGrid(robot, **poses, **of_grid)
+    map_chunks(robot, grid, [], **options, threads=threads)  # the core checks all other arguments
+    columns = {"bits": Column(np.dtype(np.uint8), (grid.bytes,))}
+    if options["quality"]:
+        columns |= {name: Column(np.dtype(np.float32)) for name in QUALITY}
+    region = None if poses["region"] is None else np.asarray(poses["region"], np.float64)
+    identity = {
+        name: description(value) for name, value in {"robot": robot, **poses, "region": region, **options}.items()
     }
-    grid = MapGrid(robot, voxel=voxel, directions=directions, rolls=rolls, region=region, **asked)
-    if store is not None:
-        raise BeetleIkError("store= needs zarr: pip install 'beetle-ik[distributed]'")
-    reached = np.empty((*grid.shape, grid.bytes), np.uint8)
-    measured = [np.empty(grid.shape, np.float32) for _ in range(2)] if quality else []
-    wholes: list[NDArray[Any]] = [reached, *measured]
-    options = asked | {"evaluations": evaluations, "quality": quality, "threads": threads}
-    numbers = np.arange(prod(grid.chunks))
-    with _shown(progress) as update:
-        done = 0
-        for group in np.array_split(numbers, min(_GROUPS, len(numbers))):
-            report = None if update is None else _onward(update, done, prod(grid.shape))
-            chunks = map_chunks(robot, grid, group.tolist(), **options, progress=report)
-            for number, arrays in zip(group.tolist(), chunks, strict=True):
-                place = tuple(slice(*ends) for ends in grid.chunk(number))
-                for whole, part in zip(wholes, arrays, strict=False):
-                    whole[place] = part
-                done += prod(arrays[0].shape[:3])
-    return ReachabilityMap(robot, grid, reached, *measured)
+    layout = Layout(columns, tuple(grid.shape), tuple(grid.chunk_shape))
+    chunk = partial(_chunk, robot, grid, options)
+    job = Job("reachability", identity, layout, [], chunk, attached(robot, grid))
+    found = run(job, client, folder, threads=threads, progress=progress, any_instruction_set=any_instruction_set)
+    return ReachabilityMap(robot, grid, **{name: column[:] for name, column in found.items()})
 
 
-@contextmanager
-def _shown(progress: Progress) -> Iterator[Callable[[int, int], object] | None]:
-    """Yields the function to call with (done, total), or None."""
-    if progress is None or progress is False:
-        yield None
-    elif progress is True:
-        bar = Bar()
-        try:
-            yield bar.update
-        finally:
-            bar.close()
-    elif callable(progress):
-        yield progress
-    else:
-        raise InvalidInputError(f"progress must be True, False or a callable of (done, total), got {progress!r:.60}")
-
-
-def _onward(update: Callable[[int, int], object], before: int, total: int) -> Callable[[int, int], object]:
-    """Returns a function that reports the progress of a part that begins when `before` of `total` are done."""
-    return lambda done, _: update(before + done, total)
+def _chunk(
+    robot: Robot,
+    grid: MapGrid,
+    options: Mapping[str, Any],
+    chunk: int,
+    _region: tuple[slice, ...],
+    _inputs: object,
+    threads: int | None,
+) -> dict[str, NDArray[Any]]:
+    (arrays,) = map_chunks(robot, grid, [chunk], **options, threads=threads)
+    names = ("bits", *QUALITY)
+    return {name: array for name, array in zip(names, arrays, strict=True) if array is not None}

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 _A_BATCH = 3  # dimensions
 
+QUALITY = ("manipulability", "clearance")
+"""What may be measured beside the bits."""
+
 
 class ReachabilityMap:
     """Which poses an arm reaches, made by `reachability`: voxels, and orientations at the centre of each.
