@@ -83,6 +83,7 @@ from ._core import (
 )
 from ._scene import Scene
 from ._versions import show_versions
+from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
 from .viewing import Viewer, view
 
 # Silent unless the application configures logging.
@@ -95,6 +96,7 @@ __all__ = [
     "QPSO",
     "TPBSO",
     "ZNNBAS",
+    "BasePlacement",
     "BatchPlan",
     "BatchSolution",
     "BeeColony",
@@ -109,6 +111,7 @@ __all__ = [
     "Genetic",
     "InfeasibleError",
     "InvalidInputError",
+    "InverseReachabilityMap",
     "JacobianTranspose",
     "KinematicPlant",
     "LevenbergMarquardt",
@@ -121,6 +124,7 @@ __all__ = [
     "Path",
     "Plan",
     "PlanarPosture",
+    "ReachabilityMap",
     "Robot",
     "Scene",
     "SelfMotion",
@@ -142,6 +146,7 @@ __all__ = [
     "Violation",
     "WeightedPseudoInverse",
     "__version__",
+    "best_base",
     "filters",
     "goals",
     "interop",
@@ -154,6 +159,7 @@ __all__ = [
     "planar_posture",
     "plot",
     "pose",
+    "reachability",
     "self_motion",
     "show_versions",
     "solve",

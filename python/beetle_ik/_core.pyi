@@ -1670,6 +1670,74 @@ def self_motion(
     """
 
 @final
+class MapGrid:
+    """"""
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        voxel: float,
+        directions: int,
+        rolls: int,
+        region: ArrayLike | None = None,
+        task: Task | None = None,
+        obstacles: Iterable[Obstacle] | None = None,
+        margin: float | None = None,
+        self_collision: bool | None = None,
+    ) -> MapGrid: ...
+    @property
+    def origin(self) -> _Array:
+        """"""
+    @property
+    def voxel(self) -> float:
+        """"""
+    @property
+    def shape(self) -> list[int]:
+        """"""
+    @property
+    def axis(self) -> _Array | None:
+        """"""
+    @property
+    def orientations(self) -> int:
+        """"""
+    @property
+    def rolls(self) -> int:
+        """"""
+    @property
+    def bytes(self) -> int:
+        """"""
+    @property
+    def chunk_shape(self) -> list[int]:
+        """"""
+    @property
+    def chunks(self) -> list[int]:
+        """"""
+    def chunk(self, number: int) -> list[list[int]]:
+        """"""
+    def poses(self, voxel: Sequence[int]) -> _Array:
+        """"""
+    def locate(self, T: ArrayLike) -> NDArray[np.int64]:  # noqa: N803
+        """"""
+    def __eq__(self, other: object, /) -> bool: ...
+
+def map_chunks(
+    robot: Robot,
+    grid: MapGrid,
+    chunks: Sequence[int],
+    *,
+    task: Task | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
+    evaluations: int = 200,
+    quality: bool = False,
+    threads: int | None = None,
+    progress: _Progress = None,
+) -> list[tuple[NDArray[np.uint8], NDArray[np.float32] | None, NDArray[np.float32] | None]]:
+    """"""
+
+@final
 class SelfMotion:
     """A curve of configurations that keep the tip at a target."""
 
@@ -1738,11 +1806,15 @@ class SolutionSet:
     def __getitem__(self, index: _Several, /) -> list[Solution]: ...
     def __iter__(self) -> Iterator[Solution]: ...
 
+def _batch_message(counts: Sequence[int]) -> str:
+    """Sums up a batch of which `counts[status]` targets ended with `status`."""
+
 def solve_batch(
     robot: Robot,
     targets: _Targets,
     *,
     starts: ArrayLike | None = None,
+    first_row: int = 0,
     threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
@@ -1769,6 +1841,8 @@ def solve_batch(
         targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
             them, as for `solve`.
         starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
+        first_row: the row of the first target in the batch that these are part of. `solve_batch(robot, targets[k:], first_row=k)` gives
+            the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of all.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
             other rows and marks this one `Status.INVALID`, with q NaN.

@@ -1,4 +1,9 @@
-"""The progress bar behind `progress=True`."""
+"""The progress bar behind `progress=True`, and the argument `progress` of calls in Python."""
+
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+
+from ._core import InvalidInputError
 
 
 class Bar:
@@ -39,3 +44,21 @@ class Bar:
     def close(self) -> None:
         """Stops the bar and releases the terminal."""
         self._progress.stop()
+
+
+@contextmanager
+def reports(progress: object) -> Iterator[Callable[[int, int], object]]:
+    """Yields the function to call with (done, total), for the `progress` argument of a call.
+
+    Raises:
+        InvalidInputError: neither True, False, None nor a callable.
+    """
+    if progress is None or progress is False:
+        yield lambda _done, _total: None
+    elif progress is True:
+        with closing(Bar()) as bar:
+            yield bar.update
+    elif callable(progress):
+        yield progress
+    else:
+        raise InvalidInputError(f"progress must be True, False or a callable of (done, total), got {progress!r:.60}")

@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ._core import __version__, _instructions
 
 EXTRAS = {
+    "distributed": ["dask", "distributed", "zarr"],
     "interop": ["pandas"],
     "plot": ["matplotlib"],
     "report": ["jinja2"],

@@ -128,7 +128,7 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
             trajectory is missing. Names the array.
         FileNotFoundError, PermissionError, IsADirectoryError: there is no such file, or it may not be read.
     """
-    stored = _arrays(file)
+    stored = read_arrays(file)
     for name in ("time", "coefficients", "joint_names"):
         if name not in stored:
             raise InvalidInputError(
@@ -144,7 +144,12 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
     return Trajectory(stored["time"], stored["coefficients"], joint_names=joint_names.tolist())
 
 
-def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+def read_arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+    """Returns all arrays of an npz file.
+
+    Raises:
+        InvalidInputError: the file is not an npz file or is damaged. Names it.
+    """
     with path_of(file).open("rb") as stream:
         if not zipfile.is_zipfile(stream):
             raise InvalidInputError(f"{os.fspath(file)}: not an npz file")

@@ -13,6 +13,7 @@ import pytest
 from test_every_call import CALLS, MADE_BY_THE_LIBRARY
 
 import beetle_ik as bik
+from beetle_ik import distributed
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
@@ -30,7 +31,7 @@ def blocks_of_readme() -> list[str]:
 def documented() -> Iterator[tuple[str, str]]:
     """Names and docstrings of everything public."""
     yield "beetle_ik", inspect.getdoc(bik) or ""
-    for space in (bik, bik.goals, bik.interop, bik.obstacles, bik.paths, bik.plot, bik.tasks, bik.vision):
+    for space in (bik, distributed, bik.goals, bik.interop, bik.obstacles, bik.paths, bik.plot, bik.tasks, bik.vision):
         for name in space.__all__:
             thing = getattr(space, name)
             yield name, getattr(thing, "__doc__", None) or ""

@@ -17,6 +17,7 @@ from iiwa_circle import IIWA, START
 from test_every_call import CALLS, MADE_BY_THE_LIBRARY
 
 import beetle_ik as bik
+from beetle_ik import distributed
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer sends signals on Windows")
 
@@ -80,6 +81,10 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Trajectory.at": lambda: with_times(wave(100_000).at, 6_000_000),
         "Trajectory.sample": lambda: sampled(wave(100_000)),
         "Trajectory.from_samples": lambda: lambda: wave(3_000_000),
+        "distributed.reachability": lambda: lambda: distributed.reachability(None, IIWA, voxel=0.02),
+        "distributed.solve_batch": lambda: (
+            lambda: distributed.solve_batch(None, IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS)
+        ),
         "minimize": lambda: lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, stop=ENDLESS),
         "obstacles.ConvexMesh": lambda: hull(30_000),
         "obstacles.Grid": lambda: occupied(300),

@@ -30,7 +30,9 @@ def belongs_to_command_line(file: Path) -> bool:
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
 def test_optional_libraries_are_imported_inside_functions(file: Path) -> None:
     top_level = names_imported(list(ast.parse(file.read_text()).body))
-    kept_out = {"jinja2", "matplotlib", "rich", "viser"} | (set() if belongs_to_command_line(file) else {"typer"})
+    kept_out = {"dask", "distributed", "jinja2", "matplotlib", "rich", "viser", "zarr"} | (
+        set() if belongs_to_command_line(file) else {"typer"}
+    )
     assert not {name.split(".")[0] for name in top_level} & kept_out
 
 
@@ -45,4 +47,4 @@ def test_import_loads_nothing_but_numpy() -> None:
     program = "import sys, beetle_ik; print(*{name.split('.')[0] for name in sys.modules})"
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
     assert {"beetle_ik", "numpy"} <= set(loaded)
-    assert not {"typer", "rich", "matplotlib", "jinja2", "viser"} & set(loaded)
+    assert not {"typer", "rich", "matplotlib", "jinja2", "viser", "dask", "distributed", "zarr"} & set(loaded)

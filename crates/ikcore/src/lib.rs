@@ -54,7 +54,8 @@
 //! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
-//! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
+//! | 8 | [`tracking`], [`planning`], [`posture`], [`map`] |
+//! | 9 | [`batch`] |
 
 #[cfg(not(target_pointer_width = "64"))]
 compile_error!("ikcore needs a 64-bit processor: seeds, hashes and stored bytes are defined for 64-bit sizes");
@@ -71,6 +72,7 @@ pub mod kinematics;
 pub mod limits;
 pub mod load;
 pub mod manipulability;
+pub mod map;
 pub mod math;
 pub mod minimize;
 pub mod motion;

@@ -9,7 +9,7 @@ use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator};
 
-use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, count, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
 use crate::indexing::{Selection, iterate, select};
@@ -165,6 +165,14 @@ impl PyBatchSolution {
     }
 }
 
+/// Sums up a batch of which `counts[status]` targets ended with `status`.
+#[pyfunction]
+#[pyo3(name = "_batch_message")]
+#[allow(clippy::needless_pass_by_value)]
+pub fn batch_message(counts: Vec<usize>) -> String {
+    batch::message_of_counts(&counts)
+}
+
 fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchItem) -> T) -> Py<PyArray1<T>> {
     row(py, items.iter().map(of).collect()).unbind()
 }
@@ -179,6 +187,8 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
 ///         them, as for `solve`.
 ///     starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
+///     first_row: the row of the first target in the batch that these are part of. `solve_batch(robot, targets[k:], first_row=k)` gives
+///         the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of all.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
 ///         other rows and marks this one `Status.INVALID`, with q NaN.
@@ -201,17 +211,18 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///     InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
 ///     LimitError: a start outside the limits (names the row).
 #[pyfunction]
-#[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, task=None,
+#[pyo3(signature = (robot, targets, *, starts=None, first_row=0, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=ToleranceArgument::All(1e-6),
                     rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, targets, *, starts=None, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, targets, *, starts=None, first_row=0, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
     robot: &PyRobot,
     targets: &Bound<'_, PyAny>,
     starts: Option<&Bound<'_, PyAny>>,
+    first_row: i128,
     threads: Option<i128>,
     #[pyo3(from_py_with = crate::convert::text)] on_invalid: &str,
     progress: Option<&Bound<'_, PyAny>>,
@@ -258,6 +269,7 @@ pub fn solve_batch(
     let options = BatchOptions {
         each: arguments.read(robot, &asked, start_of_all, resolved)?,
         starts: start_of_each,
+        first_row: count("first_row", first_row)?,
         threads: optional_count("threads", threads)?,
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };

@@ -20,6 +20,7 @@ mod planning;
 mod pose;
 mod posture;
 mod python_calls;
+mod reach;
 mod robot;
 mod self_motion;
 mod signals;
@@ -58,6 +59,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_function(wrap_pyfunction!(batch::batch_message, module)?)?;
+    module.add_class::<reach::PyMapGrid>()?;
+    module.add_function(wrap_pyfunction!(reach::map_chunks, module)?)?;
     module.add_class::<posture::PyCircleSwarm>()?;
     module.add_class::<posture::PyPlanarPosture>()?;
     module.add_function(wrap_pyfunction!(posture::planar_posture, module)?)?;

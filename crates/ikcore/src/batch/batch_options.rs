@@ -22,6 +22,8 @@ pub struct BatchOptions<'a> {
     pub each: SolveOptions,
     /// The start of each target (m, n), row-major (rad, m).
     pub starts: Option<&'a [f64]>,
+    /// The row of the first target in the batch that these are part of: item i draws from stream `first_row + i` of the seed.
+    pub first_row: usize,
     /// Number of threads; None: one per core. The result does not depend on it.
     pub threads: Option<usize>,
     /// Treatment of invalid rows.

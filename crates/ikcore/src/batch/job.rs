@@ -1,6 +1,6 @@
 //! The work of a batch: rows, and the threads that solve groups of rows.
 //!
-//! Items share no mutable state: item i draws from stream i of the seed and writes to row i. So the bits of an item
+//! Items share no mutable state: each draws from the stream of its row and writes to its own row. So the bits of an item
 //! depend neither on the number of threads nor on the other items.
 
 use rayon::ThreadPool;
@@ -22,6 +22,7 @@ pub(super) struct Job<'a> {
     targets: Targets<'a>,
     starts: Option<&'a [f64]>,
     common_start: Option<&'a [f64]>,
+    first_row: usize,
     dof: usize,
     rows_are_checked: bool,
 }
@@ -42,11 +43,15 @@ impl<'a> Job<'a> {
             let expected = format!("{} numbers, {rows} rows (one per target) of {dof} joints", rows * dof);
             return Err(Error::WrongLength { what: "starts".into(), expected, got: starts.len() });
         }
+        if options.first_row > isize::MAX as usize {
+            return Err(Error::out_of_range("first_row", "below 2^63", options.first_row as f64));
+        }
         let context = SolveContext::new(robot, &options.each)?;
         let common_start = options.each.start.as_deref();
         common_start.map_or(Ok(()), |q| context.check_start(q))?;
         context.require_reference(options.starts.or(common_start))?;
-        Ok(Self { context, targets, starts: options.starts, common_start, dof, rows_are_checked: false })
+        let BatchOptions { starts, first_row, .. } = *options;
+        Ok(Self { context, targets, starts, common_start, first_row, dof, rows_are_checked: false })
     }
 
     /// Checks all rows before any is solved.
@@ -55,7 +60,7 @@ impl<'a> Job<'a> {
             if row.is_multiple_of(CHECKED_AT_ONCE) && !monitor.keep_going() {
                 return Ok(());
             }
-            self.check(row).map_err(|error| Error::InRow { row, error: Box::new(error) })?;
+            self.check(row).map_err(|error| Error::InRow { row: self.first_row + row, error: Box::new(error) })?;
         }
         self.rows_are_checked = true;
         Ok(())
@@ -104,7 +109,8 @@ impl<'a> Job<'a> {
             *item = match self.read(first + row) {
                 Err(_) => BatchItem::untouched(Status::Invalid),
                 Ok((targets, start)) => {
-                    let query = Query { targets: &targets, start, stream: (first + row) as u64, stopwatch };
+                    let query =
+                        Query { targets: &targets, start, stream: (self.first_row + first + row) as u64, stopwatch };
                     let solution = solve_query(&self.context, &query, monitor);
                     q.copy_from_slice(&solution.q);
                     stopwatch = stopwatch.started_later(solution.elapsed);

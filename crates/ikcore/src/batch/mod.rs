@@ -1,11 +1,12 @@
 //! Many targets or motions at once, on all cores. The only module that uses threads.
 //!
-//! `solve_batch` and `plan_batch` are the calls. A `job` reads rows, groups them and solves each group; `pool` holds the
+//! `solve_batch`, `plan_batch` and `map_chunks` are the calls. A `job` reads rows, groups them and solves each group; `pool` holds the
 //! threads, `workers` runs them under the eyes of the caller's monitor, `monitors` stop them on request, `results` holds the
 //! solutions.
 
 mod batch_options;
 mod job;
+mod map_chunks;
 mod monitors;
 mod plan_batch;
 mod pool;
@@ -15,7 +16,8 @@ mod targets;
 mod workers;
 
 pub use batch_options::{BatchOptions, OnInvalid};
+pub use map_chunks::map_chunks;
 pub use plan_batch::{PlanProblem, plan_batch, plan_status};
-pub use results::{Batch, BatchItem};
+pub use results::{Batch, BatchItem, message_of_counts};
 pub use solve_batch::solve_batch;
 pub use targets::Targets;

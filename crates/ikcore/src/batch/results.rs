@@ -114,17 +114,24 @@ impl Batch {
 
     /// The number of solved targets, and what to try for the others.
     pub fn message(&self) -> String {
-        let count = |status| self.items.iter().filter(|item| item.status == status).count();
-        let (solved, total) = (count(Status::Solved), self.items.len());
-        if total == 0 {
-            return "no targets".into();
-        }
-        if solved == total {
-            return format!("all {total} solved");
-        }
-        let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
-        let reasons: Vec<String> =
-            unsolved.map(|(count, status)| format!("{count} {}: {}", status.name(), status.advice())).collect();
-        format!("{solved} of {total} solved; {}", reasons.join("; "))
+        let mut counts = vec![0; Status::ALL.len()];
+        self.items.iter().for_each(|item| counts[item.status as usize] += 1);
+        message_of_counts(&counts)
     }
+}
+
+/// The number of solved targets, and what to try for the others, where `counts[status as usize]` targets ended with `status`.
+pub fn message_of_counts(counts: &[usize]) -> String {
+    let count = |status: Status| counts.get(status as usize).copied().unwrap_or_default();
+    let (solved, total) = (count(Status::Solved), counts.iter().sum::<usize>());
+    if total == 0 {
+        return "no targets".into();
+    }
+    if solved == total {
+        return format!("all {total} solved");
+    }
+    let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
+    let reasons: Vec<String> =
+        unsolved.map(|(count, status)| format!("{count} {}: {}", status.name(), status.advice())).collect();
+    format!("{solved} of {total} solved; {}", reasons.join("; "))
 }

@@ -35,7 +35,12 @@ impl Shared {
 
     /// Counts an item as done.
     pub(super) fn count(&self) {
-        self.done.fetch_add(1, Ordering::Relaxed);
+        self.count_all(1);
+    }
+
+    /// Counts several items as done.
+    pub(super) fn count_all(&self, items: usize) {
+        self.done.fetch_add(items, Ordering::Relaxed);
     }
 }
 

@@ -76,7 +76,7 @@ impl<'a> SolveContext<'a> {
         Ok(Self { robot, with_tool, options, criterion, tips, goals, bounds, central: OnceLock::new(), space })
     }
 
-    pub(super) fn robot(&self) -> &Robot {
+    pub(crate) fn robot(&self) -> &Robot {
         self.with_tool.as_deref().unwrap_or(self.robot)
     }
 
@@ -89,7 +89,7 @@ impl<'a> SolveContext<'a> {
     }
 
     /// Where solutions must be, if anything is to be kept clear of.
-    pub(super) fn space(&self) -> Option<&ClearSpace<'a>> {
+    pub(crate) fn space(&self) -> Option<&ClearSpace<'a>> {
         self.space.as_deref()
     }
 
@@ -109,7 +109,7 @@ impl<'a> SolveContext<'a> {
     }
 
     /// Whether only pose and limits define a solution, goals aside, and the choice of solver is ours.
-    pub(super) fn asks_for_pose(&self, target: &Target) -> bool {
+    pub(crate) fn asks_for_pose(&self, target: &Target) -> bool {
         self.fixes_pose(target) && self.options.solver.is_none()
     }
 

@@ -15,6 +15,7 @@
 //! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
+//! | `upright_axis` | a vertical first axis |
 //! | `mobile_base` | a robot on a base that moves |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
@@ -46,6 +47,7 @@ mod serialization;
 mod stance;
 mod tip_chain;
 mod tips;
+mod upright_axis;
 mod visual;
 
 pub(crate) use arms::Choice;
@@ -61,6 +63,7 @@ pub(crate) use links::FrameBuffer;
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;
+pub use upright_axis::UprightAxis;
 pub use visual::{Visual, VisualShape};
 
 pub use off_chain::HeldJoint;

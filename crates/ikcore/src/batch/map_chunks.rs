@@ -1,0 +1,48 @@
+//! Chunks of a map of what an arm reaches.
+
+use rayon::prelude::*;
+
+use super::{pool, workers};
+use crate::error::{Error, Result};
+use crate::map::{MapChunk, MapGrid, MapOptions, MapRobots, MapTest, rings_of};
+use crate::robot::Robot;
+use crate::solver::Monitor;
+
+/// Computes the `chunks` of a map, one after another, each on all `threads` (`None`: one per core). A chunk has the same bits
+/// whatever the others are, and for any number of threads.
+///
+/// The monitor is called only from the calling thread; its progress counts voxels.
+///
+/// # Errors
+/// Any [`Error`] for wrong input; [`Error::Interrupted`] if the monitor stops it.
+pub fn map_chunks(
+    robot: &Robot,
+    grid: &MapGrid,
+    chunks: &[usize],
+    options: &MapOptions,
+    threads: Option<usize>,
+    monitor: &mut dyn Monitor,
+) -> Result<Vec<MapChunk>> {
+    let pool = pool::pool(pool::thread_count(threads)?)?;
+    let ranges = chunks.iter().map(|chunk| grid.voxels().chunk(*chunk)).collect::<Result<Vec<_>>>()?;
+    let size = |ranges: &[[usize; 2]; 3]| ranges.iter().map(|[start, end]| end - start).product::<usize>();
+    let robots = MapRobots::new(robot, grid, options)?;
+    let test = MapTest::new(&robots, grid, options)?;
+    let mut computed = Vec::with_capacity(chunks.len());
+    workers::run_on(&pool, ranges.iter().map(size).sum(), monitor, |shared| {
+        for ranges in &ranges {
+            let rings = rings_of(grid, *ranges);
+            let results = rings.par_iter().with_max_len(1).map(|ring| {
+                let result = test.ring(ring, &mut shared.monitor());
+                shared.count_all(ring.voxels.len());
+                result
+            });
+            let results: Vec<_> = results.collect();
+            if !shared.monitor().keep_going() {
+                return;
+            }
+            computed.push(MapChunk::collected(grid, *ranges, &rings, &results));
+        }
+    });
+    if computed.len() == chunks.len() { Ok(computed) } else { Err(Error::Interrupted) }
+}

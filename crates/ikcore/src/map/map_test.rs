@@ -1,0 +1,274 @@
+//! Whether the tip reaches a pose, at several azimuths of its place together.
+
+use super::map_chunk::RingResult;
+use super::map_grid::MapGrid;
+use super::map_options::MapOptions;
+use super::rings::Ring;
+use crate::closed_form::{ArmBranches, FamilyLimits};
+use crate::error::{Error, Result};
+use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
+use crate::kinematics::Reach;
+use crate::manipulability::{Manipulability, Motion};
+use crate::math::Frame;
+use crate::robot::{Joint, Robot, UprightAxis};
+use crate::solver::{Monitor, Status, Stop, Stopwatch};
+use crate::task::{Target, Tolerance};
+
+/// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
+const AT_LIMIT: f64 = 1e-9;
+
+/// Decides which poses of a map are reached. Shared by all threads.
+pub(crate) struct MapTest<'a> {
+    grid: &'a MapGrid,
+    /// Within the limits of the robot.
+    own: SolveContext<'a>,
+    /// With the first joint free to turn, where azimuths are alike.
+    turning: Option<(UprightAxis, SolveContext<'a>)>,
+    way: Way,
+    reach: Reach,
+    ranges: Vec<JointRange>,
+    options: &'a MapOptions,
+    measure: Manipulability,
+}
+
+/// How solutions are found.
+enum Way {
+    /// All branches of a closed form.
+    Branches,
+    /// Branches at values of the parameter of a redundant arm, within these limits.
+    Family(Box<FamilyLimits>),
+    /// A search.
+    Search,
+}
+
+/// The limits of a joint, and the smallest change that leaves the pose unchanged.
+#[derive(Debug, Clone, Copy)]
+struct JointRange {
+    lower: f64,
+    upper: f64,
+    period: Option<f64>,
+}
+
+impl JointRange {
+    /// Whether a value is inside, whole turns aside.
+    #[inline]
+    fn holds(&self, value: f64) -> bool {
+        let (lower, upper) = (self.lower - AT_LIMIT, self.upper + AT_LIMIT);
+        match self.period {
+            None => lower <= value && value <= upper,
+            Some(period) => upper - lower >= period || value + period * ((lower - value) / period).ceil() <= upper,
+        }
+    }
+}
+
+/// The two robots of a [`MapTest`], and the options of their solves.
+pub(crate) struct MapRobots {
+    own: Robot,
+    turning: Option<(UprightAxis, Robot)>,
+    each: SolveOptions,
+}
+
+impl MapRobots {
+    pub fn new(robot: &Robot, grid: &MapGrid, options: &MapOptions) -> Result<Self> {
+        robot.require_one_tip("reachability")?;
+        options.validate()?;
+        let free = |axis: UprightAxis| {
+            let freed = robot.with_limits(|index, joint| {
+                if index == axis.joint {
+                    (joint.lower, joint.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+                }
+            })?;
+            Ok::<_, Error>((axis, freed))
+        };
+        let alike = grid.treats_azimuths_alike();
+        let turning = robot.upright_axis().filter(|_| alike).map(free).transpose()?;
+        let each = SolveOptions {
+            task: options.task,
+            surroundings: options.surroundings.clone(),
+            stop: Stop { max_evaluations: options.evaluations, ..Stop::default() },
+            ..SolveOptions::default()
+        };
+        Ok(Self { own: robot.clone(), turning, each })
+    }
+}
+
+impl<'a> MapTest<'a> {
+    /// Checks robot and options for a grid.
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong options.
+    pub fn new(robots: &'a MapRobots, grid: &'a MapGrid, options: &'a MapOptions) -> Result<Self> {
+        let own = SolveContext::new(&robots.own, &robots.each)?;
+        let turning = match &robots.turning {
+            Some((axis, robot)) => Some((*axis, SolveContext::new(robot, &robots.each)?)),
+            None => None,
+        };
+        let robot = turning.as_ref().map_or(&own, |(_, context)| context).robot();
+        let (lower, upper): (Vec<f64>, Vec<f64>) =
+            robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
+        let any = Frame::IDENTITY;
+        let at_once = robot.solves_at_once() == Some(true) && own.asks_for_pose(&Target::Pose(any));
+        let (low, high): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| joint.sampling_range()).unzip();
+        let way = match robot.family(&any) {
+            _ if !at_once => Way::Search,
+            Some(family) => Way::Family(Box::new(family.limits(&low, &high))),
+            None => Way::Branches,
+        };
+        let range = |(j, joint): (usize, &Joint)| JointRange {
+            lower: joint.lower,
+            upper: joint.upper,
+            period: robot.turn_period(j),
+        };
+        let ranges = own.robot().joints().iter().enumerate().map(range).collect();
+        let reach = robot.reach(&lower, &upper);
+        let measure = Manipulability::of(own.robot(), Motion::Pose);
+        Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
+    }
+
+    /// Finds what is reached in the voxels of a ring.
+    pub fn ring(&self, ring: &Ring, monitor: &mut dyn Monitor) -> RingResult {
+        let bytes = self.grid.bytes();
+        let mut result = RingResult::new(ring, bytes, self.options.quality);
+        if self.reach.excess(&ring.place) > Tolerance::default().position {
+            return result;
+        }
+        let azimuth = if self.turning.is_some() { 0.0 } else { ring.azimuths[0] };
+        let count = self.grid.orientations().len();
+        for i in 0..count {
+            if !monitor.keep_going() {
+                break;
+            }
+            let pose = self.grid.pose(ring.place, azimuth, i);
+            let mut found = Found { test: self, azimuths: &ring.azimuths, reached: 0, quality: &mut result.quality };
+            match &self.way {
+                Way::Branches => {
+                    if let Some(branches) = self.robot().branches(&pose) {
+                        found.take_branches(&branches);
+                    }
+                }
+                Way::Family(limits) => {
+                    if let Some(family) = self.robot().family(&pose) {
+                        let arcs = family.arcs(limits);
+                        let values = arcs.scattered(self.options.evaluations);
+                        family.visit_within(limits, values, |branches| found.take_branches(branches));
+                    }
+                }
+                Way::Search => {
+                    let stream = ring.stream.wrapping_mul(count as u64).wrapping_add(i as u64);
+                    found.search(&pose, stream, monitor);
+                }
+            }
+            let reached = found.reached;
+            for (voxel, bits) in result.reached.chunks_exact_mut(bytes).enumerate() {
+                bits[i / 8] |= ((reached >> voxel & 1) as u8) << (i % 8);
+            }
+        }
+        result
+    }
+
+    /// The robot that solutions are found for.
+    fn robot(&self) -> &Robot {
+        self.turning.as_ref().map_or(&self.own, |(_, context)| context).robot()
+    }
+
+    /// Whether `q` is clear and inside the limits of all joints but that which turns the arm.
+    fn holds(&self, q: &[f64]) -> bool {
+        let turning = self.turning.as_ref().map(|(axis, _)| axis.joint);
+        let mut joints = self.ranges.iter().zip(q).enumerate();
+        joints.all(|(j, (range, value))| turning == Some(j) || range.holds(*value))
+            && self.own.space().is_none_or(|space| space.holds(q))
+    }
+}
+
+/// The azimuths at which an orientation of a ring is reached, a bit for each.
+struct Found<'t, 'a> {
+    test: &'t MapTest<'a>,
+    azimuths: &'t [f64],
+    reached: u64,
+    /// Manipulability and clearance of the best at each azimuth.
+    quality: &'t mut [Vec<f32>; 2],
+}
+
+impl Found<'_, '_> {
+    fn is_everywhere(&self) -> bool {
+        self.reached == u64::MAX >> (64 - self.azimuths.len())
+    }
+
+    /// Takes those that are solutions; returns whether azimuths are left.
+    fn take_branches(&mut self, branches: &ArmBranches) -> bool {
+        for (q, _) in branches.iter() {
+            if self.test.options.quality || !self.is_everywhere() {
+                self.take(q);
+            }
+        }
+        !self.is_everywhere()
+    }
+
+    /// Takes a configuration that has the pose, at the azimuths at which it is a solution.
+    fn take(&mut self, q: &[f64]) {
+        if !self.test.holds(q) {
+            return;
+        }
+        match &self.test.turning {
+            None => self.keep(q, 1),
+            Some((axis, _)) => {
+                let range = self.test.ranges[axis.joint];
+                let bit = |(place, azimuth): (usize, &f64)| {
+                    u64::from(range.holds(q[axis.joint] + azimuth * axis.per_turn)) << place
+                };
+                self.keep(q, self.azimuths.iter().enumerate().map(bit).sum());
+            }
+        }
+    }
+
+    /// Keeps `q` as a solution at these azimuths.
+    fn keep(&mut self, q: &[f64], at: u64) {
+        self.reached |= at;
+        if self.test.options.quality {
+            self.measure(q, at);
+        }
+    }
+
+    #[cold]
+    fn measure(&mut self, q: &[f64], at: u64) {
+        let MapTest { own, measure, .. } = self.test;
+        let index = measure.index(own.robot(), q);
+        let clearance = own.space().and_then(|space| space.nearest(q)).map_or(f64::NAN, |near| near.contact.distance);
+        for (all, value) in self.quality.iter_mut().zip([index, clearance]) {
+            for (place, best) in all.iter_mut().enumerate() {
+                if at >> place & 1 == 1 {
+                    // The larger one, and not NaN where one is a number.
+                    *best = best.max(value as f32);
+                }
+            }
+        }
+    }
+
+    /// Takes what a search finds. Where that turns out to be beyond the limits of the first joint, it searches again at that azimuth.
+    fn search(&mut self, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) {
+        let MapTest { own, turning, .. } = self.test;
+        let Some((axis, context)) = turning else {
+            if let Some(solution) = searched(own, pose, stream, monitor) {
+                self.take(&solution.q);
+            }
+            return;
+        };
+        let Some(solution) = searched(context, pose, stream, monitor) else { return };
+        self.take(&solution.q);
+        for place in 0..self.azimuths.len() {
+            if self.reached >> place & 1 == 0
+                && let Some(solution) = searched(own, &axis.turned(pose, self.azimuths[place]), stream, monitor)
+            {
+                self.keep(&solution.q, 1 << place);
+            }
+        }
+    }
+}
+
+/// The solution of a pose, if one is found.
+fn searched(context: &SolveContext<'_>, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) -> Option<Solution> {
+    let targets = context.read(&[Target::Pose(*pose)]).ok()?;
+    let query = Query { targets: &targets, start: None, stream, stopwatch: Stopwatch::start() };
+    let solution = solve_query(context, &query, monitor);
+    (solution.status == Status::Solved).then_some(solution)
+}

@@ -1,0 +1,43 @@
+"""Fingerprints of arguments: by them a store knows the job whose results it holds."""
+
+import hashlib
+import io
+import pickle
+from collections.abc import Sequence
+from numbers import Integral, Real
+
+import numpy as np
+from numpy.typing import NDArray
+
+_SHOWN = 16  # digits of a hash in a message
+
+
+def description(value: object) -> str | int | float | bool | None:
+    """Returns a value of JSON that tells arguments apart: plain values as they are, others as type and hash."""
+    if value is None or isinstance(value, str | bool | np.bool_):
+        return bool(value) if isinstance(value, np.bool_) else value
+    if isinstance(value, Integral):
+        return int(value)
+    if isinstance(value, Real):
+        return float(value)
+    name = getattr(value, "name", None)
+    kind = f"{type(value).__name__} {name}" if isinstance(name, str) else type(value).__name__
+    return f"{kind} {hashlib.sha256(_content(value)).hexdigest()[:_SHOWN]}"
+
+
+def digest(arrays: Sequence[NDArray[np.generic]]) -> NDArray[np.uint8]:
+    """Returns the SHA-256 of types, shapes and contents (32,)."""
+    seen = hashlib.sha256()
+    for array in arrays:
+        seen.update(f"{array.dtype.str}{array.shape}".encode())
+        seen.update(np.ascontiguousarray(array).data)
+    return np.frombuffer(seen.digest(), np.uint8)
+
+
+def _content(value: object) -> bytes:
+    """Returns the pickled value, the same for equal values: without a memo, which tells apart who shares what."""
+    written = io.BytesIO()
+    pickler = pickle.Pickler(written, protocol=5)
+    pickler.fast = True
+    pickler.dump(value)
+    return written.getvalue()

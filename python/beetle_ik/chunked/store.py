@@ -1,0 +1,270 @@
+"""The results of a job on disk: a zarr group with one array per column, written chunk by chunk.
+
+The array `chunks` holds two hashes for each chunk: of what it was computed from, and of its results. They are written
+last, so a chunk whose results do not match them is not finished. Nothing in the store depends on time or on who
+computed it: two stores of one job are equal byte for byte.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .._core import InvalidInputError
+from .._needs import library
+from .._text import listed
+from .fingerprint import digest
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Arrays = Mapping[str, NDArray[np.generic]]
+
+_FORMAT = 1
+_ATTRIBUTE = "beetle_ik"
+_FINISHED = "chunks"
+_ENCODING = {"name": "default", "separator": "."}  # files, not a folder for each chunk
+
+
+class Column(NamedTuple):
+    """One array of a store: the type and shape of each of its items."""
+
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...] = ()
+
+
+class Layout(NamedTuple):
+    """What a store is made of: items in a grid of one or several axes, cut into chunks."""
+
+    columns: Mapping[str, Column]
+    shape: tuple[int, ...]
+    chunk_shape: tuple[int, ...]
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The number of chunks along each axis; the last ones may be smaller."""
+        return tuple(-(-items // chunk) for items, chunk in zip(self.shape, self.chunk_shape, strict=True))
+
+    @property
+    def chunks(self) -> int:
+        """The number of chunks. They count along the last axis first."""
+        return prod(self.counts)
+
+    def region(self, chunk: int) -> tuple[slice, ...]:
+        """The items of a chunk."""
+        place = np.unravel_index(chunk, self.counts)
+        axes = zip(place, self.chunk_shape, self.shape, strict=True)
+        return tuple(slice(int(i) * length, min((int(i) + 1) * length, end)) for i, length, end in axes)
+
+
+def store_path(store: object) -> Path:
+    """Returns the folder that the argument `store` names, as an absolute path.
+
+    Raises:
+        InvalidInputError: the argument is not the path of a folder; an address such as s3:// is none.
+    """
+    if not isinstance(store, str | os.PathLike) or not str(store) or "\0" in str(store):
+        raise InvalidInputError(f"store must be the path of a folder, got {store!r:.60}")
+    if "://" in str(store):
+        raise InvalidInputError(f"store must be a folder on a file system, got {store!r:.60}: mount it")
+    return Path(store).absolute()
+
+
+class Store:
+    """The arrays of a job in a zarr group. Every process opens its own."""
+
+    def __init__(self, folder: Path, layout: Layout) -> None:
+        """Opens a store that `prepare` made."""
+        try:
+            self.group = _zarr().open_group(store=folder, mode="r+", zarr_format=3)
+        except FileNotFoundError:
+            what = "no store here: the folder must be on a file system that all workers share, under the same path"
+            raise FileNotFoundError(errno.ENOENT, what, str(folder)) from None
+        self._folder = folder
+        self._layout = layout
+        self._opened: dict[str, Any] = {}
+
+    @classmethod
+    def prepare(cls, folder: Path, layout: Layout, identity: Mapping[str, Any], attached: Arrays) -> Store:
+        """Makes the store of a job, or opens the one that is there, finished or not.
+
+        Raises:
+            BeetleIkError: zarr is not installed.
+            InvalidInputError: the folder cannot be written, holds something else, or the store of another job.
+        """
+        zarr = _zarr()
+        wanted = {"format": _FORMAT, **identity}
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if (folder / "zarr.json").exists():
+                _require_same_job(folder, wanted)
+            else:
+                _require_empty(folder)
+                # Written first, in one file: an empty store of this job continues like any other.
+                zarr.create_group(store=folder, attributes={_ATTRIBUTE: wanted}, zarr_format=3)
+            store = cls(folder, layout)
+            store._create_arrays(attached)
+        except OSError as error:
+            raise InvalidInputError(f"store: folder '{folder}' cannot be written: {error.strerror}") from error
+        return store
+
+    def holds(self, chunk: int, inputs: NDArray[np.uint8]) -> bool:
+        """Whether a chunk is there and whole, and was computed from what has the hash `inputs`.
+
+        Raises:
+            InvalidInputError: it was computed from something else.
+        """
+        hashes = self._read(_FINISHED, (slice(chunk, chunk + 1),))
+        if hashes is None or not hashes.any():
+            return False
+        region = self._layout.region(chunk)
+        columns = [self._read(name, region) for name in self._layout.columns]
+        found = [column for column in columns if column is not None]
+        if len(found) < len(columns) or not np.array_equal(digest(found), hashes[0, 1]):
+            return False
+        if not np.array_equal(hashes[0, 0], inputs):
+            where = f"rows {region[0].start} to {region[0].stop - 1} of the store '{self._folder}'"
+            raise InvalidInputError(f"store: {where} were computed from other targets or starts: give another folder")
+        return True
+
+    def write(self, chunk: int, arrays: Arrays, inputs: NDArray[np.uint8]) -> None:
+        """Writes a whole chunk. Each file replaces the old one when it is complete.
+
+        Raises:
+            OSError: it cannot be written; names the chunk. The other chunks are as before.
+        """
+        region = self._layout.region(chunk)
+        columns = {name: np.ascontiguousarray(arrays[name]) for name in self._layout.columns}
+        hashes = np.stack([inputs, digest(list(columns.values()))])
+        with self._names_chunk(chunk):
+            for name, column in columns.items():
+                self._array(name)[region] = column
+            self._array(_FINISHED)[chunk : chunk + 1] = hashes[None]
+
+    def finish(self) -> None:
+        """Removes the unfinished files that killed processes left behind."""
+        for file in self._folder.rglob("*.partial"):
+            file.unlink(missing_ok=True)
+
+    def _create_arrays(self, attached: Arrays) -> None:
+        layout = self._layout
+        for name, array in attached.items():
+            self._create(name, array.shape, array.shape, array.dtype, 0)
+            found = self._read(name, (slice(None),))
+            if found is None or not np.array_equal(found, array):
+                self._array(name)[:] = array
+        for name, (dtype, shape) in layout.columns.items():
+            whole, chunk = (*layout.shape, *shape), (*layout.chunk_shape, *shape)
+            self._create(name, whole, chunk, dtype, _absent(dtype))
+        self._create(_FINISHED, (layout.chunks, 2, 32), (1, 2, 32), np.dtype(np.uint8), 0)
+
+    def _create(
+        self, name: str, shape: tuple[int, ...], chunks: tuple[int, ...], dtype: np.dtype[Any], fill: object
+    ) -> None:
+        if name in self.group:
+            return
+        checksum = library("zarr.codecs", "zarr", "store=", extra="distributed").Crc32cCodec()
+        self.group.create_array(
+            name,
+            shape=shape,
+            chunks=tuple(max(length, 1) for length in chunks),
+            dtype=dtype,
+            fill_value=fill,
+            compressors=[checksum],
+            chunk_key_encoding=_ENCODING,
+        )
+
+    def _array(self, name: str) -> Any:
+        """Opens a column, once. It writes chunks of NaN too, which zarr leaves out otherwise."""
+        if name not in self._opened:
+            self._opened[name] = self.group[name].with_config({"write_empty_chunks": True})
+        return self._opened[name]
+
+    def _read(self, name: str, region: tuple[slice, ...]) -> NDArray[np.generic] | None:
+        """Reads a chunk of a column; None if its file is damaged."""
+        try:
+            values: NDArray[np.generic] = self._array(name)[region]
+        except ValueError:
+            return None
+        return values
+
+    @contextmanager
+    def _names_chunk(self, chunk: int) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            kept = "the finished chunks are kept, and the same call goes on from them"
+            what = f"{error.strerror}: chunk {chunk} of {self._layout.chunks} cannot be written; {kept}"
+            raise OSError(error.errno, what, str(self._folder)) from error
+
+
+def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
+    """Reads all arrays of a finished store of `call`.
+
+    Raises:
+        BeetleIkError: zarr is not installed.
+        InvalidInputError: the folder is not such a store, or is not finished or damaged. Names it.
+    """
+    there = _description(folder)
+    if there is None or there.get("call") != call:
+        raise InvalidInputError(f"{folder}: not a store of {call}")
+    if there.get("format") != _FORMAT:
+        raise InvalidInputError(f"{folder}: a store of format {there.get('format')}; this library reads {_FORMAT}")
+    group = _zarr().open_group(store=folder, mode="r", zarr_format=3)
+    try:
+        arrays = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
+        finished = arrays.pop(_FINISHED).any(axis=(1, 2))
+    except (KeyError, ValueError) as error:
+        raise InvalidInputError(f"{folder}: damaged store: {error!s:.200}; the call that made it repairs it") from error
+    if not finished.all():
+        done = f"{np.count_nonzero(finished)} of {len(finished)} chunks are done"
+        raise InvalidInputError(f"{folder}: {done}: the call that began the store goes on")
+    return arrays
+
+
+def _zarr() -> Any:
+    return library("zarr", "zarr", "store=", extra="distributed")
+
+
+def _absent(dtype: np.dtype[Any]) -> object:
+    """The value of rows that were not computed."""
+    if dtype.kind == "f":
+        return np.nan
+    return False if dtype.kind == "b" else np.iinfo(dtype).max
+
+
+def _require_empty(folder: Path) -> None:
+    """A process that was killed as it made the store may have left unfinished files."""
+    others = sorted(entry.name for entry in folder.iterdir() if entry.suffix != ".partial")
+    if others:
+        raise InvalidInputError(f"store: folder '{folder}' holds other files: {listed(others)}: give another folder")
+
+
+def _description(folder: Path) -> dict[str, Any] | None:
+    """Returns what a store says of its job; None where there is no store of this library."""
+    try:
+        there = _zarr().open_group(store=folder, mode="r", zarr_format=3).attrs.asdict().get(_ATTRIBUTE)
+    except (ValueError, KeyError, TypeError, FileNotFoundError):
+        return None
+    return there if isinstance(there, dict) else None
+
+
+def _require_same_job(folder: Path, wanted: Mapping[str, Any]) -> None:
+    there = _description(folder)
+    if there is None:
+        raise InvalidInputError(f"store: folder '{folder}' is not a store of beetle-ik: give another folder")
+    names = [*there, *(name for name in wanted if name not in there)]
+    differences = [
+        f"{name} is {there.get(name)!r} there and {wanted.get(name)!r} here"
+        for name in names
+        if name not in there or name not in wanted or there[name] != wanted[name]
+    ]
+    if differences:
+        raise InvalidInputError(f"store: '{folder}' holds another job: {'; '.join(differences)}: give another folder")
