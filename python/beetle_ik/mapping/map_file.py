@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
 from .._files import whole_file
 from ..chunked.store import read_finished
@@ -35,6 +36,8 @@ def write(map: ReachabilityMap, file: str | os.PathLike[str]) -> None:  # noqa: 
 
 def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     """Reads a map, of `robot` if that is given."""
+    if robot is not None:
+        require("robot", robot, Robot)
     place = os.fspath(file)
     if Path(place).is_dir():
         arrays: dict[str, Any] = dict(read_finished(Path(place), "reachability"))
