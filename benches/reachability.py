@@ -1,7 +1,4 @@
-"""Maps of what an arm reaches: poses a second, memory, size on disk, and agreement with `solve` on poses drawn from them.
-
-python benches/reachability.py [--voxel 0.025] [--poses 10000] [robot ...]
-"""
+"""Maps of what an arm reaches: poses a second, memory, size on disk, and agreement with a search on poses of theirs."""
 
 import argparse
 import resource

@@ -2,8 +2,8 @@
 Where to put the base
 =====================
 
-Six places on two shelves are to be served by one UR5e. The inverse of its reachability map shows from where a single place is
-reached; ``best_base`` finds a place for the base from which all six are, and verifies it.
+One UR5e is to serve six places on two shelves. The inverse of its reachability map shows from where a single place is
+reached; ``best_base`` finds where the base reaches all six, and verifies it.
 """
 
 import matplotlib.pyplot as plt

@@ -1,4 +1,4 @@
-"""Maps of what an arm reaches: what they hold against solves, their inverse, files, figures, and places for the base."""
+"""Maps of what an arm reaches: against solves, their inverse, files, figures, and places for the base."""
 
 from pathlib import Path
 
