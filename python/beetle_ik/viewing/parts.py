@@ -93,10 +93,9 @@ class Parts:
 
     def draw_map(self, found: ReachabilityMap) -> None:
         """Draws the voxels that are reached, in place of the last ones: small, so that one sees between them."""
-        if found.robot.name != self._page.arm.robot.name:
-            raise InvalidInputError(
-                f"result is a map of robot '{found.robot.name}', not of '{self._page.arm.robot.name}'"
-            )
+        mapped, shown = found.robot.name, self._page.arm.robot.name
+        if mapped != shown:
+            raise InvalidInputError(f"result is a map of robot '{mapped}', not of '{shown}'")
         points, share = cloud(found)
         low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
         colors = (low + share[:, None] * (high - low)).astype(np.uint8)
