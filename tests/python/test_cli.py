@@ -65,7 +65,7 @@ def test_reach_writes_a_map_and_a_picture(tmp_path: Path) -> None:
     assert answer["voxels_reached"] == int((found.index > 0).sum()) > 100
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert run("reach", "ur5e", *options).stdout.startswith(f"ur5e: {answer['voxels_reached']} of 1728 voxels reached")
-    assert refused("reach", "ur5e", "--voxel", "0") == "Error: voxel must be positive, got 0"
+    assert refused("reach", "ur5e", "--voxel", "0") == "Error: voxel must be positive and finite, got 0"
 
 
 def test_fk_gives_the_pose() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
-from .._files import whole_file
+from .._files import path_of, whole_file
 from ..chunked.store import read_finished
 from ..export import read_arrays
 from .reachability_map import QUALITY, ReachabilityMap
@@ -38,7 +38,7 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     """Reads a map, of `robot` if that is given."""
     if robot is not None:
         require("robot", robot, Robot)
-    place = os.fspath(file)
+    place = str(path_of(file))
     if Path(place).is_dir():
         arrays: dict[str, Any] = dict(read_finished(Path(place), "reachability"))
     else:
