@@ -6,13 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
+from .._arguments import require, require_count
 from .._core import InvalidInputError, pose
 from .reachability_map import ReachabilityMap
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
+
+_MOST_YAWS = 3600
 
 
 class InverseReachabilityMap:
@@ -60,15 +62,17 @@ class InverseReachabilityMap:
         Returns:
             (i, j) float32.
         """
-        if yaws < 1:
-            raise InvalidInputError(f"yaws must be one or more, got {yaws}")
-        xs, ys = (np.atleast_1d(np.asarray(line, float)) for line in (x, y))
-        share = np.zeros((len(xs), len(ys)), np.float32)
+        require_count("yaws", yaws)
+        if not 1 <= yaws <= _MOST_YAWS:
+            raise InvalidInputError(f"yaws must be from 1 to {_MOST_YAWS}, got {yaws}")
+        xs, ys = (np.atleast_1d(_numbers(name, line)) for name, line in (("x", x), ("y", y)))
+        height = float(_numbers("height", height, dimensions=0))
+        reached = np.zeros((len(xs), len(ys)), int)
         for yaw in np.arange(yaws) * (2 * np.pi / yaws):
             bases = np.tile(pose([0.0, 0.0, height], rpy=[0.0, 0.0, yaw]), (len(xs), len(ys), 1, 1))
             bases[..., 0, 3], bases[..., 1, 3] = xs[:, None], ys
-            share += self.query(bases.reshape(-1, 4, 4), target).reshape(share.shape) / np.float32(yaws)
-        return share
+            reached += self.query(bases.reshape(-1, 4, 4), target).reshape(reached.shape)
+        return (reached / yaws).astype(np.float32)
 
     def plot(self, target: ArrayLike | None = None, *, height: float = 0.0) -> Figure:
         """Draws where an upright base at this height (m) reaches a target (4, 4), by the share of its yaws."""
@@ -79,6 +83,17 @@ class InverseReachabilityMap:
     def __repr__(self) -> str:
         """Names the map."""
         return f"<InverseReachabilityMap of {self.map!r}>"
+
+
+def _numbers(name: str, value: ArrayLike, *, dimensions: int = 1) -> NDArray[np.float64]:
+    """Returns finite numbers of at most so many dimensions."""
+    try:
+        numbers = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise InvalidInputError(f"{name} must be numbers, got {value!r:.60}") from None
+    if numbers.ndim > dimensions or not np.isfinite(numbers).all():
+        raise InvalidInputError(f"{name} must be finite, in {dimensions} dimensions at most, got {value!r:.60}")
+    return numbers
 
 
 def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:

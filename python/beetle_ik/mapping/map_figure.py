@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require_text
 from .._core import InvalidInputError
 from .._style import BLACK, VERMILION, new_figure, style
+from .inverse_map import rigid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +29,7 @@ _NAMES = "xyz"
 
 def drawn(map: ReachabilityMap, kind: str) -> Figure:  # noqa: A002
     """Draws a map as "slices" or as a "cloud"."""
+    require_text("kind", kind)
     if kind not in KINDS:
         raise InvalidInputError(f"kind must be one of {', '.join(repr(known) for known in KINDS)}, got {kind!r:.60}")
     title = f"{map.robot.name}: share of {map.orientations} orientations reached"
@@ -42,7 +45,7 @@ def drawn_on_floor(inverse: InverseReachabilityMap, target: ArrayLike | None, he
     """Draws the share of yaws at which an upright base at `height` reaches a target."""
     map = inverse.map  # noqa: A001
     radius = 0.5 * map.voxel * max(map.shape[:2])
-    at = np.zeros(2) if target is None else np.asarray(target, float)[:2, 3]
+    at = np.zeros(2) if target is None else rigid("target", target)[..., :2, 3].reshape(-1, 2)[0]
     x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
     share = inverse.on_floor(x, y, target=target, height=height)
     with style():

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
-from .._files import whole_file
+from .._files import path_of, whole_file
 from ..chunked.store import read_finished
 from ..export import read_arrays
 from .reachability_map import QUALITY, ReachabilityMap
@@ -35,7 +36,9 @@ def write(map: ReachabilityMap, file: str | os.PathLike[str]) -> None:  # noqa: 
 
 def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     """Reads a map, of `robot` if that is given."""
-    place = os.fspath(file)
+    if robot is not None:
+        require("robot", robot, Robot)
+    place = str(path_of(file))
     if Path(place).is_dir():
         arrays: dict[str, Any] = dict(read_finished(Path(place), "reachability"))
     else:

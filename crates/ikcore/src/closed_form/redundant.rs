@@ -64,10 +64,11 @@ impl Redundant {
     /// Chooses the parameter; `None` where joints slide and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         let (method, distance) = match ArmAngle::new(chain) {
-            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::of(chain)),
+            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain)),
             None => {
                 let given = GivenJoint::new(chain)?;
-                let distance = if given.axis() == 6 { ElbowDistance::of(chain) } else { None };
+                let distance =
+                    if given.axis() == 6 { ElbowDistance::by_last(chain) } else { ElbowDistance::by_first(chain) };
                 (Method::Given(Box::new(given)), distance)
             }
         };
@@ -159,6 +160,14 @@ impl Redundant {
         &self.verifier
     }
 
+    /// Whether limits exclude every value of the parameter although [`Self::arcs`] leaves some; never true but for arm angles.
+    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits) -> bool {
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
+            _ => false,
+        }
+    }
+
     /// The values of the parameter outside which joint 4 or the parameter's own joint cannot be within limits.
     ///
     /// Exact, so that an arc shrunk to a point, with joint 4 at its limit, is not lost between samples.
@@ -170,7 +179,7 @@ impl Redundant {
             (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisMotion::Slides => {
                 ParameterArcs::one(axes[axis])
             }
-            (Parameter::Axis(axis), Some(distance)) => distance.last_angles(&pose.goal, *distances).within(axes[axis]),
+            (Parameter::Axis(axis), Some(distance)) => distance.angles(&pose.goal, *distances).within(axes[axis]),
             (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::all_branches::all_branches;
 use super::attempt::Attempt;
-use super::near_misses::{LOOKED, from_near_misses};
+use super::near_misses::{LOOKED, Outcome, from_near_misses};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
@@ -13,6 +13,9 @@ use crate::task::Target;
 
 /// Most values of the parameter of a redundant arm that are tried before near misses are.
 const SCANNED: usize = 32;
+
+/// Values after which it is asked whether any can have a solution: most poses have one before.
+const VALUES_BEFORE_DOUBT: usize = 4;
 
 /// The search after both takes one of so many evaluations that the budget leaves.
 const SEARCHED_SHARE: usize = 150;
@@ -96,7 +99,10 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
     }
     let mut likely = ArmConfigurations::none();
     let half_the_budget = attempt.budget.left() / 2;
-    for value in arcs.scattered(SCANNED) {
+    for (number, value) in arcs.scattered(SCANNED).enumerate() {
+        if number == VALUES_BEFORE_DOUBT && family.is_excluded(&limits) {
+            return of_all_branches(attempt, &preference, start);
+        }
         family.likely_at(value, &limits, &mut likely);
         if likely.is_empty() {
             continue;
@@ -118,7 +124,11 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
             return None;
         }
     }
-    from_near_misses(attempt, family, &arcs, &preference).or_else(|| searched_in_short(attempt, start))
+    match from_near_misses(attempt, family, &arcs, &preference) {
+        Outcome::Solved(solution) => Some(solution),
+        Outcome::Missed => searched_in_short(attempt, start),
+        Outcome::NoBranch => None,
+    }
 }
 
 /// A search with a small share of the budget, for poses that are reached within wide tolerances alone. What it misses is reported as
