@@ -226,7 +226,7 @@ fn what_joints_2_and_6_exclude_is_proven() {
             Status::Stalled => {
                 open += 1;
                 assert!(
-                    solution.message().contains("(no solution at 64 values of the redundancy"),
+                    solution.message().contains("(no solution at 80 values of the redundancy"),
                     "{}",
                     solution.message()
                 );
