@@ -6,6 +6,7 @@ worker was lost; what a store holds is not computed again.
 
 from __future__ import annotations
 
+import errno
 import pickle
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
@@ -72,7 +73,19 @@ class _Part(NamedTuple):
     region: Region
 
     def read(self) -> Array:
-        return np.asarray(self.array[self.region])
+        """Reads the part. The array is opened anew: one that is not here would be read as zeros.
+
+        Raises:
+            FileNotFoundError: this machine does not see the array.
+        """
+        try:
+            array = library("zarr", "zarr", "reading targets").open_array(
+                store=self.array.store, path=self.array.path, mode="r"
+            )
+        except FileNotFoundError:
+            what = "no array of zarr here: it must be on a file system that all workers share, under the same path"
+            raise FileNotFoundError(errno.ENOENT, what, str(self.array.store_path)) from None
+        return np.asarray(array[self.region])
 
 
 def run(

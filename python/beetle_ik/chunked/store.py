@@ -219,8 +219,8 @@ def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
         raise InvalidInputError(f"{folder}: a store of format {there.get('format')}; this library reads {_FORMAT}")
     group = _zarr().open_group(store=folder, mode="r", zarr_format=3)
     try:
-        arrays = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
-        finished = arrays.pop(_FINISHED).any(axis=(1, 2))
+        arrays: dict[str, NDArray[Any]] = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
+        finished = np.asarray(arrays.pop(_FINISHED).any(axis=(1, 2)))
     except (KeyError, ValueError) as error:
         raise InvalidInputError(f"{folder}: damaged store: {error!s:.200}; the call that made it repairs it") from error
     if not finished.all():

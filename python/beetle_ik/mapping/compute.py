@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
+from .._arguments import read_once, require
 from .._core import MapGrid, Robot, map_chunks
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
@@ -102,8 +102,7 @@ def computed(
     require("quality", asked["quality"], bool)
     require("any_instruction_set", any_instruction_set, bool)
     folder = None if store is None else store_path(store)
-    obstacles = asked["obstacles"]
-    options = {**asked, "obstacles": None if obstacles is None else list(obstacles)}
+    options = {**asked, "obstacles": read_once(asked["obstacles"])}
     of_grid = {name: options[name] for name in ("task", "obstacles", "margin", "self_collision")}
     grid = MapGrid(robot, **poses, **of_grid)
     map_chunks(robot, grid, [], **options, threads=threads)  # the core checks all other arguments
