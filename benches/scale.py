@@ -8,9 +8,10 @@ import csv
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from distributed import Client, LocalCluster
@@ -18,12 +19,11 @@ from distributed import Client, LocalCluster
 import beetle_ik as bik
 from beetle_ik import distributed
 
-ROBOTS = ["ur5e", "panda"]
-CHUNKS = [2048, 8192, 32768]
+CHUNKS = [2048, 32768]
 TASKS = 1000
-REPEATS = 3
+REPEATS = 2
 COLUMNS = [
-    "robot",
+    "case",
     "workers",
     "results in",
     "rows per chunk",
@@ -53,27 +53,45 @@ def measured(client: Client | None, rows: int, call: Callable[[], object]) -> li
     return [max(column) if i == 0 else min(column) for i, column in enumerate(zip(*results, strict=True))]
 
 
-def measure(client: Client | None, workers: str, name: str, rows: int, store: Path, write: Callable[..., None]) -> None:
-    """Solves a batch in chunks of several lengths, in memory, into a store, and once more where it is finished."""
-    robot = bik.Robot.named(name)
-    targets = poses(robot, rows)
-    threads = {"threads": 1} if client is None else {}
+def boxes() -> list[bik.obstacles.Box]:
+    """Returns boxes around an arm."""
+    rng = np.random.default_rng(0)
+    return [bik.obstacles.Box(rng.uniform(-0.8, 0.8, 3), rng.uniform(0.05, 0.2, 3)) for _ in range(20)]
 
-    def run(chunk: int, folder: Path | None, *, anew: bool = True) -> None:
-        if anew:
-            shutil.rmtree(store, ignore_errors=True)
-        distributed.solve_batch(client, robot, targets, store=folder, rows_per_chunk=chunk, **threads)
 
-    if client is None:
-        write(
-            name, workers, "one call", rows, *measured(None, rows, partial(bik.solve_batch, robot, targets, threads=1))
-        )
-    for chunk in CHUNKS:
-        write(name, workers, "memory", chunk, *measured(client, rows, partial(run, chunk, None)))
-        write(name, workers, "store", chunk, *measured(client, rows, partial(run, chunk, store)))
-        write(name, workers, "finished store", chunk, *measured(client, rows, partial(run, chunk, store, anew=False)))
-    files = [file.stat().st_size for file in store.rglob("*") if file.is_file()]
-    print(f"the store of {rows} rows: {sum(files) / rows:.0f} bytes a row, {len(files)} files")
+def cases(rows: int) -> Iterator[tuple[str, bik.Robot, np.ndarray, list[int], dict[str, Any]]]:
+    """Yields name, robot, targets, rows of a chunk and options."""
+    panda = bik.Robot.named("panda").with_capsules(radius=0.06)
+    for name in ("ur5e", "panda"):
+        robot = bik.Robot.named(name)
+        yield name, robot, poses(robot, rows), CHUNKS, {}
+    yield "panda, 20 boxes", panda, poses(panda, rows // 40), [rows // 400], {"obstacles": boxes()}
+
+
+def measure(client: Client | None, workers: str, rows: int, store: Path, write: Callable[..., None]) -> None:
+    """Solves batches in chunks of several lengths, in memory, into a store, and once more where it is finished."""
+    for name, robot, targets, chunks, options in cases(rows):
+        given = {**options, **({"threads": 1} if client is None else {})}
+        solve = partial(distributed.solve_batch, client, robot, targets, **given)
+        if client is None:
+            whole = measured(None, len(targets), partial(bik.solve_batch, robot, targets, **given))
+            write(name, workers, "one call", len(targets), *whole)
+        for chunk in chunks:
+            calls = {
+                "memory": partial(solve, rows_per_chunk=chunk),
+                "store": partial(into_new, solve, store, rows_per_chunk=chunk),
+                "finished store": partial(solve, store=store, rows_per_chunk=chunk),
+            }
+            for what, call in calls.items():
+                write(name, workers, what, chunk, *measured(client, len(targets), call))
+        files = [file.stat().st_size for file in store.rglob("*") if file.is_file()]
+        print(f"the store: {sum(files) / len(targets):.0f} bytes a row, {len(files)} files")
+
+
+def into_new(solve: Callable[..., object], store: Path, **options: Any) -> None:
+    """Solves into a store that is not there yet."""
+    shutil.rmtree(store, ignore_errors=True)
+    solve(store=store, **options)
 
 
 def measure_tasks(client: Client, workers: str, write: Callable[..., None]) -> None:
@@ -99,13 +117,11 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory() as folder:
         store = Path(folder) / "store"
-        for name in ROBOTS:
-            measure(None, "none", name, arguments.rows, store, write)
+        measure(None, "none", arguments.rows, store, write)
         for workers in (1, 2):
             cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
             with cluster, Client(cluster) as client:
-                for name in ROBOTS:
-                    measure(client, str(workers), name, arguments.rows, store, write)
+                measure(client, str(workers), arguments.rows, store, write)
                 measure_tasks(client, str(workers), write)
     if arguments.out is not None:
         with (arguments.out / "scale.csv").open("w", newline="") as file:
