@@ -5,13 +5,14 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo lint lint-rust lint-python bench coverage docs papers
+.PHONY: help demo test test-rust test-python zoo campaign soak test-sdist test-aarch64 miri audit lint lint-rust lint-python \
+    bench coverage docs papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
 unexport MAKEFLAGS MFLAGS
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "%-14s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 # The limit is that of the BAS paper. It exceeds the limits of the real arm in four joints; the command says so.
 demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
@@ -31,6 +32,41 @@ test-python: lint-python
 
 zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
 	$(BIN)/python -m pytest tests/zoo
+
+# Failing cases and counts are in target/campaign/; `python -m campaign table target/campaign/ledger.csv` makes the table.
+campaign: $(VENV)/with-test  ## attacks on every promise: SEED=, and CASES= of each attack or MINUTES= in all (default: 10 minutes)
+	PYTHONPATH=tests $(BIN)/python -m campaign run --seed $(or $(SEED),0) --workers $(or $(WORKERS),2) --out target/campaign \
+	    $(if $(CASES),--cases $(CASES)) $(if $(MINUTES),--minutes $(MINUTES),$(if $(CASES),,--minutes 10))
+
+soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
+	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
+# What pip does where it finds no wheel; then the package of the core, as crates.io would build it.
+test-sdist: $(BIN)/maturin  ## the source distribution and the crates build and pass their tests where nothing else is
+	rm -rf target/sdist
+	$(BIN)/maturin sdist --out target/sdist
+	cd target/sdist && tar xzf beetle_ik-*.tar.gz && cd beetle_ik-*/ && $(PYTHON) -m venv .venv \
+	    && .venv/bin/pip install --quiet --disable-pip-version-check '.[test]' && .venv/bin/python -m pytest
+	cargo package --workspace --locked
+
+# Debian and Ubuntu: apt install qemu-user gcc-aarch64-linux-gnu; rustup target add aarch64-unknown-linux-gnu.
+test-aarch64:  ## the tests of the core on an emulated 64-bit ARM processor
+	CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc \
+	    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER='qemu-aarch64 -L /usr/aarch64-linux-gnu' \
+	    cargo test --locked -p ikcore --target aarch64-unknown-linux-gnu
+
+# rustup toolchain install nightly --component miri,rust-src. Miri rounds sines at random, unless told not to; two tests that go
+# through millions of angles would take hours.
+miri:  ## the unsafe code of `math` under Miri, which finds undefined behaviour
+	RUSTFLAGS='-C target-feature=+avx2,+fma' PROPTEST_CASES=2 MIRIFLAGS='-Zmiri-disable-isolation -Zmiri-deterministic-floats' \
+	    cargo +nightly miri test --locked -p ikcore --lib --target-dir target/miri math:: -- \
+	    --skip agrees_with_the_standard_library --skip single_precision_agrees
+
+# cargo install cargo-deny --locked
+audit: $(VENV)/with-test  ## known vulnerabilities, licences and origins of everything that is built in or installed
+	cargo deny --locked check
+	$(BIN)/pip install --quiet --disable-pip-version-check 'pip-audit>=2.9'
+	$(BIN)/pip-audit --skip-editable
 
 lint: lint-rust lint-python  ## formatting, clippy, ruff, types and the docstrings that editors show
 

@@ -1670,6 +1670,74 @@ def self_motion(
     """
 
 @final
+class MapGrid:
+    """"""
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        voxel: float,
+        directions: int,
+        rolls: int,
+        region: ArrayLike | None = None,
+        task: Task | None = None,
+        obstacles: Iterable[Obstacle] | None = None,
+        margin: float | None = None,
+        self_collision: bool | None = None,
+    ) -> MapGrid: ...
+    @property
+    def origin(self) -> _Array:
+        """"""
+    @property
+    def voxel(self) -> float:
+        """"""
+    @property
+    def shape(self) -> list[int]:
+        """"""
+    @property
+    def axis(self) -> _Array | None:
+        """"""
+    @property
+    def orientations(self) -> int:
+        """"""
+    @property
+    def rolls(self) -> int:
+        """"""
+    @property
+    def bytes(self) -> int:
+        """"""
+    @property
+    def chunk_shape(self) -> list[int]:
+        """"""
+    @property
+    def chunks(self) -> list[int]:
+        """"""
+    def chunk(self, number: int) -> list[list[int]]:
+        """"""
+    def poses(self, voxel: Sequence[int]) -> _Array:
+        """"""
+    def locate(self, T: ArrayLike) -> NDArray[np.int64]:  # noqa: N803
+        """"""
+    def __eq__(self, other: object, /) -> bool: ...
+
+def map_chunks(
+    robot: Robot,
+    grid: MapGrid,
+    chunks: Sequence[int],
+    *,
+    task: Task | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
+    evaluations: int = 200,
+    quality: bool = False,
+    threads: int | None = None,
+    progress: _Progress = None,
+) -> list[tuple[NDArray[np.uint8], NDArray[np.float32] | None, NDArray[np.float32] | None]]:
+    """"""
+
+@final
 class SelfMotion:
     """A curve of configurations that keep the tip at a target."""
 

@@ -27,7 +27,7 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
     place = np.eye(4) if frame is None else _rigid(frame)
     try:
         scene = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also dates and integers that Python cannot hold
         raise InvalidInputError(f"{where}: not YAML: {error}") from error
     world = scene.get("world") if isinstance(scene, dict) else None
     if not isinstance(world, dict):
@@ -36,7 +36,7 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
     objects = world.get("collision_objects") or []
     if not isinstance(objects, list):
         raise InvalidInputError(f'{where}: "collision_objects" must be a list')
-    frames = {str(_get(found, "header", {}).get("frame_id", "")) for found in objects if isinstance(found, dict)}
+    frames = {str(_get(_get(found, "header", {}), "frame_id", "")) for found in objects if isinstance(found, dict)}
     if len(frames) > 1:
         named = ", ".join(f"'{name}'" for name in sorted(frames))
         raise InvalidInputError(f"{where}: the objects are in several frames ({named}); only one can be read")
@@ -46,9 +46,9 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
 def _require_no_more(where: str, scene: dict[str, Any], world: dict[str, Any]) -> None:
     """Refuses what the scene holds beside collision objects: left out, it would be run into."""
     octomap = _get(_get(world, "octomap", {}), "octomap", {})
-    if octomap.get("data"):
+    if _get(octomap, "data", None):
         raise InvalidInputError(f"{where}: the octomap cannot be read: make a bik.obstacles.Grid or PointCloud of it")
-    attached = _get(scene, "robot_state", {}).get("attached_collision_objects") or []
+    attached = _get(_get(scene, "robot_state", {}), "attached_collision_objects", [])
     if attached:
         raise InvalidInputError(
             f"{where}: the robot carries what is in attached_collision_objects: take that out of the file, "
@@ -74,7 +74,7 @@ def _object(where: str, number: int, found: Any, frame: NDArray[np.float64]) -> 
             count += 1
             try:
                 yield _shape(name, shapes, item, at @ _pose(name, place))
-            except (BeetleIkError, TypeError, ValueError, KeyError, IndexError) as error:
+            except (BeetleIkError, AttributeError, LookupError, OverflowError, TypeError, ValueError) as error:
                 told = error if isinstance(error, BeetleIkError) else f"unreadable {shapes}: {error!r:.60}"
                 prefix = "" if str(told).startswith(where) else f"{name}: "
                 raise InvalidInputError(f"{prefix}{told}") from error
@@ -113,7 +113,7 @@ def _pose(name: str, given: Any) -> NDArray[np.float64]:
     try:
         position = _numbers(given["position"], "xyz")
         orientation = _numbers(given["orientation"], "xyzw")
-    except (TypeError, KeyError, ValueError) as error:
+    except (LookupError, OverflowError, TypeError, ValueError) as error:
         raise InvalidInputError(f"{name}: a pose needs a position (x, y, z) and an orientation (x, y, z, w)") from error
     try:
         return pose(position, xyzw=orientation)

@@ -64,7 +64,7 @@ def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
         scene = json.loads(path.read_text(encoding="utf-8"))
     except UnicodeDecodeError as error:
         raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # also integers of thousands of digits
         raise InvalidInputError(f"{where}: not JSON: {error}") from error
     shapes = scene
     if isinstance(scene, dict):

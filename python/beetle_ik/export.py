@@ -145,12 +145,20 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
 
 
 def read_arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+    """Returns all arrays of an npz file.
+
+    Raises:
+        InvalidInputError: the file is not an npz file or is damaged. Names it.
+    """
     with path_of(file).open("rb") as stream:
         if not zipfile.is_zipfile(stream):
             raise InvalidInputError(f"{os.fspath(file)}: not an npz file")
         stream.seek(0)
         try:
-            with np.load(stream, allow_pickle=False) as archive:
+            archive = np.load(stream, allow_pickle=False)
+            if isinstance(archive, np.ndarray):  # an npy file with something behind it
+                raise ValueError("it holds a single array")
+            with archive:
                 return {name: archive[name] for name in archive.files}
         except _DAMAGE as error:
             raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error!s:.200}") from error

@@ -14,7 +14,7 @@ import numpy as np
 from . import _core, _plan_figure
 from ._arguments import require
 from ._shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
-from ._style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, style
+from ._style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, new_figure, style
 from ._surface import Surface, draw_surfaces
 from ._text import counted
 
@@ -71,7 +71,7 @@ def robot(
     surfaces = _mesh_surfaces(robot, q) if meshes else []
     translucent = placed_bodies(robot, q) if bodies else []
     with style():
-        figure = _new_figure(6.0, 6.0)
+        figure = new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
         flange = len(robot.link_names) - 1 if len(robot.tips) == 1 else len(corners) - 1
         tips = robot.fk(q).reshape(-1, 4, 4)[:, :3, 3]
@@ -115,7 +115,7 @@ def track(result: TrackResult) -> Figure:
     velocity_rows = -(-result.robot.dof // _VELOCITY_PANELS_A_ROW)
     heights = [_ROW_HEIGHT * len(panels), _VELOCITY_ROW_HEIGHT * velocity_rows]
     with style():
-        figure = _new_figure(13.0, sum(heights) + 0.3)
+        figure = new_figure(13.0, sum(heights) + 0.3)
         figure.suptitle(f"{result.robot.name}, {counted(len(result.time) - 1, 'step')} of {result.time[1]:g} s")
         above, below = np.asarray(figure.subfigures(2, 1, height_ratios=heights))
         grid = above.add_gridspec(len(panels), 2, width_ratios=[1.0, 1.25])
@@ -139,7 +139,7 @@ def model_free(result: ModelFreeResult) -> Figure:
     oriented = bool(np.isfinite(result.rotation_error).any())
     rows = 4 if oriented else 3
     with style():
-        figure = _new_figure(13.0, rows * _ROW_HEIGHT + 0.3)
+        figure = new_figure(13.0, rows * _ROW_HEIGHT + 0.3)
         steps = f"{counted(len(result) - 1, 'step')} of {result.time[1]:g} s" if len(result) > 1 else "no step"
         figure.suptitle(f"without a model, {steps}")
         grid = figure.add_gridspec(rows, 2, width_ratios=[1.0, 1.25])
@@ -165,7 +165,7 @@ def plan(plan: Plan) -> Figure:
     """Draws a planned motion: the arm along its path, the search history, and the joints over time."""
     require("plan", plan, _core.Plan)
     with style():
-        figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
+        figure = new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
         _plan_figure.draw(figure, plan)
     return figure
 
@@ -174,7 +174,7 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
     """Animates the arm in real time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
     require("result", result, _core.Plan, _core.TrackResult)
     with style():
-        figure = _new_figure(5.0, 5.0)
+        figure = new_figure(5.0, 5.0)
         return _plan_figure.animate(figure, result).animation(figure)
 
 
@@ -185,7 +185,7 @@ def trajectory(trajectory: Trajectory) -> Figure:
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
     with style():
-        figure = _new_figure(9.0, _ROW_HEIGHT * len(labels) + 0.6)
+        figure = new_figure(9.0, _ROW_HEIGHT * len(labels) + 0.6)
         panels = figure.subplots(len(labels), 1, sharex=True)
         for axes, label, values in zip(panels, labels, trajectory.at(time), strict=False):
             _draw_joints(axes, time, values, trajectory.joint_names)
@@ -215,7 +215,7 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
         if limit is not None
     }
     with style():
-        figure = _new_figure(9.0, _ROW_HEIGHT * len(shares) + 0.6)
+        figure = new_figure(9.0, _ROW_HEIGHT * len(shares) + 0.6)
         panels = figure.subplots(len(shares), 1, sharex=True, squeeze=False)[:, 0]
         for axes, (name, values) in zip(panels, shares.items(), strict=True):
             axes.axhspan(1.0, 1.1, color=FORBIDDEN, linewidth=0)
@@ -347,10 +347,3 @@ def _highest(values: NDArray[np.float64]) -> float:
 
 def _all_turn(robot: Robot) -> bool:
     return "prismatic" not in robot.joint_kinds
-
-
-def _new_figure(width: float, height: float) -> Figure:
-    """Makes a figure of this size (inches) that `matplotlib.pyplot.show()` displays."""
-    import matplotlib.pyplot as plt
-
-    return plt.figure(figsize=(width, height), layout="constrained", dpi=120)

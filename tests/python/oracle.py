@@ -74,7 +74,8 @@ class Oracle:
         return full
 
     def _jacobian(self, frame: int) -> Array:
-        return self.pin.getFrameJacobian(self.model, self.data, frame, self.pin.LOCAL_WORLD_ALIGNED)
+        # Of a single joint Pinocchio returns a vector.
+        return self.pin.getFrameJacobian(self.model, self.data, frame, self.pin.LOCAL_WORLD_ALIGNED).reshape(6, -1)
 
     def _independent(self, joints: list[str], columns: Array) -> Array:
         """Sums the columns of joints that move together."""

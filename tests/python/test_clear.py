@@ -71,6 +71,13 @@ def test_what_is_nearest_is_told() -> None:
     assert (again.clearance, again.nearest, again.message) == (solution.clearance, solution.nearest, solution.message)
 
 
+def test_what_is_nearest_is_told_where_the_target_is_out_of_reach() -> None:
+    solution = bik.solve(UR5, bik.pose([3.0, 0.2, 0.4]), obstacles=SCENE, margin=0.02)
+    assert solution.status is bik.Status.OUT_OF_REACH
+    assert solution.nearest == bik.obstacles.nearest(UR5, solution.q, SCENE)
+    assert np.isfinite(solution.clearance)
+
+
 def test_nothing_is_checked_unless_asked_for() -> None:
     target = ARM.fk(Q)
     plain = bik.solve(ARM, target)

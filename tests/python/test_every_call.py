@@ -74,6 +74,8 @@ MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, START, dt=0.1)
 ASKED, IDLE = (bik.ZNNBAS().session(**TICKS) for _ in range(2))
 ASKED.command((0.3, 0.3, 1.0))
 VIEWER = bik.view(ARM, port=0)
+FLAT = PLANAR.with_capsules(radius=0.05)
+MAP = bik.reachability(FLAT, voxel=0.5, rolls=2)
 
 # What a call needs besides the argument that is wrong; "." stands for the instance that a method is called on.
 NEEDED: dict[str, dict[str, Any]] = {
@@ -92,6 +94,15 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Path.with_orientation": {"orientation": np.eye(3)},
     "Plan.": {".": PLAN},
     "Plan.retime": {"limits": LIMITS},
+    "InverseReachabilityMap.": {".": MAP.inverse()},
+    "InverseReachabilityMap.on_floor": {"x": 0.0, "y": 0.0},
+    "InverseReachabilityMap.query": {"base": np.eye(4)},
+    "ReachabilityMap.": {".": MAP},
+    "ReachabilityMap.load": {"file": "reached.npz"},
+    "ReachabilityMap.poses": {"voxel": (0, 0, 0)},
+    "ReachabilityMap.query": {"T": np.eye(4)},
+    "ReachabilityMap.reached": {"voxel": (0, 0, 0)},
+    "ReachabilityMap.to_npz": {"file": "map.npz"},
     "Robot.": {".": ARM, "q": START},
     "Robot.from_dh": {"a": [0, 1], "alpha": [0, 0], "d": [0, 0]},
     "Robot.from_urdf": {"path_or_xml": URDF},
@@ -136,6 +147,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
     "distributed.reachability": {"client": None, "robot": ARM, "voxel": 1.0, "directions": 1, "rolls": 1, "threads": 1},
     "distributed.solve_batch": {"client": None, "robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
+    "best_base": {"robot": FLAT, "targets": FLAT.fk([[0.1, 0.2, 0.3]]), "region": [(-1, -1, 0), (1, 1, 0)], "map": MAP},
     "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.BAS(), **QUICK},
@@ -173,6 +185,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "plot.track": {"result": TRACK},
     "plot.trajectory": {"trajectory": MOTION},
     "pose": {"position": (0, 0, 0)},
+    "reachability": {"robot": FLAT, "voxel": 0.5, "rolls": 2},
     "self_motion": {"robot": ARM, "target": bik.pose((0.3, 0.3, 1.0), rpy=(0, 1, 0)), "spacing": 0.2},
     "solve": {"robot": ARM, "target": (0.3, 0.3, 1.0), **QUICK},
     "solve_all": {"robot": ARM, "target": (0.3, 0.3, 1.0), "limit": 2, **QUICK},
@@ -215,15 +228,18 @@ def needed(name: str) -> dict[str, Any]:
 
 CALLS = {name: call for prefix, module in MODULES.items() for name, call in public(prefix, module)}
 MADE_BY_THE_LIBRARY = [
+    "BasePlacement",
     "BatchPlan",
     "BatchSolution",
     "Body",
     "ControlSession",
+    "InverseReachabilityMap",
     "Minimum",
     "ModelFreeResult",
     "Path",
     "Plan",
     "PlanarPosture",
+    "ReachabilityMap",
     "Robot",
     "SelfMotion",
     "Solution",
@@ -254,6 +270,7 @@ def _with_one_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         monkeypatch.setitem(sys.modules, module.__name__, module)
     MOTION.to_csv("motion.csv")
     MOTION.to_npz("motion.npz")
+    MAP.to_npz("reached.npz")
     bik.Scene().save("scene.json")
     Path("scene.yaml").write_text("world: {}")
 

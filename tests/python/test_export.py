@@ -136,6 +136,18 @@ def test_a_file_that_is_not_npz_is_refused(tmp_path: Path, content: bytes) -> No
     assert str(caught.value) == f"{file}: not an npz file"
 
 
+def test_an_array_with_the_end_of_an_archive_behind_it_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "array.npz"
+    end = io.BytesIO()
+    zipfile.ZipFile(end, "w").close()
+    with file.open("wb") as stream:
+        np.save(stream, np.zeros(3))
+        stream.write(end.getvalue())
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Trajectory.from_npz(file)
+    assert str(caught.value) == f"{file}: damaged npz file: it holds a single array"
+
+
 def test_an_array_larger_than_the_memory_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "huge.npz"
     header = io.BytesIO()

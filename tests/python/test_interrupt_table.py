@@ -85,6 +85,9 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "distributed.solve_batch": lambda: (
             lambda: distributed.solve_batch(None, IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS)
         ),
+        "ReachabilityMap.query": lambda: posed_query(1_000_000),
+        "best_base": lambda: lambda: bik.best_base(UR5, UR5.fk(rows(1, 6)), region=[(-1, -1, 0), (1, 1, 0)]),
+        "reachability": lambda: lambda: bik.reachability(UR5, voxel=0.02, directions=200),
         "minimize": lambda: lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, stop=ENDLESS),
         "obstacles.ConvexMesh": lambda: hull(30_000),
         "obstacles.Grid": lambda: occupied(300),
@@ -183,6 +186,11 @@ def posed(count: int) -> Callable[[], object]:
     return lambda: bik.paths.from_samples(time, poses)
 
 
+def posed_query(count: int) -> Callable[[], object]:
+    found, poses = bik.reachability(PLANAR, voxel=0.5), np.tile(np.eye(4), (count, 1, 1))
+    return lambda: found.query(poses)
+
+
 def waypoints(count: int) -> Callable[[], object]:
     q = np.cumsum(np.random.default_rng(0).standard_normal((count, 12)), axis=0)
     return lambda: bik.time_optimal(q, FAST)
@@ -221,10 +229,15 @@ SHORT: dict[str, str] = {
         ],
         ONE,
     ),
+    **dict.fromkeys(
+        ["InverseReachabilityMap.query", "InverseReachabilityMap.on_floor", "InverseReachabilityMap.plot",
+         "ReachabilityMap.inverse", "ReachabilityMap.plot", "ReachabilityMap.poses", "ReachabilityMap.reached"],
+        "Python and numpy, which the interpreter interrupts",
+    ),
     "Plan.retime": PLANNED,
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
     **dict.fromkeys(
-        ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
         COPIES,
     ),
     **dict.fromkeys(

@@ -177,3 +177,25 @@ def test_a_body_that_is_too_small_is_noticed() -> None:
     smaller = bik.obstacles.Box(shape.center, shape.size - 1e-4, shape.rotation)  # type: ignore[attr-defined]
     random_pairs.compare((smaller, model, center, turn), random_pairs.sphere(rng, 0.6, 0.4), rng, outcome)
     assert outcome.above > 2e-5
+
+
+def test_thin_hulls_keep_all_their_corners() -> None:
+    rng = np.random.default_rng(6)
+    for _ in range(200):
+        corners = rng.uniform(-1, 1, (12, 3)) * (1.0, 1.0, 10.0 ** rng.uniform(-5, -1))
+        turn, place = rotation(rng), rng.uniform(1.0, 3.0, 3)
+        points = coal.StdVec_Vec3s()
+        points.extend(corners @ turn.T + place)
+        body = bik.obstacles.Sphere(-PLACE, 0.1)
+        found = bik.obstacles.clearance(
+            ARM.with_attached(LINK, body).with_collision_pairs([]),
+            [0.0],
+            [bik.obstacles.ConvexMesh(corners @ turn.T + place)],
+        )
+        exact = apart(
+            coal.Sphere(0.1),
+            coal.Transform3s.Identity(),
+            coal.Convex.convexHull(points, False, "Qt"),
+            coal.Transform3s.Identity(),
+        )
+        assert exact - 1e-6 < found < exact + 1e-6

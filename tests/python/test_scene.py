@@ -44,6 +44,7 @@ def test_a_scene_holds_every_shape(scene: Path, whole: object) -> None:
     ("text", "problem"),
     [
         ("{", "not JSON: "),
+        ("9" * 5000, "not JSON: Exceeds the limit"),
         ("3", 'expected a list of shapes, or an object with such a list as "obstacles"'),
         ('{"shapes": []}', 'expected a list of shapes, or an object with such a list as "obstacles"'),
         ("[1]", 'obstacle 0: expected an object with a "type", one of sphere, box, capsule'),
@@ -224,6 +225,9 @@ def test_the_objects_of_a_moveit_scene_keep_their_places(tmp_path: Path) -> None
     [
         ("world:", "place:", 'expected a MoveIt planning scene: a mapping with "world"'),
         ("world:", "world: [", "not YAML: "),
+        ("world:", f"number: {'9' * 5000}\nworld:", "not YAML: Exceeds the limit"),
+        ("world:", "day: 2001-13-45\nworld:", "not YAML: month must be in 1..12"),
+        ("[0.3]", f"[{'9' * 400}]", "object 'table': unreadable primitives: OverflowError"),
         (
             "type: 2",
             "type: 4",
@@ -260,6 +264,14 @@ def test_what_moveit_has_and_we_have_not_is_refused(tmp_path: Path, old: str, ne
     with pytest.raises(bik.InvalidInputError) as caught:
         moveit(tmp_path, MOVEIT.replace(old, new, 1))
     assert str(caught.value).startswith(f"{tmp_path / 'scene.yaml'}: {problem}")
+
+
+def test_entries_of_moveit_that_are_no_mappings_count_as_missing(tmp_path: Path) -> None:
+    strange = MOVEIT.replace("world:", "robot_state: 1\nworld:\n  octomap: {octomap: 1}", 1).replace(
+        "{frame_id: base}", "1"
+    )
+    assert strange.count("header: 1") == MOVEIT.count("{frame_id: base}") > 0
+    assert moveit(tmp_path, strange) == moveit(tmp_path, MOVEIT)
 
 
 class Geometry:

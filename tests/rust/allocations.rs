@@ -1,5 +1,6 @@
 //! A tracker in a real-time loop allocates nothing, whatever its options and targets.
 
+#![allow(unsafe_code, reason = "an allocator is an unsafe trait")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -174,7 +174,8 @@ fn bytes_of_something_else_are_refused() {
     assert_eq!(message(Robot::from_bytes(&[])), "cannot restore robot: no bytes");
     assert!(message(Robot::from_bytes(&bytes[..40])).starts_with("cannot restore robot: "));
     bytes[0] = 200;
-    let expected = "cannot restore robot: format version 200, this library reads versions 1 to 2";
+    let expected = "cannot restore robot: it was stored in format 200 by a later version of beetle-ik, and this one reads \
+                    format 3: make it anew";
     assert_eq!(message(Robot::from_bytes(&bytes)), expected);
 }
 

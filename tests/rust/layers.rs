@@ -50,11 +50,11 @@ const LAYERS: &[(&str, &[&str])] = &[
             "problem",
         ],
     ),
+    ("map", &["kinematics", "closed_form", "robot", "obstacle", "manipulability", "task", "solver", "ik"]),
     (
-        "map",
-        &["kinematics", "closed_form", "robot", "obstacle", "manipulability", "task", "solver", "ik"],
+        "batch",
+        &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning", "map"],
     ),
-    ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning", "map"]),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     (
         "planning",

@@ -23,6 +23,7 @@ mod jump;
 mod kinematics;
 mod layers;
 mod manipulability;
+mod map;
 mod messages;
 mod minimize;
 mod mobile_base;

@@ -3,10 +3,13 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
+use ikcore::ik::{SolveOptions, solve};
 use ikcore::load::{CollisionShapes, UrdfOptions};
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use ikcore::robot::{JointKind, Robot, VisualShape};
+use ikcore::solver::{Status, Unattended};
+use ikcore::task::Target;
 use proptest::prelude::*;
 
 /// Three links in a row: `a` turns about a tilted, unnormalised axis, `b` slides.
@@ -143,6 +146,21 @@ fn mimic_joints_follow_through_chains_of_mimics() {
     let joint = &arm.joints()[0];
     assert_eq!(joint.name, "first");
     assert!((joint.lower + 0.45).abs() < 1e-15 && (joint.upper - 0.55).abs() < 1e-15 && joint.velocity == 0.5);
+}
+
+#[test]
+fn a_follower_of_factor_zero_stands_at_its_offset() {
+    for (kind, place) in [("prismatic", [0.0, 0.0, 0.3]), ("revolute", [0.0; 3])] {
+        let axis = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1'/>";
+        let follower = format!("{axis}<mimic joint='turn' multiplier='0' offset='0.3'/>");
+        let joints = [("turn", "revolute", "l0", "l1", axis), ("follower", kind, "l1", "l2", &follower)];
+        let arm = load(&robot(&["l0", "l1", "l2"], &joints));
+        let pose = arm.fk(&[0.2]).unwrap();
+        let turn = if kind == "revolute" { 0.5 } else { 0.2 };
+        assert_same(&pose, &(pose::translation(0.0, 0.0, place[2]) * pose::rotation(Vector3::z(), turn)), 1e-15);
+        let solution = solve(&arm, &Target::pose(pose).unwrap(), &SolveOptions::default(), &mut Unattended).unwrap();
+        assert_eq!(solution.status, Status::Solved);
+    }
 }
 
 #[test]

@@ -57,6 +57,12 @@
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`map`] |
 //! | 9 | [`batch`] |
 
+#[cfg(not(target_pointer_width = "64"))]
+compile_error!("ikcore needs a 64-bit processor: seeds, hashes and stored bytes are defined for 64-bit sizes");
+
+#[cfg(not(target_endian = "little"))]
+compile_error!("ikcore needs a little-endian processor: stored bytes and the lanes of its kernels assume that order");
+
 pub mod batch;
 mod closed_form;
 pub mod error;

@@ -6,11 +6,8 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
 
-/// Version of the byte form. Since version 2 robots may have several tips, and visual shapes.
-const FORMAT: u8 = 2;
-
-/// The oldest version that can be read.
-const OLDEST: u8 = 1;
+/// Version of the byte form, raised with each change of a stored type. 0.1 wrote 1; 0.2 and later write this one.
+const FORMAT: u8 = 3;
 
 /// Returns `value` as bytes; `what` names it in errors.
 ///
@@ -29,39 +26,20 @@ pub fn to_bytes<T: Serialize>(what: &str, value: &T) -> Result<Vec<u8>> {
 /// # Errors
 /// [`Error::Corrupt`] for bytes of another version, of another type, or damaged.
 pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
-    let (_, payload) = payload_of(what, bytes)?;
-    decoded(what, payload)
-}
-
-/// The same for a value that was stored as an `Old` in version 1.
-///
-/// # Errors
-/// As [`from_bytes`].
-pub fn from_bytes_of_any<T: DeserializeOwned + From<Old>, Old: DeserializeOwned>(
-    what: &str,
-    bytes: &[u8],
-) -> Result<T> {
-    match payload_of(what, bytes)? {
-        (1, payload) => decoded::<Old>(what, payload).map(T::from),
-        (_, payload) => decoded(what, payload),
-    }
-}
-
-/// The version of stored bytes, and the bytes of the value, undamaged.
-fn payload_of<'a>(what: &str, bytes: &'a [u8]) -> Result<(u8, &'a [u8])> {
-    let (version, rest) = bytes.split_first().ok_or_else(|| corrupt(what, "no bytes".into()))?;
-    if !(OLDEST..=FORMAT).contains(version) {
-        let problem = format!("format version {version}, this library reads versions {OLDEST} to {FORMAT}");
+    let (format, rest) = bytes.split_first().ok_or_else(|| corrupt(what, "no bytes".into()))?;
+    if *format != FORMAT {
+        let writer = if *format < FORMAT { "an earlier" } else { "a later" };
+        let problem = format!(
+            "it was stored in format {format} by {writer} version of beetle-ik, and this one reads format {FORMAT}: make it anew"
+        );
         return Err(corrupt(what, problem));
     }
     match rest.split_first_chunk() {
-        Some((stored, payload)) if u64::from_le_bytes(*stored) == checksum(payload) => Ok((*version, payload)),
+        Some((stored, payload)) if u64::from_le_bytes(*stored) == checksum(payload) => {
+            postcard::from_bytes(payload).map_err(|problem| corrupt(what, reason(problem)))
+        }
         _ => Err(corrupt(what, "the bytes were damaged: their checksum differs".into())),
     }
-}
-
-fn decoded<T: DeserializeOwned>(what: &str, payload: &[u8]) -> Result<T> {
-    postcard::from_bytes(payload).map_err(|problem| corrupt(what, reason(problem)))
 }
 
 /// Why the payload cannot be read. The decoder drops the message of a type that refuses its own values.

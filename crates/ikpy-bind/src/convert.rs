@@ -1,5 +1,7 @@
 //! Conversion of Python values to Rust and back. The only file that depends on numpy's memory layout.
 
+#![allow(unsafe_code, reason = "memory of numpy arrays")]
+
 use std::ops::Deref;
 use std::path::PathBuf;
 

@@ -36,7 +36,8 @@ mod traversal;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+// On free-threaded Python the interpreter turns its lock on, and says so: running without it has not been tested.
+#[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("_instructions", ikcore::math::instructions())?;

@@ -9,7 +9,9 @@ use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, array, copied, corners, count, counted, optional_count, rigid_matrices, shape_text, table};
+use crate::convert::{
+    Numbers, array, copied, corners, count, counted, optional_count, rigid_matrices, shape_text, summary, table,
+};
 use crate::error::{invalid, raise};
 use crate::monitor::{long_call, watched};
 use crate::obstacle::Obstacles;
@@ -114,21 +116,28 @@ impl PyMapGrid {
     }
 
     /// The poses (orientations, 4, 4) of the voxel (x, y, z).
-    fn poses<'py>(&self, py: Python<'py>, voxel: [usize; 3]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn poses<'py>(&self, py: Python<'py>, voxel: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let voxels = self.core.voxels();
         let shape = voxels.shape();
-        if (0..3).any(|k| voxel[k] >= shape[k]) {
-            return Err(invalid(format!("voxel must be within shape {}, got {}", shape_text(&shape), shape_text(&voxel))));
-        }
+        let given: Option<[usize; 3]> = voxel.extract().ok();
+        let Some(voxel) = given.filter(|voxel| (0..3).all(|k| voxel[k] < shape[k])) else {
+            let within = shape_text(&shape);
+            return Err(invalid(format!(
+                "voxel must be three whole numbers within shape {within}, got {}",
+                summary(voxel)
+            )));
+        };
         let (place, azimuth) = (voxels.centre(voxel), voxels.azimuth(voxel));
         let count = self.core.orientations().len();
         let poses = (0..count).flat_map(|i| rows(&self.core.pose(place, azimuth, i)));
         table(py, poses.collect(), &[count, 4, 4])
     }
 
-    /// The voxel of each pose (n, 4, 4) and the number of the orientation nearest to its own: (n, 4); -1 outside the map.
-    fn locate<'py>(&self, py: Python<'py>, poses: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        let numbers = read_poses("T", poses)?;
+    /// The voxel of a pose (4, 4), or of each pose (n, 4, 4), and the number of the orientation nearest to its own: (n, 4), with n = 1
+    /// for a pose; -1 outside the map.
+    #[allow(non_snake_case)]
+    fn locate<'py>(&self, py: Python<'py>, T: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        let numbers = read_poses("T", T)?;
         let poses = rigid_matrices(numbers.as_slice()?)?;
         let found = long_call(py, || {
             let mut found = Vec::with_capacity(4 * poses.len());
@@ -170,8 +179,8 @@ fn rows(frame: &Frame) -> [f64; 16] {
 fn read_poses<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     let numbers = array(what, value)?;
     match numbers.shape() {
-        [_, 4, 4] => Ok(numbers),
-        shape => Err(invalid(format!("{what}: expected shape (n, 4, 4), got {}", shape_text(shape)))),
+        [4, 4] | [_, 4, 4] => Ok(numbers),
+        shape => Err(invalid(format!("{what}: expected shape (4, 4) or (n, 4, 4), got {}", shape_text(shape)))),
     }
 }
 
@@ -185,7 +194,8 @@ fn surroundings(
 }
 
 /// The results of a chunk: bits (x, y, z, bytes), manipulability (x, y, z) and clearance (x, y, z), or None.
-type ChunkArrays<'py> = (Bound<'py, PyArrayDyn<u8>>, Option<Bound<'py, PyArrayDyn<f32>>>, Option<Bound<'py, PyArrayDyn<f32>>>);
+type ChunkArrays<'py> =
+    (Bound<'py, PyArrayDyn<u8>>, Option<Bound<'py, PyArrayDyn<f32>>>, Option<Bound<'py, PyArrayDyn<f32>>>);
 
 /// Computes `chunks` of the map of a robot, by number; each has the same bits whatever the others are, on any number of threads.
 ///

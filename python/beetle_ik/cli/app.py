@@ -10,6 +10,7 @@ from .. import BeetleIkError, __version__
 from .doctor import doctor
 from .fk import fk
 from .plan import plan
+from .reach import reach
 from .reproduce import reproduce
 from .robots import robots
 from .solve import solve
@@ -73,7 +74,7 @@ def _options_of_all(
         logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track, view, doctor):
+for command in (robots, fk, solve, track, reach, view, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

@@ -33,8 +33,8 @@ class BasePlacement:
     Attributes:
         pose: pose of the base (4, 4).
         reached: which targets are reached from there (k,) bool, by `solve`.
-        margin: how far the base may be off in x, y and z (m) with the same targets still reached by the map, in steps of
-            its voxels; at most 8 of them.
+        margin: how far the base may be off in x, y and z (m) with the same targets still reached by the map, within
+            the region: in steps of its voxels, at most 8.
         success: whether all targets are reached.
         message: how many targets are reached.
     """
@@ -52,7 +52,8 @@ class BasePlacement:
     def message(self) -> str:
         """How many targets are reached."""
         x, y, z = self.pose[:3, 3]
-        found = f"{int(self.reached.sum())} of {counted(len(self.reached), 'target')} reached from ({x:.3g}, {y:.3g}, {z:.3g})"
+        count = f"{int(self.reached.sum())} of {counted(len(self.reached), 'target')}"
+        found = f"{count} reached from ({x:.3g}, {y:.3g}, {z:.3g})"
         return found if self.success else f"{found}; widen the region, or move the others"
 
     def __repr__(self) -> str:
@@ -87,7 +88,7 @@ def best_base(
     """
     require("robot", robot, Robot)
     wanted = rigid("targets", targets)
-    if wanted.ndim == 2 or len(wanted) == 0:  # noqa: PLR2004
+    if wanted.ndim == 2 or len(wanted) == 0:
         raise InvalidInputError(f"targets: expected poses (k, 4, 4), one at least, got shape {wanted.shape}")
     scene = None if obstacles is None else Scene(obstacles)
     if map is None:
@@ -96,11 +97,12 @@ def best_base(
     require_same_robot("map", map.robot, robot)
     axes = _axes(region, map.voxel)
     ranked = _ranked(map, wanted, axes)
+    mount = robot.link_poses(np.zeros(robot.dof))[0]
     best: BasePlacement | None = None
     for predicted, margin, base in ranked:
         if best is not None and best.reached.sum() >= predicted:
             break
-        placed = robot.with_base(base @ robot.base)
+        placed = robot.with_base(base @ mount)
         found = solve_batch(placed, wanted, obstacles=scene).success
         if best is None or found.sum() > best.reached.sum():
             best = BasePlacement(base, found, margin)
@@ -120,8 +122,8 @@ def _axes(region: ArrayLike, voxel: float) -> list[NDArray[np.float64]]:
     counts = np.floor((upper - lower) / voxel + 1.0 + 1e-9)
     if counts.prod() * _YAWS > _MOST_PLACES:
         raise InvalidInputError(
-            f"region: {counts.prod() * _YAWS:.3g} places to try, at most {_MOST_PLACES:.0e}: a smaller region, or a map "
-            "with larger voxels"
+            f"region: {counts.prod() * _YAWS:.3g} places to try, at most {_MOST_PLACES:.0e}: take a smaller region, or "
+            "a map with larger voxels"
         )
     middle = 0.5 * (lower + upper)
     return [m + voxel * (np.arange(int(n)) - 0.5 * (int(n) - 1)) for m, n in zip(middle, counts, strict=True)]

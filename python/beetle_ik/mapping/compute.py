@@ -60,9 +60,9 @@ def reachability(
         region: two opposite corners of a box (2, 3) (m) in the frame of the robot's base, extended to whole voxels,
             whose faces are at multiples of `voxel` from the first axis; None: all that the tip can reach.
         task: the part of a pose that matters; `tasks.Pointing()` has no rolls, `tasks.Position()` one orientation.
-        obstacles: what solutions keep clear of, as for `solve`.
-        margin: smallest distance (m), as for `solve`.
-        self_collision: whether links are kept from each other, as for `solve`.
+        obstacles: what solutions keep clear of, in the frame of the robot's base, as for `solve`.
+        margin: distance to keep (m), as for `solve`.
+        self_collision: whether links must not touch each other, as for `solve`.
         evaluations: most evaluations of a pose: values of the parameter of a redundant arm with a closed form, and
             evaluations of the forward kinematics for arms without one.
         quality: whether to measure manipulability and clearance of the best configuration found in each voxel.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
+from .._arguments import require, require_count
 from .._core import InvalidInputError, pose
 from .reachability_map import ReachabilityMap
 
@@ -51,7 +51,8 @@ class InverseReachabilityMap:
         """Returns the share of yaws at which an upright base reaches a target, for each place (x, y).
 
         Args:
-            x, y: coordinates of the places (i,) and (j,) (m).
+            x: coordinates of the places (i,) (m).
+            y: coordinates of the places (j,) (m).
             target: pose (4, 4) of the tip; None: the origin.
             height: height of the base (m).
             yaws: number of yaws, spread evenly over a turn.
@@ -59,9 +60,11 @@ class InverseReachabilityMap:
         Returns:
             (i, j) float32.
         """
+        require_count("yaws", yaws)
         if yaws < 1:
             raise InvalidInputError(f"yaws must be one or more, got {yaws}")
-        xs, ys = (np.atleast_1d(np.asarray(line, float)) for line in (x, y))
+        xs, ys = (np.atleast_1d(_numbers(name, line)) for name, line in (("x", x), ("y", y)))
+        height = float(_numbers("height", height, dimensions=0))
         share = np.zeros((len(xs), len(ys)), np.float32)
         for yaw in np.arange(yaws) * (2 * np.pi / yaws):
             bases = np.tile(pose([0.0, 0.0, height], rpy=[0.0, 0.0, yaw]), (len(xs), len(ys), 1, 1))
@@ -78,6 +81,17 @@ class InverseReachabilityMap:
     def __repr__(self) -> str:
         """Names the map."""
         return f"<InverseReachabilityMap of {self.map!r}>"
+
+
+def _numbers(name: str, value: ArrayLike, *, dimensions: int = 1) -> NDArray[np.float64]:
+    """Returns finite numbers of at most so many dimensions."""
+    try:
+        numbers = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise InvalidInputError(f"{name} must be numbers, got {value!r:.60}") from None
+    if numbers.ndim > dimensions or not np.isfinite(numbers).all():
+        raise InvalidInputError(f"{name} must be finite, in {dimensions} dimensions at most, got {value!r:.60}")
+    return numbers
 
 
 def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:

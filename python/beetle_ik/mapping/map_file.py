@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
 from .._files import whole_file
 from ..chunked.store import read_finished
@@ -35,6 +36,8 @@ def write(map: ReachabilityMap, file: str | os.PathLike[str]) -> None:  # noqa: 
 
 def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     """Reads a map, of `robot` if that is given."""
+    if robot is not None:
+        require("robot", robot, Robot)
     place = os.fspath(file)
     if Path(place).is_dir():
         arrays: dict[str, Any] = dict(read_finished(Path(place), "reachability"))
@@ -46,8 +49,7 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
             reads = f"this library reads format {FORMAT}: compute it again"
             raise InvalidInputError(f"{place}: a map of format {version}; {reads}")
     try:
-        stored = Robot._restore(arrays["robot"].tobytes())
-        grid = MapGrid._restore(arrays["grid"].tobytes())
+        stored, grid = _restored(Robot, arrays["robot"]), _restored(MapGrid, arrays["grid"])
         found = ReachabilityMap(stored, grid, arrays["bits"], *(arrays.get(name) for name in QUALITY))
     except (KeyError, BeetleIkError) as error:
         raise InvalidInputError(f"{place}: damaged reachability map: {error!s:.200}") from error
@@ -71,5 +73,10 @@ def attached(robot: Robot, grid: MapGrid) -> dict[str, NDArray[np.uint8]]:
 
 
 def _stored(value: Robot | MapGrid) -> NDArray[np.uint8]:
-    _, (stored,) = value.__reduce__()
+    reduced: Any = value.__reduce__()
+    _, (stored,) = reduced
     return np.frombuffer(stored, np.uint8)
+
+
+def _restored(kind: Any, stored: NDArray[np.uint8]) -> Any:
+    return kind._restore(stored.tobytes())

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from .inverse_map import InverseReachabilityMap
 
+_A_BATCH = 3  # dimensions
+
 QUALITY = ("manipulability", "clearance")
 """What may be measured beside the bits."""
-
-_ROWS = 1 << 16  # poses looked up at once
 
 
 class ReachabilityMap:
@@ -69,7 +69,7 @@ class ReachabilityMap:
         x, y, z = self.grid.shape
         return x, y, z
 
-    def query(self, T: ArrayLike) -> Any:
+    def query(self, T: ArrayLike) -> Any:  # noqa: N803
         """Returns whether poses are reached: by the voxel that each is in, and the orientation nearest to its own.
 
         Args:
@@ -83,7 +83,7 @@ class ReachabilityMap:
         x, y, z, number = found[inside].T
         reached = np.zeros(len(found), bool)
         reached[inside] = self.bits[x, y, z, number >> 3] >> (number & 7).astype(np.uint8) & 1
-        return reached if np.ndim(T) == _A_BATCH else bool(reached[0])
+        return bool(reached[0]) if np.ndim(T) != _A_BATCH and len(reached) == 1 else reached
 
     def poses(self, voxel: tuple[int, int, int]) -> NDArray[np.float64]:
         """Returns the poses (orientations, 4, 4) of the voxel (x, y, z), counted from 0."""
@@ -147,9 +147,6 @@ class ReachabilityMap:
             f"<ReachabilityMap of '{self.robot.name}': {size} voxels of {self.voxel:g} m, {held} of them reached; "
             f"{share} of {self.orientations * self.index.size} poses>"
         )
-
-
-_A_BATCH = 3
 
 
 def _same(a: Any, b: Any, nan: bool) -> bool:

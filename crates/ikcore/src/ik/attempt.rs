@@ -97,11 +97,17 @@ impl<'m, 'p> Attempt<'m, 'p> {
 
     /// Descends once from `q` until convergence; returns whether that solved the target, and the best point.
     pub fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
+        self.descend_some(descent, q, usize::MAX)
+    }
+
+    /// The same with at most `evaluations`.
+    fn descend_some(&mut self, descent: &LevenbergMarquardt, q: Point, evaluations: usize) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
         }
         let (objective, bounds): (&mut dyn Differentiable, _) = (self.problem, self.context.bounds());
-        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        let rest = self.budget.rest(self.budget.left().saturating_sub(evaluations));
+        let mut evaluator = Evaluator::new(objective, bounds, rest, self.rng, self.monitor);
         run(descent, &mut evaluator, &q);
         self.budget.add(&evaluator);
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
@@ -140,6 +146,13 @@ impl<'m, 'p> Attempt<'m, 'p> {
             }
         }
         best.map_or(x, |(_, q)| q)
+    }
+
+    /// The result of a few steps towards a target that cannot be reached.
+    pub fn neared(&mut self, x0: &[f64], evaluations: usize) -> Solution {
+        let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
+        let (_, q) = self.descend_some(&descent, Point::from_slice(x0), evaluations);
+        self.solution(Status::OutOfReach, q)
     }
 
     /// The result of approaching a target that cannot be reached.

@@ -6,6 +6,7 @@ use super::map_options::MapOptions;
 use super::orientation_set::{OrientationSet, turned};
 use super::voxel_grid::VoxelGrid;
 use crate::error::{Error, Result, require_finite, require_positive};
+use crate::kinematics::Reach;
 use crate::math::Frame;
 use crate::math::so3::norm;
 use crate::robot::Robot;
@@ -52,10 +53,11 @@ impl MapGrid {
         layout.validate()?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
         let robot = with_tool.as_ref().unwrap_or(robot);
-        let orientations = orientations(robot, layout, options.task.as_ref())?;
         let axis = robot.upright_axis();
-        let (lower, upper): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
+        let (lower, upper): (Vec<f64>, Vec<f64>) =
+            robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
         let reach = robot.reach(&lower, &upper);
+        let orientations = orientations(robot, &reach, layout, options.task.as_ref())?;
         let [x, y] = axis.map_or([0.0; 2], |axis| axis.point);
         let mut anchor = [x, y, 0.0];
         let plane = reach.normal.map(|normal| plane_of(robot, normal)).transpose()?;
@@ -129,8 +131,8 @@ impl MapLayout {
 }
 
 /// The orientations that the tip of `robot` can have almost anywhere.
-fn orientations(robot: &Robot, layout: &MapLayout, task: Option<&Task>) -> Result<OrientationSet> {
-    let (rank, reach) = (robot.task_rank(), robot.reach(&[], &[]));
+fn orientations(robot: &Robot, reach: &Reach, layout: &MapLayout, task: Option<&Task>) -> Result<OrientationSet> {
+    let rank = robot.task_rank();
     let plane = usize::from(reach.normal.is_some());
     let kind = task.map_or(TaskKind::Pose, |task| task.kind);
     let (moves, needs, set) = match (kind, reach.fixed_direction) {

@@ -1,8 +1,8 @@
 //! Whether the tip reaches a pose, at several azimuths of its place together.
 
+use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
-use super::map_chunk::RingResult;
 use super::rings::Ring;
 use crate::closed_form::{ArmBranches, FamilyLimits};
 use crate::error::{Error, Result};
@@ -104,7 +104,8 @@ impl<'a> MapTest<'a> {
             None => None,
         };
         let robot = turning.as_ref().map_or(&own, |(_, context)| context).robot();
-        let (lower, upper): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
+        let (lower, upper): (Vec<f64>, Vec<f64>) =
+            robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
         let any = Frame::IDENTITY;
         let at_once = robot.solves_at_once() == Some(true) && own.asks_for_pose(&Target::Pose(any));
         let (low, high): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| joint.sampling_range()).unzip();

@@ -3,6 +3,8 @@
 //! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and
 //! FMA by [`by_instructions`]. Both are repeatable; they differ in the last bit.
 
+#![allow(unsafe_code, reason = "instructions of the processor are unsafe functions")]
+
 use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 
@@ -349,6 +351,7 @@ macro_rules! by_instructions {
                     $body
                 }
                 // SAFETY: `has_fma` found the instructions.
+                #[allow(unsafe_code, reason = "`has_fma` is true here")]
                 return unsafe { with_fma($($argument),*) };
             }
             #[allow(dead_code, reason = "some bodies have no arithmetic of their own")]
@@ -358,3 +361,64 @@ macro_rules! by_instructions {
     };
 }
 pub(crate) use by_instructions;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of all sizes, the special ones among them.
+    const A: [f64; 8] = [1.5, -0.0, f64::NAN, 1e300, -7.25, f64::INFINITY, 3.0, -1e-300];
+    const B: [f64; 8] = [2.5, 0.0, 1.0, -1e300, f64::NAN, 2.0, 3.0, 4.0];
+    const C: [f64; 8] = [0.1, -4.0, 2.0, 1e300, 1.0, f64::NEG_INFINITY, -9.0, 1e-300];
+
+    by_instructions! {
+        /// Every operation on four doubles and on eight singles, one after the other.
+        fn every_operation(a: &[f64; 8], b: &[f64; 8], c: &[f64; 8]) -> (Vec<f64>, Vec<f32>, u32) {
+            operations::<A>(a, b, c)
+        }
+    }
+
+    #[inline(always)]
+    fn operations<A: Arithmetic>(a: &[f64; 8], b: &[f64; 8], c: &[f64; 8]) -> (Vec<f64>, Vec<f32>, u32) {
+        let mut doubles = Vec::new();
+        for half in [0, 4] {
+            let [a, b, c] = [a, b, c].map(|lanes| F64x4(std::array::from_fn(|k| lanes[half + k])));
+            let results = [
+                A::mul_x4(a, b),
+                A::add_x4(a, b),
+                A::sub_x4(a, b),
+                A::div_x4(a, b),
+                A::sqrt_x4(a),
+                A::choose_below_x4(a, b, c, a),
+                A::choose_equal_x4(a, b, c, a),
+                A::mul_add_x4(a, b, c),
+            ];
+            doubles.extend(results.iter().flat_map(|lanes| lanes.0));
+        }
+        let [a, b, c] = [a, b, c].map(|lanes| F32x8(lanes.map(|number| number as f32)));
+        let results = [
+            A::mul_x8(a, b),
+            A::add_x8(a, b),
+            A::sub_x8(a, b),
+            A::div_x8(a, b),
+            A::sqrt_x8(a),
+            A::choose_below_x8(a, b, c, a),
+            A::choose_equal_x8(a, b, c, a),
+            A::larger_x8(a, b),
+            A::smaller_x8(a, b),
+            A::mul_add_x8(a, b, c),
+        ];
+        (doubles, results.iter().flat_map(|lanes| lanes.0).collect(), A::not_at_least_x8(a, b))
+    }
+
+    #[test]
+    fn both_compilations_of_a_kernel_agree() {
+        let (doubles, singles, lanes) = every_operation(&A, &B, &C);
+        let (plain_doubles, plain_singles, plain_lanes) = operations::<NoFma>(&A, &B, &C);
+        let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan()) || (a - b).abs() <= 1e-15 * b.abs();
+        assert!(doubles.iter().zip(&plain_doubles).all(|(a, b)| same(*a, *b)), "{doubles:?} {plain_doubles:?}");
+        let same = |a: f32, b: f32| a == b || (a.is_nan() && b.is_nan()) || (a - b).abs() <= 1e-6 * b.abs();
+        assert!(singles.iter().zip(&plain_singles).all(|(a, b)| same(*a, *b)), "{singles:?} {plain_singles:?}");
+        assert_eq!(lanes, plain_lanes);
+    }
+}

@@ -87,6 +87,8 @@ impl Description {
                 Element::Fixed(transform) => chain.fixed(transform),
                 Element::Link(_) => chain.link(),
                 Element::RotationVector { joint } => chain.rotation_vector(*joint),
+                // A follower whose factor is zero stands still.
+                Element::Moving { axis, turns, scale: 0.0, offset, .. } => chain.fixed(&moved(axis, *turns, *offset)),
                 Element::Moving { axis, turns, joint, scale, offset } => {
                     let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
                     chain.moving(axis, motion(*joint, *scale, *offset));
@@ -119,6 +121,11 @@ impl Description {
     }
 }
 
+/// A turn about `axis` (rad), or a slide along it (m).
+pub(super) fn moved(axis: &Vector3<f64>, turns: bool, value: f64) -> Pose {
+    if turns { pose::rotation(*axis, value) } else { pose::translation(value * axis.x, value * axis.y, value * axis.z) }
+}
+
 impl Element {
     /// A motion about or along `axis` (any length but zero), driven by joint `joint`.
     pub(crate) fn moving(joint: usize, kind: JointKind, axis: Vector3<f64>, drive: Drive) -> Self {
@@ -138,7 +145,7 @@ impl Element {
     /// How many stages it becomes.
     fn stages(&self) -> usize {
         match self {
-            Self::Fixed(_) | Self::Link(_) => 0,
+            Self::Fixed(_) | Self::Link(_) | Self::Moving { scale: 0.0, .. } => 0,
             Self::Moving { .. } => 1,
             Self::RotationVector { .. } => RotationVector::STAGES,
         }

@@ -4,12 +4,11 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::description::{Description, Element};
+use super::description::{Description, Element, moved};
 use super::joint::Joint;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::{Chain, StageMotion};
 use crate::kinematics::link_tree::{LinkTree, LinkTreeFolder};
-use crate::math::pose;
 
 /// A link that is not on the chain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,10 +64,7 @@ impl OffChain {
         if let Element::Moving { axis, turns, joint, scale, offset } = element
             && let Some(held) = self.held.get(joint.wrapping_sub(dof))
         {
-            let value = scale * held.value + offset;
-            let turned = || pose::rotation(*axis, value);
-            let slid = || pose::translation(value * axis.x, value * axis.y, value * axis.z);
-            return Element::Fixed(if *turns { turned() } else { slid() });
+            return Element::Fixed(moved(axis, *turns, scale * held.value + offset));
         }
         element.clone()
     }

@@ -58,23 +58,3 @@ impl Parts {
         self.off_chain.validate(&self.description)
     }
 }
-
-/// The form in which parts were stored before robots had several tips.
-#[derive(Deserialize)]
-pub(super) struct PartsOfOneTip {
-    description: Description,
-    off_chain: Arc<OffChain>,
-    base: Pose,
-    tool: Pose,
-    bodies: Bodies,
-    pairs: PairRule,
-    may_touch: Vec<[String; 2]>,
-    stances: Vec<Stance>,
-}
-
-impl From<PartsOfOneTip> for Parts {
-    fn from(stored: PartsOfOneTip) -> Self {
-        let PartsOfOneTip { description, off_chain, base, tool, bodies, pairs, may_touch, stances } = stored;
-        Self { description, off_chain, base, tool, bodies, pairs, may_touch, stances, tips: vec![], visuals: vec![] }
-    }
-}

@@ -1,7 +1,7 @@
 //! Robots as bytes.
 
 use super::model::Robot;
-use super::parts::{Parts, PartsOfOneTip};
+use super::parts::Parts;
 use crate::error::{Error, Result};
 use crate::stored;
 
@@ -19,7 +19,7 @@ impl Robot {
     /// # Errors
     /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, of another type, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let robot = Self::assembled(stored::from_bytes_of_any::<Parts, PartsOfOneTip>("robot", bytes)?)?;
+        let robot = Self::assembled(stored::from_bytes::<Parts>("robot", bytes)?)?;
         for visual in robot.visuals() {
             robot.link_number(&visual.link)?;
         }

@@ -1,6 +1,8 @@
 //! The collision crate (parry): the only file that uses its types.
 
-use nalgebra::Vector3;
+use std::collections::HashMap;
+
+use nalgebra::{Matrix3, Vector3};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::query::epa::EPA;
@@ -12,11 +14,16 @@ use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
 pub(super) struct Polyhedron(ConvexPolyhedron);
 
 impl Polyhedron {
-    /// The convex hull of `points`; `None` if they lie in a plane.
-    pub fn hull_of(points: &[[f64; 3]]) -> Option<Self> {
-        let given: Vec<Vector> = points.iter().map(|point| to_crate(&(*point).into())).collect();
-        let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&given).ok()?;
-        ConvexPolyhedron::from_convex_mesh(vertices, &triangles).map(Self)
+    /// The convex hull of `points`; `None` if they lie in a plane. The crate takes bodies thinner than a three-thousandth for flat,
+    /// so `stretch` makes them about as wide in all directions before it sees them; it keeps their orientation.
+    pub fn hull_of(points: &[[f64; 3]], stretch: &Matrix3<f64>) -> Option<Self> {
+        let stretched: Vec<Vector> = points.iter().map(|point| to_crate(&(stretch * Vector3::from(*point)))).collect();
+        let bits = |point: &Vector| <[f64; 3]>::from(*point).map(f64::to_bits);
+        let given: HashMap<[u64; 3], &[f64; 3]> = stretched.iter().map(bits).zip(points).collect();
+        let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&stretched).ok()?;
+        let corner = |vertex: &Vector| given.get(&bits(vertex)).map(|point| to_crate(&(**point).into()));
+        let corners = vertices.iter().map(corner).collect::<Option<Vec<Vector>>>()?;
+        ConvexPolyhedron::from_convex_mesh(corners, &triangles).map(Self)
     }
 
     /// Its corners.

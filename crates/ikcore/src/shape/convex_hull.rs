@@ -1,6 +1,6 @@
 //! Convex hulls of points.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use super::bounding_ball::BoundingBall;
 use super::collision_crate::Polyhedron;
@@ -39,10 +39,8 @@ impl Hull {
                 points.len()
             ));
         }
-        if thinness(points) < THINNEST {
-            return Err(flat());
-        }
-        let polyhedron = Polyhedron::hull_of(points).ok_or_else(flat)?;
+        let stretch = stretch(points).ok_or_else(flat)?;
+        let polyhedron = Polyhedron::hull_of(points, &stretch).ok_or_else(flat)?;
         let corners = polyhedron.corners();
         let with_offset = |normal: Vector3<f64>| (normal, support(&corners, &normal));
         let faces = polyhedron.normals().into_iter().map(with_offset).collect();
@@ -103,12 +101,43 @@ fn support(corners: &[Vector3<f64>], normal: &Vector3<f64>) -> f64 {
     corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Smallest over largest extent of the points, along their principal axes.
-fn thinness(points: &[[f64; 3]]) -> f64 {
+/// The map that makes the points about as wide in all directions; `None` if they lie in a plane.
+fn stretch(points: &[[f64; 3]]) -> Option<Matrix3<f64>> {
     let middle = points.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / points.len() as f64;
-    let spread: nalgebra::Matrix3<f64> =
-        points.iter().map(|p| Vector3::from(*p) - middle).map(|v| v * v.transpose()).sum();
-    let squared = spread.symmetric_eigenvalues();
-    let largest = squared.max();
-    if largest > 0.0 { (squared.min().max(0.0) / largest).sqrt() } else { 0.0 }
+    let spread: Matrix3<f64> = points.iter().map(|p| Vector3::from(*p) - middle).map(|v| v * v.transpose()).sum();
+    let SymmetricEigen { eigenvalues: squared, eigenvectors: axes } = spread.symmetric_eigen();
+    let extents = squared.map(|squared| squared.max(0.0).sqrt());
+    let thick = extents.min() > THINNEST * extents.max() && extents.max().is_finite();
+    thick.then(|| axes * Matrix3::from_diagonal(&extents.map(f64::recip)) * axes.transpose())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    #[test]
+    fn thin_hulls_hold_all_their_points() {
+        let mut rng = rng::stream(1, 0);
+        for round in 0..2000 {
+            let thickness = 10.0_f64.powf(rng.uniform_in(-5.0, 0.0));
+            let count = 4 + rng.below(30);
+            let turn = nalgebra::Rotation3::from_euler_angles(rng.uniform(), rng.uniform(), rng.uniform());
+            let box_like = round % 2 == 0;
+            let points: Vec<[f64; 3]> = (0..count)
+                .map(|_| {
+                    let any = Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0));
+                    let point = if box_like { any.map(f64::signum) } else { any };
+                    (turn * point.component_mul(&Vector3::new(1.0, 0.7, thickness))).into()
+                })
+                .collect();
+            let Ok(hull) = Hull::new(&points) else { continue };
+            for _ in 0..20 {
+                let normal = Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0)).normalize();
+                let farthest = points.iter().map(|p| Vector3::from(*p).dot(&normal)).fold(f64::NEG_INFINITY, f64::max);
+                assert!((support(hull.corners(), &normal) - farthest).abs() < 1e-12, "{points:?}");
+            }
+            assert!(hull.holds(&points));
+        }
+    }
 }

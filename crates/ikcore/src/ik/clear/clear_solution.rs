@@ -26,13 +26,12 @@ pub(in crate::ik) fn clear_solution<'p>(
         (Prefer::Best, start) => search.least_cost(&mut context.goals().clone(), start),
         (_, start) => search.first(start).map(|q| search.improved(q, start)),
     };
-    match found {
-        Err(solution) => *solution,
-        Ok(q) => {
-            let nearest = Some(Box::new(Nearest::at(space, &q)));
-            Solution { nearest, ..attempt.solution(Status::Solved, q) }
-        }
+    let solution = found.map_or_else(|missed| *missed, |q| attempt.solution(Status::Solved, q));
+    if solution.nearest.is_some() {
+        return solution;
     }
+    let nearest = Some(Box::new(Nearest::at(space, &solution.q)));
+    Solution { nearest, ..solution }
 }
 
 /// `solution` where it is clear, or one near it on its self-motion; with the status [`Status::InCollision`] where there is none.

@@ -1,6 +1,6 @@
 //! Small capsules that hold given points.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::parts::{extent, principal_axes};
 use crate::error::Result;
@@ -90,7 +90,8 @@ pub(super) fn rough_volume(points: &[Vector3<f64>]) -> f64 {
 /// The corners of the convex hull; `None` for points in a plane.
 fn hull_corners(points: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
     let points: Vec<[f64; 3]> = points.iter().map(|point| (*point).into()).collect();
-    Polyhedron::hull_of(&points).map(|hull| hull.corners())
+    // A capsule that holds all is wanted, so corners that are missing do no harm.
+    Polyhedron::hull_of(&points, &Matrix3::identity()).map(|hull| hull.corners())
 }
 
 /// The smallest capsule found with its axis along `axis`.

@@ -15,8 +15,10 @@ use crate::shape::signed_distance::at_right_angles;
 const DRAWS: usize = 20_000;
 /// The largest distance is found to this (m), ...
 const ACCURACY: f64 = 2e-4;
-/// ... or to this fraction of it.
+/// ... or to this fraction of it, ...
 const RELATIVE_ACCURACY: f64 = 0.05;
+/// ... or as well as this many pieces of the surface tell: a capsule many times longer than it is far from the mesh has no end of them.
+const MOST_CELLS: usize = 1_000_000;
 
 /// The volume of the union (m^3), to about 1 %.
 pub(super) fn volume(shapes: &[Shape]) -> f64 {
@@ -53,7 +55,7 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
             pending.push((*own, surface, cell));
         }
     }
-    let mut proven = 0.0_f64;
+    let (mut proven, mut examined) = (0.0_f64, 0);
     while let Some((own, surface, cell)) = pending.pop() {
         let (point, reach) = surface.middle(&cell);
         let depth = depth(own, &point);
@@ -61,13 +63,14 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
             continue;
         }
         let distance = mesh.tangent(&point).value;
+        examined += 1;
         if depth > 0.0 {
             seen = seen.max(distance);
         }
         if distance + reach <= seen.max(proven) {
             continue;
         }
-        if reach <= ACCURACY.max(RELATIVE_ACCURACY * seen) {
+        if reach <= ACCURACY.max(RELATIVE_ACCURACY * seen) || examined > MOST_CELLS {
             proven = proven.max(distance + reach);
         } else {
             pending.extend(cell.quarters().map(|quarter| (own, surface, quarter)));

@@ -1,0 +1,108 @@
+"""Plans to each pose that arrives and has a joint_trajectory_controller execute the motion."""
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from arm import configuration, limits_of, pose_of, refusal, robot_of
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import PoseStamped
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from rclpy.task import Future
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+import beetle_ik as bik
+
+
+class Planner(Node):
+    """One motion at a time: a goal that arrives during a motion is refused."""
+
+    def __init__(self) -> None:
+        """Finds the arm and the controller."""
+        super().__init__("beetle_planner")
+        self.robot = robot_of(self)
+        self.limits = limits_of(self)
+        self.q = None
+        self.busy = False
+        action = self.declare_parameter("action", "joint_trajectory_controller/follow_joint_trajectory").value
+        self.client = ActionClient(self, FollowJointTrajectory, action)
+        self.create_subscription(JointState, "joint_states", self.on_state, 1)
+        self.create_subscription(PoseStamped, "~/goal", self.on_goal, 1)
+
+    def on_state(self, message: JointState) -> None:
+        """Keeps where the arm is."""
+        q = configuration(self.robot, message)
+        self.q = self.q if q is None else q
+
+    def on_goal(self, message: PoseStamped) -> None:
+        """Plans from rest where the arm is, and sends the motion."""
+        problem = self.obstacle_to(message)
+        if problem:
+            self.get_logger().error(problem)
+            return
+        try:
+            plan = bik.plan_point_to_point(self.robot, start_q=self.q, end=pose_of(message), limits=self.limits)
+        except bik.BeetleIkError as refused:
+            self.get_logger().error(str(refused))
+            return
+        if not plan.success:
+            self.get_logger().error(plan.message)
+            return
+        self.busy = True
+        goal = FollowJointTrajectory.Goal(trajectory=message_of(plan.trajectory))
+        self.client.send_goal_async(goal).add_done_callback(self.on_answer)
+
+    def obstacle_to(self, message: PoseStamped) -> str | None:
+        """Why no motion can begin now."""
+        if self.q is None:
+            return "no joint states have arrived yet"
+        if self.busy:
+            return "a motion is under way: send the goal when it has ended"
+        if not self.client.server_is_ready():
+            return "the controller's action server is not there: is the controller active?"
+        return refusal(self.robot, message)
+
+    def on_answer(self, future: Future) -> None:
+        """Waits for the result of an accepted motion."""
+        handle = future.result()
+        if handle.accepted:
+            handle.get_result_async().add_done_callback(self.on_result)
+        else:
+            self.busy = False
+            self.get_logger().error("the controller rejected the trajectory")
+
+    def on_result(self, future: Future) -> None:
+        """Says how the motion ended."""
+        self.busy = False
+        outcome = future.result()
+        if outcome.status == GoalStatus.STATUS_SUCCEEDED:
+            self.get_logger().info("arrived")
+        else:
+            result = outcome.result
+            self.get_logger().error(f"the motion ended with error code {result.error_code}: {result.error_string}")
+
+
+def message_of(trajectory: bik.Trajectory) -> JointTrajectory:
+    """The trajectory every 10 ms, with velocities and accelerations."""
+    fields = bik.interop.to_ros(trajectory, dt=0.01)
+    points = [
+        JointTrajectoryPoint(**point | {"time_from_start": Duration(**point["time_from_start"])})
+        for point in fields["points"]
+    ]
+    return JointTrajectory(joint_names=fields["joint_names"], points=points)
+
+
+def main() -> None:
+    """Runs the node until Ctrl-C."""
+    rclpy.init()
+    try:
+        rclpy.spin(Planner())
+    except KeyboardInterrupt:
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

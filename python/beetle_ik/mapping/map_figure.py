@@ -1,0 +1,106 @@
+"""Figures of maps: slices and clouds of what is reached, and where a base may stand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import InvalidInputError
+from .._style import BLACK, VERMILION, new_figure, style
+from .inverse_map import rigid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from .inverse_map import InverseReachabilityMap
+    from .reachability_map import ReachabilityMap
+
+KINDS = ("slices", "cloud")
+_COLOURS = "viridis"
+_MOST_POINTS = 20_000  # of a cloud; matplotlib draws more slowly
+_PLACES = 81  # along x and y of a floor
+_WIDTH = 180.0  # of all voxels, in points
+_NAMES = "xyz"
+
+
+def drawn(map: ReachabilityMap, kind: str) -> Figure:  # noqa: A002
+    """Draws a map as "slices" or as a "cloud"."""
+    if kind not in KINDS:
+        raise InvalidInputError(f"kind must be one of {', '.join(repr(known) for known in KINDS)}, got {kind!r:.60}")
+    title = f"{map.robot.name}: share of {map.orientations} orientations reached"
+    with style():
+        figure = new_figure(11.0 if kind == "slices" else 7.0, 4.4 if kind == "slices" else 6.0)
+        figure.suptitle(title)
+        cells = _slices(figure, map) if kind == "slices" else _cloud(figure, map)
+        figure.colorbar(cells, ax=figure.axes, label="reached [%] (white: none)", shrink=0.85)
+    return figure
+
+
+def drawn_on_floor(inverse: InverseReachabilityMap, target: ArrayLike | None, height: float) -> Figure:
+    """Draws the share of yaws at which an upright base at `height` reaches a target."""
+    map = inverse.map  # noqa: A001
+    radius = 0.5 * map.voxel * max(map.shape[:2])
+    at = np.zeros(2) if target is None else rigid("target", target)[..., :2, 3].reshape(-1, 2)[0]
+    x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
+    share = inverse.on_floor(x, y, target=target, height=height)
+    with style():
+        figure = new_figure(6.5, 5.5)
+        axes = figure.add_subplot()
+        cells = _shown(axes, x, y, share)
+        axes.plot(*at, marker="x", markersize=9, markeredgewidth=2, color=VERMILION, linestyle="none", label="target")
+        axes.set(xlabel="x of the base [m]", ylabel="y of the base [m]")
+        axes.set_title(f"{map.robot.name}: where an upright base at z = {height:g} m reaches the target")
+        axes.legend(loc="upper right")
+        figure.colorbar(cells, ax=axes, label="yaws [%] (white: none)")
+    return figure
+
+
+def _slices(figure: Figure, map: ReachabilityMap) -> Any:  # noqa: A002
+    """Draws the planes through the middle, and the layer that is reached best."""
+    best = [map.shape[0] // 2, map.shape[1] // 2, int(np.argmax(map.index.mean(axis=(0, 1))))]
+    centres = [origin + map.voxel * (np.arange(n) + 0.5) for origin, n in zip(map.origin, map.shape, strict=True)]
+    planes = [kept for kept in ((0, 2), (1, 2), (0, 1)) if min(map.shape[axis] for axis in kept) > 1]
+    cells = None
+    for panel, (across, up) in enumerate(planes, start=1):
+        (fixed,) = {0, 1, 2} - {across, up}
+        axes = figure.add_subplot(1, len(planes), panel)
+        share = np.take(map.index, best[fixed], axis=fixed)
+        cells = _shown(axes, centres[across], centres[up], share)
+        axes.set(xlabel=f"{_NAMES[across]} [m]", ylabel=f"{_NAMES[up]} [m]")
+        axes.set_title(f"{_NAMES[fixed]} = {centres[fixed][best[fixed]]:.3g} m")
+        axes.plot(0, 0, marker="+", markersize=8, color=BLACK)
+    return cells
+
+
+def _shown(axes: Axes, x: NDArray[Any], y: NDArray[Any], share: NDArray[Any]) -> Any:
+    """Draws shares (x, y) in per cent; nothing where none is reached."""
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    percent = np.where(share > 0, 100.0 * share, np.nan).T
+    return axes.pcolormesh(x, y, percent, cmap=_COLOURS, vmin=0.0, vmax=100.0, rasterized=True)
+
+
+def _cloud(figure: Figure, map: ReachabilityMap) -> Any:  # noqa: A002
+    """Draws the voxels behind the middle, so that the inside is in sight."""
+    axes: Any = figure.add_subplot(projection="3d")
+    points, share = cloud(map)
+    middle = map.origin[1] + 0.5 * map.voxel * map.shape[1]
+    behind = points[:, 1] > middle - 0.25 * map.voxel if map.shape[2] > 1 else np.ones(len(points), bool)
+    points, share = points[behind], share[behind]
+    kept = np.linspace(0, len(points) - 1, min(len(points), _MOST_POINTS)).astype(int)
+    size = (_WIDTH / max(map.shape)) ** 2
+    cells = axes.scatter(
+        *points[kept].T, c=100.0 * share[kept], cmap=_COLOURS, vmin=0.0, vmax=100.0, s=size, marker="s", linewidths=0
+    )
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", aspect="equal")
+    axes.view_init(elev=18, azim=-75)
+    return cells
+
+
+def cloud(map: ReachabilityMap) -> tuple[NDArray[np.float64], NDArray[np.float32]]:  # noqa: A002
+    """Returns the centres (k, 3) (m) of the voxels that are reached, and the share of each (k,)."""
+    voxels = np.argwhere(map.index > 0)
+    return map.origin + map.voxel * (voxels + 0.5), map.index[tuple(voxels.T)]

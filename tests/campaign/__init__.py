@@ -1,0 +1,1 @@
+"""Attacks on the promises of the library, without end: `python -m campaign --help`, from the folder `tests`."""

@@ -1,0 +1,17 @@
+"""The attacks, by name."""
+
+from importlib import import_module
+
+from ..attack import Attack
+from . import calls, clearance, kinematics, motion, readers, searching, solving, tracking
+
+_MODULES = (kinematics, solving, searching, tracking, motion, clearance, readers, calls)
+ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
+
+
+def named(name: str) -> Attack:
+    """An attack of these by its name, or another one by "module:class"."""
+    if name in ATTACKS:
+        return ATTACKS[name]
+    module, _, attack = name.partition(":")
+    return getattr(import_module(module), attack)()

@@ -1,0 +1,197 @@
+"""What is called clear, against coal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import beetle_ik as bik
+
+from .. import shapes
+from ..attack import Attack, BrokenError, Case
+from .motion import check_rates
+
+EXACT = 2e-6  # m: what coal is exact to
+ROBOTS = {"panda": 0.05, "ur5e": 0.04, "iiwa14": 0.06}  # and the radius of their links (m)
+
+
+def check_said(said: float, exact: float, what: str) -> None:
+    """Checks a clearance; how deep bodies overlap is measured in another way by coal."""
+    if said > max(exact, 0.0) + EXACT:
+        raise BrokenError(f"the clearance of {what} is above the true one", (said, exact))
+
+
+class Distances(Attack):
+    name = "distances"
+    promise = "A distance is never above the true one, and at most a nanometre below"
+    page = "scenes"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        own = shapes.shape(random, random.uniform(-0.5, 0.5, 3), 0.4, hard)
+        near = 0.0 if hard and random.random() < 0.2 else random.uniform(0.2, 1.5)
+        return {
+            "own": own,
+            "other": shapes.shape(random, np.array(own["center"]) + random.normal(size=3) * near, 0.4, hard),
+        }
+
+    def program(self, case: Case) -> str:
+        return (
+            "robot = bik.Robot.planar([1.0])\nframe = robot.link_poses([0.0])[-1]\n"
+            f"own, other = {shapes.written(case['own'])}, {shapes.written(case['other'])}\n"
+            "robot = robot.with_base(bik.pose(-frame[:3, 3])).with_attached(robot.link_names[-1], own)\n"
+            "robot = robot.with_collision_pairs([])\ndistance = bik.obstacles.clearance(robot, [0.0], [other])"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        exact, found = shapes.apart(shapes.placed(case["own"]), shapes.placed(case["other"])), left["distance"]
+        if exact <= EXACT or found <= EXACT:
+            if max(exact, found) > 2 * EXACT:
+                raise BrokenError("one says that they overlap", (found, exact))
+        elif found > exact + EXACT:
+            raise BrokenError("the distance is above the true one", (found, exact))
+        elif found < exact - 1e-5:
+            raise BrokenError("the distance is far below the true one", (found, exact))
+        return 1
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        """Shapes too thin for their size are refused."""
+
+
+class Clear(Attack):
+    """A robot with capsules, a configuration or two, and a scene about it."""
+
+    page = "scenes"
+    things = (1, 7)
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Hard scenes are close to the arm, and its configurations at limits."""
+        name = str(random.choice(list(ROBOTS)))
+        robot = self.robot(name)
+        ends = robot.random_configurations(4, seed=int(random.integers(2**31))).copy()
+        if hard:
+            joint = random.integers(robot.dof)
+            ends[1, joint] = np.clip(robot.upper[joint], -3.0, 3.0)
+        scene = []
+        for _ in range(int(random.integers(*self.things))):
+            link = robot.link_poses(ends[random.integers(4)])[random.integers(1, robot.dof + 1), :3, 3]
+            scene.append(shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False))
+        margin = random.choice([0.0, 0.001, 0.02])
+        return {
+            "robot": name,
+            "ends": ends.tolist(),
+            "scene": scene,
+            "margin": float(margin),
+            "seed": int(random.integers(2**31)),
+        }
+
+    @staticmethod
+    def robot(name: str) -> bik.Robot:
+        """A named robot with capsules."""
+        return bik.Robot.named(name).with_capsules(radius=ROBOTS[name])
+
+    def made(self, case: Case) -> str:
+        """The lines that make robot, configurations and scene."""
+        name, scene = case["robot"], "".join(f"    {shapes.written(thing)},\n" for thing in case["scene"])
+        return (
+            f"robot = bik.Robot.named({name!r}).with_capsules(radius={ROBOTS[name]})\n"
+            f"ends = np.array({case['ends']})\nscene = bik.Scene([\n{scene}])\n"
+        )
+
+    def check_clear(self, case: Case, robot: bik.Robot, q: np.ndarray, said: float, what: str) -> None:
+        """Checks a configuration that is called clear."""
+        exact = shapes.clearance(robot, q, [shapes.placed(thing) for thing in case["scene"]])
+        if exact < case["margin"] - EXACT:
+            raise BrokenError(f"{what} is called clear", f"{exact} of {case['margin']} m")
+        check_said(said, exact, what)
+
+
+class ClearSolutions(Clear):
+    name = "clear_solutions"
+    promise = "A solution among obstacles is clear by the margin, of obstacles and of the robot's own links"
+
+    def program(self, case: Case) -> str:
+        return (
+            f"{self.made(case)}targets = robot.fk(ends)\n"
+            f"found = bik.solve_batch(robot, targets, obstacles=scene, margin={case['margin']}, threads=1)\n"
+            f"every = bik.solve_all(robot, targets[0], obstacles=scene, margin={case['margin']})"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        robot = left["robot"]
+        for solution in [*left["found"], *left["every"]]:
+            if solution.success:
+                self.check_clear(case, robot, solution.q, solution.clearance, "a solution")
+        blocked = [i for i, solution in enumerate(left["found"]) if solution.status == bik.Status.IN_COLLISION]
+        scene = [shapes.placed(thing) for thing in case["scene"]]
+        for i in blocked:
+            if robot.dof == 6 and shapes.clearance(robot, left["ends"][i], scene) > case["margin"] + EXACT:
+                raise BrokenError("a clear solution exists, and IN_COLLISION is said", left["ends"][i].tolist())
+        return len(left["found"]) + len(left["every"])
+
+
+class ClearPlans(Clear):
+    name = "clear_plans"
+    promise = "A plan that is called clear keeps its margin and its limits at every instant"
+    deadline = 120.0
+
+    def program(self, case: Case) -> str:
+        jerk = case["seed"] % 3 == 0
+        return (
+            f"{self.made(case)}limits = bik.Limits(velocity=2.0, acceleration=5.0{', jerk=50.0' * jerk})\n"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            "plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], **given)"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        plan = left["plan"]
+        if not plan.success:
+            return 1
+        motion, robot = plan.trajectory, left["robot"]
+        rates = {"velocity": np.full(robot.dof, 2.0), "acceleration": np.full(robot.dof, 5.0)}
+        check_rates(motion, rates | ({"jerk": np.full(robot.dof, 50.0)} if case["seed"] % 3 == 0 else {}), 1e-6)
+        if np.abs(motion.q[[0, -1]] - left["ends"][:2]).max() > 1e-7:
+            raise BrokenError("the plan misses its ends", motion.q[[0, -1]].tolist())
+        for q in motion.at(np.linspace(0.0, motion.duration, 150))[0]:
+            self.check_clear(case, robot, q, -np.inf, "a plan")
+        return 1
+
+
+class ClearTicks(Clear):
+    name = "clear_ticks"
+    promise = "Among obstacles no tick comes nearer than the margin, between ticks too, while scenes come and go"
+    deadline = 120.0
+
+    def program(self, case: Case) -> str:
+        orders = ("velocity=1.5", "velocity=1.5, acceleration=5.0", "velocity=1.5, acceleration=5.0, jerk=50.0")
+        return (
+            f"{self.made(case)}limits = bik.Limits({orders[case['seed'] % 3]})\n"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            "tracker = bik.Tracker(robot, ends[0], dt=0.01, **given)\n"
+            "ways = []\n"
+            "for tick in range(160):\n"
+            "    if tick % 40 == 0:  # the last obstacle goes and comes back\n"
+            "        tracker.obstacles = scene if tick % 80 == 0 else scene[:-1]\n"
+            "    before, step = tracker.q, tracker.step(robot.fk(ends[1 + tick // 55]))\n"
+            "    ways.append((tick % 80 < 40, before, step.q, step.clearance, step.status))"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        robot, margin = left["robot"], case["margin"]
+        scene = [shapes.placed(thing) for thing in case["scene"]]
+        kept = [scene[:-1], scene]
+        clear = False
+        for whole, before, after, said, status in left["ways"]:
+            things = kept[whole]
+            at_first = shapes.clearance(robot, before, things)
+            now = shapes.clearance(robot, after, things)
+            check_said(said, now, "a tick")
+            clear = at_first >= margin + EXACT  # a scene that comes back may stand where the arm is
+            if clear and min(now, shapes.clearance(robot, 0.5 * (before + after), things)) < margin - EXACT:
+                raise BrokenError("a tick is nearer than the margin", (at_first, now, margin))
+            if status != bik.Status.IN_COLLISION and now < margin - EXACT:
+                raise BrokenError("a tick in collision is not called so", (now, margin, status))
+        return len(left["ways"])
+
+
+ATTACKS = [Distances(), ClearSolutions(), ClearPlans(), ClearTicks()]

@@ -1,0 +1,119 @@
+"""Obstacles as plain data, for the library and for coal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import coal
+import numpy as np
+
+import beetle_ik as bik
+
+from . import arms
+
+Shape = dict[str, Any]
+Placed = tuple[Any, coal.Transform3s]
+
+KINDS = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull")
+REQUEST = coal.DistanceRequest()
+REQUEST.gjk_tolerance = 1e-9  # the default gives errors above 1e-6
+
+
+def shape(random: np.random.Generator, center: Any, extent: float, hard: bool) -> Shape:
+    """Draws a shape about a place; a hard one is thin, tiny, huge, or not turned."""
+    size = extent * random.uniform(0.1, 1.0, 3)
+    if hard and random.random() < 0.6:
+        size[random.integers(3)] *= 10.0 ** random.uniform(-4, 1)
+    rpy = (0.0, 0.0, 0.0) if hard and random.random() < 0.3 else arms.triple(random.uniform(-3, 3, 3))
+    kind = str(random.choice(KINDS))
+    return {
+        "kind": kind,
+        "center": arms.triple(center),
+        "rpy": rpy,
+        "size": arms.triple(np.maximum(size, 1e-4)),
+    }
+
+
+def rotation(given: Shape) -> np.ndarray:
+    """The axes of a shape (3, 3)."""
+    roll, pitch, yaw = (np.array([angle]) for angle in given["rpy"])
+    x, y, z = np.eye(3)
+    return (arms.turn(z, yaw) @ arms.turn(y, pitch) @ arms.turn(x, roll))[0]
+
+
+def corners(given: Shape) -> np.ndarray:
+    """Corners of a hull in its own frame (8, 3): those of a box, two of them moved."""
+    signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    signs[0] *= 1.7
+    signs[7] *= 0.6
+    return signs * given["size"]
+
+
+def written(given: Shape) -> str:
+    """The expression that makes the obstacle."""
+    center, (x, y, z), turn = given["center"], given["size"], rotation(given)
+    match given["kind"]:
+        case "sphere":
+            return f"bik.obstacles.Sphere({center}, {x})"
+        case "box":
+            return f"bik.obstacles.Box({center}, {(x, y, z)}, {turn.tolist()})"
+        case "capsule":
+            half = 0.5 * y * turn[:, 2]
+            return f"bik.obstacles.Capsule({(center - half).tolist()}, {(center + half).tolist()}, {x})"
+        case "cylinder":
+            return f"bik.obstacles.Cylinder({center}, {turn[:, 2].tolist()}, {x}, {y})"
+        case "ellipsoid":
+            return f"bik.obstacles.Ellipsoid({center}, {(x, y, z)}, {turn.tolist()})"
+        case _:
+            return f"bik.obstacles.ConvexMesh({(corners(given) @ turn.T + center).tolist()})"
+
+
+def placed(given: Shape) -> Placed:
+    """The shape and its place for coal."""
+    x, y, z = given["size"]
+    match given["kind"]:
+        case "sphere":
+            made = coal.Sphere(x)
+        case "box":
+            made = coal.Box(x, y, z)
+        case "capsule":
+            made = coal.Capsule(x, y)
+        case "cylinder":
+            made = coal.Cylinder(x, y)
+        case "ellipsoid":
+            made = coal.Ellipsoid(x, y, z)
+        case _:
+            points = coal.StdVec_Vec3s()
+            points.extend(corners(given))
+            made = coal.Convex.convexHull(points, False, "Qt")
+    return made, coal.Transform3s(rotation(given), np.array(given["center"]))
+
+
+def apart(one: Placed, other: Placed) -> float:
+    """The distance of two shapes by coal."""
+    return float(coal.distance(*one, *other, REQUEST, coal.DistanceResult()))
+
+
+def bodies(robot: bik.Robot, q: np.ndarray) -> list[tuple[str, Placed]]:
+    """The capsules of a robot at a configuration, by the links that carry them."""
+    place = dict(zip(robot.all_link_names, robot.all_link_poses(q), strict=True))
+    found = []
+    for link, a, b, radius in robot.capsules:
+        first, last = (place[link][:3, :3] @ end + place[link][:3, 3] for end in (a, b))
+        length = float(np.linalg.norm(last - first))
+        if length == 0.0:
+            found.append((link, (coal.Sphere(radius), coal.Transform3s(np.eye(3), first))))
+            continue
+        z = (last - first) / length
+        x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+        x /= np.linalg.norm(x)
+        turn = np.column_stack((x, np.cross(z, x), z))
+        found.append((link, (coal.Capsule(radius, length), coal.Transform3s(turn, 0.5 * (first + last)))))
+    return found
+
+
+def clearance(robot: bik.Robot, q: np.ndarray, scene: list[Placed]) -> float:
+    """The smallest distance of the links from a scene, and of the pairs that can touch, by coal."""
+    links, pairs = bodies(robot, q), {frozenset(pair) for pair in robot.collision_pairs}
+    own = (apart(a, b) for i, (m, a) in enumerate(links) for n, b in links[:i] if {m, n} in pairs)
+    return min([np.inf, *(apart(body, thing) for _, body in links for thing in scene), *own])
