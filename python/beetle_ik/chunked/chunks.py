@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 import pickle
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
@@ -78,13 +78,12 @@ class _Part(NamedTuple):
         Raises:
             FileNotFoundError: this machine does not see the array.
         """
-        try:
-            array = library("zarr", "zarr", "reading targets").open_array(
-                store=self.array.store, path=self.array.path, mode="r"
-            )
-        except FileNotFoundError:
+        zarr, array = library("zarr", "zarr", "reading targets"), None
+        with suppress(FileNotFoundError):
+            array = zarr.open_array(store=self.array.store, path=self.array.path, mode="r")
+        if array is None:
             what = "no array of zarr here: it must be on a file system that all workers share, under the same path"
-            raise FileNotFoundError(errno.ENOENT, what, str(self.array.store_path)) from None
+            raise FileNotFoundError(errno.ENOENT, what, str(self.array.store_path))
         return np.asarray(array[self.region])
 
 
