@@ -1,9 +1,9 @@
 """
-A batch, and the reachability map of an arm
-===========================================
+The reachability map of an arm
+==============================
 
-``solve_batch`` solves many targets on all cores. Here it computes a reachability map: how many of twelve orientations
-the Panda reaches at each point of a vertical plane.
+``reachability`` computes which orientations an arm reaches in each voxel of space. Slices show where the Panda works
+best: at arm's length around its shoulder, and neither close to its axis nor stretched out.
 """
 
 import matplotlib.pyplot as plt
@@ -12,33 +12,15 @@ import numpy as np
 import beetle_ik as bik
 
 robot = bik.Robot.named("panda")
-x, z = np.linspace(-0.9, 0.9, 37), np.linspace(-0.4, 1.3, 35)
+found = bik.reachability(robot, voxel=0.05, directions=30, rolls=2)
+print(found)
 
 # %%
-# Twelve orientations: the tool points along each axis, in both directions, with two roll angles.
-quarter = np.pi / 2
-pointing = [[0, 0, 0], [np.pi, 0, 0], [quarter, 0, 0], [-quarter, 0, 0], [0, quarter, 0], [0, -quarter, 0]]
-orientations = [
-    bik.pose([0, 0, 0], rpy=rpy) @ bik.pose([0, 0, 0], rpy=[0, 0, roll]) for rpy in pointing for roll in (0.0, quarter)
-]
-
-# %%
-# All poses in one array: (points, orientations, 4, 4).
-targets = np.empty((len(z), len(x), len(orientations), 4, 4))
-targets[:] = orientations
-targets[..., 0, 3] = x[None, :, None]
-targets[..., 1, 3] = 0.0
-targets[..., 2, 3] = z[:, None, None]
-
-# %%
-# Targets out of reach cost the whole budget, so it is set low here. A low budget misses some reachable targets.
-batch = bik.solve_batch(robot, targets.reshape(-1, 4, 4), stop=bik.Stop(max_evaluations=400))
-print(batch.message)
-share = batch.success.reshape(len(z), len(x), -1).mean(axis=2)
-
-# %%
-figure, axes = plt.subplots(figsize=(7, 5.5), layout="constrained")
-cells = axes.pcolormesh(x, z, np.where(share > 0, 100 * share, np.nan), cmap="viridis", vmin=0, vmax=100)
-axes.set(xlabel="x [m]", ylabel="z [m]", title="Panda, y = 0: share of 12 orientations reached", aspect="equal")
-figure.colorbar(cells, label="reached [%] (white: none)")
+# The share of the orientations that is reached, in three planes.
+figure = found.plot()
 plt.show()
+
+# %%
+# Any pose can be looked up.
+above = [bik.pose([x, 0.0, 0.1], rpy=[np.pi, 0, 0]) for x in (0.2, 0.5, 0.8, 1.1)]
+print(dict(zip((0.2, 0.5, 0.8, 1.1), found.query(above).tolist(), strict=True)))

@@ -1671,7 +1671,10 @@ def self_motion(
 
 @final
 class MapGrid:
-    """"""
+    """The poses of a map: cubic voxels, and the orientations at the centre of each, counted from 0.
+
+    `axis` is None, or the point (2,) (m) of a vertical axis; orientations then turn with the azimuth of the voxel about it.
+    """
 
     def __new__(
         cls,
@@ -1688,37 +1691,39 @@ class MapGrid:
     ) -> MapGrid: ...
     @property
     def origin(self) -> _Array:
-        """"""
+        """The lower corner (3,) (m)."""
     @property
     def voxel(self) -> float:
-        """"""
+        """Edge of a voxel (m)."""
     @property
     def shape(self) -> list[int]:
-        """"""
+        """Number of voxels along x, y and z."""
     @property
     def axis(self) -> _Array | None:
-        """"""
+        """The vertical axis about which orientations turn with the azimuth of the voxel: its point (2,) (m), or None."""
     @property
     def orientations(self) -> int:
-        """"""
+        """Number of orientations of each voxel."""
     @property
     def rolls(self) -> int:
-        """"""
+        """Number of rolls of each direction."""
     @property
     def bytes(self) -> int:
-        """"""
+        """Bytes of the bits of a voxel."""
     @property
     def chunk_shape(self) -> list[int]:
-        """"""
+        """Largest shape of a chunk; those at the upper ends are smaller."""
     @property
     def chunks(self) -> list[int]:
-        """"""
+        """Number of chunks along x, y and z."""
     def chunk(self, number: int) -> list[list[int]]:
-        """"""
+        """First and last + 1 voxel of chunk `number` along x, y and z. Numbers count along z first."""
     def poses(self, voxel: Sequence[int]) -> _Array:
-        """"""
+        """The poses (orientations, 4, 4) of the voxel (x, y, z)."""
     def locate(self, T: ArrayLike) -> NDArray[np.int64]:  # noqa: N803
-        """"""
+        """The voxel of a pose (4, 4), or of each pose (n, 4, 4), and the number of the orientation nearest to its own: (n, 4), with n = 1
+        for a pose; -1 outside the map.
+        """
     def __eq__(self, other: object, /) -> bool: ...
 
 def map_chunks(
@@ -1735,7 +1740,18 @@ def map_chunks(
     threads: int | None = None,
     progress: _Progress = None,
 ) -> list[tuple[NDArray[np.uint8], NDArray[np.float32] | None, NDArray[np.float32] | None]]:
-    """"""
+    """Computes `chunks` of the map of a robot, by number; each has the same bits whatever the others are, on any number of threads.
+
+    Args:
+        robot, grid: the robot, and the poses of its map.
+        chunks: numbers of chunks.
+        task, obstacles, margin, self_collision, evaluations, quality, threads, progress: as for `reachability`; the first four are those
+            of the grid.
+
+    Returns:
+        For each chunk (reached, manipulability, clearance): (x, y, z, grid.bytes) uint8, a bit for each orientation, the lowest first;
+        (x, y, z) float32 of the best configuration found, NaN where there is none, or None without `quality`.
+    """
 
 @final
 class SelfMotion:

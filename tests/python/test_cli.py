@@ -55,6 +55,19 @@ def test_robots_lists_all_built_in_robots() -> None:
     assert "iiwa14" in run("robots").stdout
 
 
+def test_reach_writes_a_map_and_a_picture(tmp_path: Path) -> None:
+    out, picture = tmp_path / "map.npz", tmp_path / "map.png"
+    options = ["--voxel", "0.2", "--directions", "10", "--rolls", "2"]
+    answer = run_json("reach", "ur5e", *options, "--out", str(out), "--picture", str(picture))
+    found = bik.ReachabilityMap.load(out, robot=bik.Robot.named("ur5e"))
+    assert answer["shape"] == list(found.shape)
+    assert answer["orientations"] == 20
+    assert answer["voxels_reached"] == int((found.index > 0).sum()) > 100
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert run("reach", "ur5e", *options).stdout.startswith(f"ur5e: {answer['voxels_reached']} of 1728 voxels reached")
+    assert refused("reach", "ur5e", "--voxel", "0") == "Error: voxel must be positive and finite, got 0"
+
+
 def test_fk_gives_the_pose() -> None:
     q = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
     answer = run_json("fk", "iiwa14", "--q", ",".join(map(str, q)))

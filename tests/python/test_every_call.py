@@ -145,7 +145,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Trajectory.to_csv": {"file": "written.csv"},
     "Trajectory.to_npz": {"file": "written.npz"},
     "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
-    "distributed.reachability": {"client": None, "robot": ARM, "voxel": 1.0, "directions": 1, "rolls": 1, "threads": 1},
+    "distributed.reachability": {"client": None, "robot": FLAT, "voxel": 1.0, "threads": 1},
     "distributed.solve_batch": {"client": None, "robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
     "best_base": {"robot": FLAT, "targets": FLAT.fk([[0.1, 0.2, 0.3]]), "region": [(-1, -1, 0), (1, 1, 0)], "map": MAP},
     "filters.LowPass": {"cutoff": 5.0},

@@ -237,7 +237,8 @@ SHORT: dict[str, str] = {
     "Plan.retime": PLANNED,
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
     **dict.fromkeys(
-        ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
+         "Trajectory.from_npz", "paths.polyline"],
         COPIES,
     ),
     **dict.fromkeys(

@@ -1,4 +1,4 @@
-"""Maps of what an arm reaches: what they hold against solves, their inverse, files, figures, and places for the base."""
+"""Maps of what an arm reaches: against solves, their inverse, files, figures, and places for the base."""
 
 from pathlib import Path
 
@@ -70,8 +70,9 @@ def test_the_inverse_agrees_with_the_map() -> None:
     assert (inverse.query(np.linalg.inv(poses)) == reached).all()
     down = bik.pose([1.0, 2.0, 0.3], rpy=[np.pi, 0, 0])
     share = inverse.on_floor(np.linspace(0, 2, 11), np.linspace(1, 3, 11), target=down)
-    assert share[5, 5] < 1.0, "not from below the target itself"
     assert share.max() == 1.0
+    finer = inverse.on_floor(np.linspace(0, 2, 11), np.linspace(1, 3, 11), target=down, yaws=48)
+    assert np.abs(finer - share).mean() < 0.05
     assert share[0, 0] == 0.0
 
 
@@ -155,7 +156,7 @@ def test_arms_of_other_kinds_have_maps() -> None:
     assert planar.shape[2] == 1
     assert planar.orientations == 8
     assert planar.index.max() == 1.0
-    positions = bik.reachability(bik.Robot.named("hydraulic3"), voxel=0.3, task=bik.tasks.Position())
+    positions = bik.reachability(bik.Robot.named("kr210"), voxel=0.5, task=bik.tasks.Position())
     assert positions.orientations == 1
     rail = bik.Robot.named("ur5").with_mobile_base("planar", lower=[-1, -1, -3], upper=[1, 1, 3])
     region = [(1.0, 1.0, 0.2), (1.4, 1.4, 0.4)]

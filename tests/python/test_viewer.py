@@ -550,6 +550,15 @@ def test_results_are_shown(viewer: bik.Viewer) -> None:
     assert viewer.obstacles == bik.Scene([TABLE])
 
 
+def test_a_map_is_shown_as_a_cloud(viewer: bik.Viewer) -> None:
+    region = [(0.2, 0.2, 0.2), (0.6, 0.6, 0.6)]
+    viewer.show(bik.reachability(viewer.robot, voxel=0.2, directions=4, rolls=1, region=region))
+    other = bik.reachability(bik.Robot.named("ur5e"), voxel=0.2, directions=4, rolls=1, region=region)
+    with pytest.raises(bik.InvalidInputError) as raised:
+        viewer.show(other)
+    assert str(raised.value) == f"result is a map of robot 'ur5e', not of '{viewer.robot.name}'"
+
+
 def test_results_without_anything_to_show_change_nothing(viewer: bik.Viewer) -> None:
     with pytest.raises(bik.InvalidInputError, match="result has 6 joints, and robot 'panda' has 7"):
         viewer.show(bik.solve(bik.Robot.named("ur5"), np.eye(4)))

@@ -209,6 +209,36 @@ fn poses_out_of_reach_are_proven_so_at_once() {
 }
 
 #[test]
+fn what_joints_2_and_6_exclude_is_proven() {
+    let iiwa = robot("iiwa14");
+    let qs = configurations(&iiwa, 600);
+    let (mut proven, mut open) = (0, 0);
+    for (q, other) in qs.iter().zip(qs.iter().rev()) {
+        let pose = Frame { axes: iiwa.tip(other).axes, ..iiwa.tip(q) };
+        let solution = solved(&iiwa, &Target::Pose(pose), &SolveOptions::default());
+        match solution.status {
+            Status::Solved => {}
+            Status::OutOfReach => {
+                proven += 1;
+                let searched = solved(&iiwa, &Target::Pose(pose), &by_search());
+                assert_ne!(searched.status, Status::Solved, "{:?}", searched.q);
+            }
+            Status::Stalled => {
+                open += 1;
+                assert!(
+                    solution.message().contains("(no solution at 64 values of the redundancy"),
+                    "{}",
+                    solution.message()
+                );
+                assert!(solution.evaluations < 2000, "{}", solution.evaluations);
+            }
+            status => panic!("{status:?}"),
+        }
+    }
+    assert!(proven > 100 && open < proven / 4, "{proven} proven, {open} open");
+}
+
+#[test]
 fn budgets_hold_and_tolerances_beyond_rounding_end() {
     for robot in ["ur5e", "panda"].map(robot) {
         let q = configurations(&robot, 1).remove(0);

@@ -157,7 +157,7 @@ fn a_layout_that_makes_no_map_is_refused() {
     let said = |robot: &Robot, layout: &MapLayout, options: &MapOptions| message(MapGrid::new(robot, layout, options));
     let (arm, plain) = (robot("ur5e"), MapOptions::default());
     let task = |kind: TaskKind| MapOptions { task: Some(kind.into()), ..MapOptions::default() };
-    assert_eq!(said(&arm, &MapLayout { voxel: 0.0, ..LAYOUT }, &plain), "voxel must be positive, got 0");
+    assert_eq!(said(&arm, &MapLayout { voxel: 0.0, ..LAYOUT }, &plain), "voxel must be positive and finite, got 0");
     assert_eq!(
         said(&arm, &MapLayout { directions: 0, ..LAYOUT }, &plain),
         "directions must be from 1 to 1048576, got 0"

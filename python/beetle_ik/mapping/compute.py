@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import read_once, require
+from .._arguments import require
 from .._core import MapGrid, Robot, map_chunks
+from .._scene import Scene
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path
@@ -102,7 +103,8 @@ def computed(
     require("quality", asked["quality"], bool)
     require("any_instruction_set", any_instruction_set, bool)
     folder = None if store is None else store_path(store)
-    options = {**asked, "obstacles": read_once(asked["obstacles"])}
+    obstacles = asked["obstacles"]
+    options = {**asked, "obstacles": None if obstacles is None else list(Scene(obstacles))}
     of_grid = {name: options[name] for name in ("task", "obstacles", "margin", "self_collision")}
     grid = MapGrid(robot, **poses, **of_grid)
     map_chunks(robot, grid, [], **options, threads=threads)  # the core checks all other arguments

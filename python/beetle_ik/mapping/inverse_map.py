@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+_MOST_YAWS = 3600
+
 
 class InverseReachabilityMap:
     """The same map seen from the target, made by `ReachabilityMap.inverse`. Bases and targets are poses in one frame.
@@ -61,16 +63,16 @@ class InverseReachabilityMap:
             (i, j) float32.
         """
         require_count("yaws", yaws)
-        if yaws < 1:
-            raise InvalidInputError(f"yaws must be one or more, got {yaws}")
+        if not 1 <= yaws <= _MOST_YAWS:
+            raise InvalidInputError(f"yaws must be from 1 to {_MOST_YAWS}, got {yaws}")
         xs, ys = (np.atleast_1d(_numbers(name, line)) for name, line in (("x", x), ("y", y)))
         height = float(_numbers("height", height, dimensions=0))
-        share = np.zeros((len(xs), len(ys)), np.float32)
+        reached = np.zeros((len(xs), len(ys)), int)
         for yaw in np.arange(yaws) * (2 * np.pi / yaws):
             bases = np.tile(pose([0.0, 0.0, height], rpy=[0.0, 0.0, yaw]), (len(xs), len(ys), 1, 1))
             bases[..., 0, 3], bases[..., 1, 3] = xs[:, None], ys
-            share += self.query(bases.reshape(-1, 4, 4), target).reshape(share.shape) / np.float32(yaws)
-        return share
+            reached += self.query(bases.reshape(-1, 4, 4), target).reshape(reached.shape)
+        return (reached / yaws).astype(np.float32)
 
     def plot(self, target: ArrayLike | None = None, *, height: float = 0.0) -> Figure:
         """Draws where an upright base at this height (m) reaches a target (4, 4), by the share of its yaws."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require_text
 from .._core import InvalidInputError
 from .._style import BLACK, VERMILION, new_figure, style
 from .inverse_map import rigid
@@ -28,6 +29,7 @@ _NAMES = "xyz"
 
 def drawn(map: ReachabilityMap, kind: str) -> Figure:  # noqa: A002
     """Draws a map as "slices" or as a "cloud"."""
+    require_text("kind", kind)
     if kind not in KINDS:
         raise InvalidInputError(f"kind must be one of {', '.join(repr(known) for known in KINDS)}, got {kind!r:.60}")
     title = f"{map.robot.name}: share of {map.orientations} orientations reached"

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
-from .._style import BLACK, rgb
+from .._style import BLACK, BLUE, ORANGE, rgb
+from ..mapping import ReachabilityMap
+from ..mapping.map_figure import cloud
 from .checks import motion_of, postures_of
 from .handle import Handles
 from .joints import Joints
@@ -30,6 +32,7 @@ _FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a 
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
 _FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
+_DOT = 0.25  # of a voxel
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
 
 
@@ -88,8 +91,23 @@ class Parts:
         scene = self._page.server.scene
         scene.add_line_segments("/path", segments, rgb(BLACK), thickness=_REFERENCE, thickness_units="screen")
 
+    def draw_map(self, found: ReachabilityMap) -> None:
+        """Draws the voxels that are reached, in place of the last ones: small, so that one sees between them."""
+        mapped, shown = found.robot.name, self._page.arm.robot.name
+        if mapped != shown:
+            raise InvalidInputError(f"result is a map of robot '{mapped}', not of '{shown}'")
+        points, share = cloud(found)
+        low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
+        colors = (low + share[:, None] * (high - low)).astype(np.uint8)
+        self._page.server.scene.add_point_cloud(
+            "/map", points.astype(np.float32), colors, point_size=_DOT * found.voxel, point_shape="circle"
+        )
+
     def show(self, result: Any) -> None:
         """Shows a result of this library."""
+        if isinstance(result, ReachabilityMap):
+            self.draw_map(result)
+            return
         motion = motion_of(result)
         self._require_fitting(postures_of(result) if motion is None else motion.q)
         if motion is None:

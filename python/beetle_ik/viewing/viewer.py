@@ -30,10 +30,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from .._core import ModelFreeResult, Path, Plan, SelfMotion, Solution, SolutionSet, Step, TrackResult, Trajectory
+    from ..mapping import ReachabilityMap
     from .arm import Follow
 
     Array = NDArray[np.float64]
-    Shown = Trajectory | Plan | TrackResult | ModelFreeResult | Solution | SolutionSet | SelfMotion
+    Shown = Trajectory | Plan | TrackResult | ModelFreeResult | Solution | SolutionSet | SelfMotion | ReachabilityMap
 
 _log = logging.getLogger(__name__)
 
@@ -204,12 +205,14 @@ class Viewer:
         return self._moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts.
+        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a map as a cloud.
 
-        A `Plan` brings its obstacles along, unless it has none.
+        A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
+        orange where all are.
 
         Args:
-            result: a `Trajectory`, `Plan`, `TrackResult`, `ModelFreeResult`, `Solution`, `SolutionSet` or `SelfMotion`.
+            result: a `Trajectory`, `Plan`, `TrackResult`, `ModelFreeResult`, `Solution`, `SolutionSet`, `SelfMotion` or
+                `ReachabilityMap`.
 
         Raises:
             InvalidInputError: something else, or the result of a robot with another number of joints.

@@ -2,10 +2,11 @@
 //! the whole about the line between them.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::angle_range::{AngleRange, may_hold};
+use crate::closed_form::angle_range::{AngleRange, MOVED_BY_POLISHING, may_hold};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::orbit::about_z;
+use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::structure::{EXACT, three_meet};
 use crate::closed_form::subproblem::distance_to_point;
 use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
@@ -122,6 +123,28 @@ impl ArmAngle {
                 }
             }
         }
+    }
+
+    /// Whether the limits of joints 2, 4 and 6 (rad) exclude every arm angle. Each of joints 2 and 6 leaves some arcs; where those of
+    /// both have nothing in common, there is no configuration.
+    pub fn is_excluded(&self, pose: &ArmAnglePose, limits: &[[f64; 2]; 7], of_elbow: &AngleRange) -> bool {
+        // Polishing may bring what is little outside inside.
+        let within = |wrist: &Wrist, [lower, upper]: [f64; 2], reached: &dyn Fn(Angle) -> Vector| {
+            let (axis, cosine) = wrist.bending();
+            let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
+            Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range)
+        };
+        let mut elbows = pose.elbows[..pose.count].iter().filter(|elbow| of_elbow.may_hold(&elbow.q4));
+        !pose.free
+            && elbows.all(|Elbow { first, to_wrist, .. }| {
+                let shoulder = within(&self.first, limits[1], &|arm_angle| {
+                    pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos).turn::<Baseline>(&first.end)
+                });
+                let wrist = within(&self.last, limits[5], &|arm_angle| {
+                    to_wrist.turn::<Baseline>(&about_z(arm_angle.back(), &pose.last.end))
+                });
+                !shoulder.meet(&wrist)
+            })
     }
 
     /// The direction of the elbow's axis at arm angle zero.

@@ -123,6 +123,14 @@ impl ParameterArcs {
         within
     }
 
+    /// Whether an angle is in both, whole turns aside.
+    pub fn meet(&self, others: &Self) -> bool {
+        let both = |[a, b]: &[f64; 2], [c, d]: &[f64; 2]| {
+            [-TAU, 0.0, TAU].iter().any(|turn| c + turn <= b + SLACK && a - SLACK <= d + turn)
+        };
+        self.iter().any(|arc| others.iter().any(|other| both(arc, other)))
+    }
+
     /// Values at equal distances along the arcs, `count` of them or a few more: each arc has one at least.
     pub fn spread(&self, count: usize) -> impl Iterator<Item = f64> {
         let step = self.length() / count as f64;
@@ -195,6 +203,18 @@ mod tests {
         let arcs = Wave::of(|q: f64| (q - 2.9).cos()).arcs_between([0.1, 0.9]);
         let (here, there) = (arcs.within([-1.0, 4.0]), arcs.within([-1.0 + 3.0 * TAU, 4.0 + 3.0 * TAU]));
         assert!(here.length() > 0.5 && (here.length() - there.length()).abs() < 1e-12, "{here:?} {there:?}");
+    }
+
+    #[test]
+    fn arcs_meet_across_the_end_of_a_turn() {
+        let arc = |start: f64, end: f64| {
+            let mut arcs = ParameterArcs::NONE;
+            arcs.push_wrapped(start, end);
+            arcs
+        };
+        assert!(arc(3.0, 3.5).meet(&arc(-3.0, -2.9)) && arc(-3.0, -2.9).meet(&arc(3.0, 3.5)));
+        assert!(!arc(3.0, 3.2).meet(&arc(-3.0, -2.9)) && !arc(0.0, 1.0).meet(&arc(1.1, 2.0)));
+        assert!(ParameterArcs::CIRCLE.meet(&arc(6.0, 6.1)) && !ParameterArcs::CIRCLE.meet(&ParameterArcs::NONE));
     }
 
     #[test]

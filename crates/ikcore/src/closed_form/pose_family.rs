@@ -48,6 +48,11 @@ impl<'a> PoseFamily<'a> {
         self.redundant.arcs(&self.pose, &limits.0)
     }
 
+    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves some values. False says nothing.
+    pub fn is_excluded(&self, limits: &FamilyLimits) -> bool {
+        self.redundant.is_excluded(&self.pose, &limits.0)
+    }
+
     /// Whether the parameter is the arm angle: then every branch exists at every value.
     pub fn is_by_arm_angle(&self) -> bool {
         self.redundant.parameter() == Parameter::ArmAngle

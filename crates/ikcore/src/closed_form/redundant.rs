@@ -159,6 +159,14 @@ impl Redundant {
         &self.verifier
     }
 
+    /// Whether limits exclude every value of the parameter although [`Self::arcs`] leaves some; never true but for arm angles.
+    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits) -> bool {
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
+            _ => false,
+        }
+    }
+
     /// The values of the parameter outside which joint 4 or the parameter's own joint cannot be within limits.
     ///
     /// Exact, so that an arc shrunk to a point, with joint 4 at its limit, is not lost between samples.

@@ -2,6 +2,7 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::orbit::{Orbit, about_z, seen};
+use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::subproblem::{Turns, with_radicand};
 use crate::closed_form::vector::{Vector, across, cross, dot};
 use crate::math::Frame;
@@ -121,6 +122,12 @@ impl Wrist {
             inner: [mark, across_mark, end].map(|v| Orbit::of(&axes[1], &v).seen(&outer)),
             square: right_angle(&axes[0], &axes[1]) && right_angle(&axes[1], &axes[2]),
         }
+    }
+
+    /// The first axis, and the cosine of its angle to the last one as a function of the middle joint.
+    pub fn bending(&self) -> (Vector, Wave) {
+        let Bend { outer, a, b, constant, .. } = &self.bend;
+        (*outer, Wave::new(*constant, *a, *b))
     }
 
     /// Where the rotation of `goal` takes this wrist.

@@ -147,7 +147,9 @@ impl<'a> MapTest<'a> {
                     }
                 }
                 Way::Family(limits) => {
-                    if let Some(family) = self.robot().family(&pose) {
+                    if let Some(family) = self.robot().family(&pose)
+                        && !family.is_excluded(limits)
+                    {
                         let arcs = family.arcs(limits);
                         let values = arcs.scattered(self.options.evaluations);
                         family.visit_within(limits, values, |branches| found.take_branches(branches));
