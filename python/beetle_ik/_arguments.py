@@ -1,6 +1,8 @@
 """Checks of arguments in Python, with errors of this library."""
 
+from collections.abc import Iterable
 from numbers import Integral
+from typing import Any
 
 from ._core import InvalidInputError, Robot
 
@@ -34,3 +36,8 @@ def require_count(name: str, value: object) -> None:
     """Raises `InvalidInputError` unless the value is a whole number, zero or more."""
     if not isinstance(value, Integral) or value < 0:
         raise InvalidInputError(f"{name} must be a whole number, zero or more, got {value!r:.60}")
+
+
+def read_once(things: Any) -> Any:
+    """Returns an iterable as a list, which can be read again, and anything else as it is: the core refuses that."""
+    return list(things) if isinstance(things, Iterable) and not isinstance(things, str) else things

@@ -16,6 +16,7 @@ from pair_of_pandas import pair_of_pandas
 
 import beetle_ik as bik
 from beetle_ik import distributed
+from beetle_ik.chunked.store import Layout, Store
 
 PANDA, UR5 = bik.Robot.named("panda"), bik.Robot.named("ur5e")
 POSES = PANDA.fk(PANDA.random_configurations(50, seed=3))
@@ -119,6 +120,13 @@ def test_targets_are_read_from_a_zarr_array(store: Path) -> None:
     assert columns(in_chunks(store / "results")) == columns(
         distributed.solve_batch(None, PANDA, targets, rows_per_chunk=8, seed=4)
     )
+
+
+def test_a_store_that_a_worker_does_not_see_is_named(store: Path) -> None:
+    with pytest.raises(FileNotFoundError) as caught:
+        Store(store, Layout({}, (1,), (1,)))
+    what = "no store here: the folder must be on a file system that all workers share, under the same path"
+    assert (caught.value.strerror, caught.value.filename) == (what, str(store))
 
 
 def test_no_targets_give_no_chunks(store: Path) -> None:
@@ -270,6 +278,7 @@ def test_a_group_that_is_no_store_is_refused(store: Path, text: str) -> None:
     assert contents(store) == {"zarr.json": text.encode()}
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows words these errors differently")
 def test_a_folder_that_cannot_be_made_is_told(store: Path) -> None:
     store.write_text("a file")
     message = f"store: folder '{store}' cannot be written: File exists"

@@ -67,6 +67,20 @@ def test_a_worker_reads_its_rows_of_a_zarr_array(client: Any, tmp_path: Path) ->
     assert columns(found) == columns(bik.solve_batch(PANDA, POSITIONS, seed=4))
 
 
+def test_what_a_worker_does_not_see_is_named(client: Any, tmp_path: Path) -> None:
+    import zarr
+
+    targets = zarr.create_array(tmp_path / "targets", shape=POSITIONS.shape, chunks=(8, 3), dtype="f8")
+    shared = "on a file system that all workers share, under the same path"
+
+    def hide(_done: int, _total: int) -> None:
+        if not (tmp_path / "hidden").exists():
+            (tmp_path / "targets").rename(tmp_path / "hidden")
+
+    with pytest.raises(FileNotFoundError, match=rf"no array of zarr here: it must be {shared}: 'file://.*/targets'"):
+        distributed.solve_batch(client, PANDA, targets, rows_per_chunk=1, on_invalid="skip", progress=hide)
+
+
 def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
     slow_batch(None, tmp_path / "here")
     killed = []

@@ -6,9 +6,10 @@ worker was lost; what a store holds is not computed again.
 
 from __future__ import annotations
 
+import errno
 import pickle
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     Region: TypeAlias = tuple[slice, ...]
     Compute: TypeAlias = Callable[[int, Region, Sequence[Array], int | None], Mapping[str, Array]]
 
-_QUEUED = 2  # chunks a thread of a worker: one in work, one that waits
+_AT_LEAST, _AT_MOST = 2, 3  # chunks sent for each thread of a worker: one in work, others that wait
 ANY = "any"
 """The instruction set of a store that workers of several may fill."""
 
@@ -72,7 +73,18 @@ class _Part(NamedTuple):
     region: Region
 
     def read(self) -> Array:
-        return np.asarray(self.array[self.region])
+        """Reads the part. The array is opened anew: one that is not here would be read as zeros.
+
+        Raises:
+            FileNotFoundError: this machine does not see the array.
+        """
+        zarr, array = library("zarr", "zarr", "reading targets"), None
+        with suppress(FileNotFoundError):
+            array = zarr.open_array(store=self.array.store, path=self.array.path, mode="r")
+        if array is None:
+            what = "no array of zarr here: it must be on a file system that all workers share, under the same path"
+            raise FileNotFoundError(errno.ENOENT, what, str(self.array.store_path))
+        return np.asarray(array[self.region])
 
 
 def run(
@@ -119,7 +131,7 @@ def _here(job: Job, store: Store | None, threads: int | None) -> Chunks:
 
 
 def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> Chunks:
-    """Yields chunks as they end. Few are in work at a time, so memory does not grow with their number."""
+    """Yields chunks as they end. Few are sent at a time, so memory does not grow with their number."""
     as_completed = library("distributed", "dask", "client=", extra="distributed").as_completed
     # Made by a task: the scheduler can make it again for a new worker.
     work = client.submit(_same, pickle.dumps((job.compute, job.layout, store)), pure=False)
@@ -127,20 +139,22 @@ def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> C
     chunk_of: dict[Any, int] = {}
     ended = as_completed()
 
-    def submit_more() -> None:
-        room = _QUEUED * _threads_of(client) - len(chunk_of)
-        for chunk in islice(left, max(room, 0)):
+    def send(count: int) -> None:
+        for chunk in islice(left, max(count, 0)):
             inputs = [_to_send(array, job.layout.region(chunk)) for array in job.inputs]
             future = client.submit(_on_a_worker, work, build, chunk, inputs, pure=False)
             chunk_of[future] = chunk
             ended.add(future)
 
     try:
-        submit_more()
+        threads = _threads_of(client)
+        send(_AT_MOST * threads)
         for future in ended:
             arrays = future.result()
             yield chunk_of.pop(future), arrays
-            submit_more()
+            if len(chunk_of) <= _AT_LEAST * threads:
+                threads = _threads_of(client)  # workers come and go
+                send(_AT_MOST * threads - len(chunk_of))
     except _connection_errors() as error:
         done = job.layout.chunks - len(chunk_of) - sum(1 for _ in left)
         what = f"the connection to the scheduler is lost after {done} of {counted(job.layout.chunks, 'chunk')}"

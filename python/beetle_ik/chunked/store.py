@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -82,11 +81,10 @@ class Store:
 
     def __init__(self, folder: Path, layout: Layout) -> None:
         """Opens a store that `prepare` made."""
-        try:
-            self.group = _zarr().open_group(store=folder, mode="r+", zarr_format=3)
-        except FileNotFoundError:
+        if not (folder / "zarr.json").exists():
             what = "no store here: the folder must be on a file system that all workers share, under the same path"
-            raise FileNotFoundError(errno.ENOENT, what, str(folder)) from None
+            raise FileNotFoundError(errno.ENOENT, what, str(folder))
+        self.group = _zarr().open_group(store=folder, mode="r+", zarr_format=3)
         self._folder = folder
         self._layout = layout
         self._opened: dict[str, Any] = {}
@@ -143,10 +141,17 @@ class Store:
         region = self._layout.region(chunk)
         columns = {name: np.ascontiguousarray(arrays[name]) for name in self._layout.columns}
         hashes = np.stack([inputs, digest(list(columns.values()))])
-        with self._names_chunk(chunk):
+        failure = None
+        try:
             for name, column in columns.items():
                 self._array(name)[region] = column
             self._array(_FINISHED)[chunk : chunk + 1] = hashes[None]
+        except OSError as error:
+            failure = error
+        if failure is not None:  # raised here, without zarr's own as its context: not all of them can be sent by dask
+            kept = "the finished chunks are kept, and the same call goes on from them"
+            what = f"{failure.strerror}: chunk {chunk} of {self._layout.chunks} cannot be written; {kept}"
+            raise OSError(failure.errno, what, str(self._folder))
 
     def finish(self) -> None:
         """Removes the unfinished files that killed processes left behind."""
@@ -195,15 +200,6 @@ class Store:
             return None
         return values
 
-    @contextmanager
-    def _names_chunk(self, chunk: int) -> Iterator[None]:
-        try:
-            yield
-        except OSError as error:
-            kept = "the finished chunks are kept, and the same call goes on from them"
-            what = f"{error.strerror}: chunk {chunk} of {self._layout.chunks} cannot be written; {kept}"
-            raise OSError(error.errno, what, str(self._folder)) from error
-
 
 def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
     """Reads all arrays of a finished store of `call`.
@@ -219,8 +215,8 @@ def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
         raise InvalidInputError(f"{folder}: a store of format {there.get('format')}; this library reads {_FORMAT}")
     group = _zarr().open_group(store=folder, mode="r", zarr_format=3)
     try:
-        arrays = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
-        finished = arrays.pop(_FINISHED).any(axis=(1, 2))
+        arrays: dict[str, NDArray[Any]] = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
+        finished = np.asarray(arrays.pop(_FINISHED).any(axis=(1, 2)))
     except (KeyError, ValueError) as error:
         raise InvalidInputError(f"{folder}: damaged store: {error!s:.200}; the call that made it repairs it") from error
     if not finished.all():

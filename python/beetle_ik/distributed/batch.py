@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .. import _core
-from .._arguments import require
+from .._arguments import read_once, require
 from .._core import BatchSolution, InvalidInputError, Limits, Robot, Status, Stop
 from .._text import counted
 from ..chunked.chunks import Job, require_client, run
@@ -163,10 +163,10 @@ def solve_batch(
         "solver": solver,
         "position_tolerance": position_tolerance,
         "rotation_tolerance": rotation_tolerance,
-        "goals": _listed(goals),
+        "goals": read_once(goals),
         "prefer": prefer,
         "limits": limits,
-        "obstacles": _listed(obstacles),
+        "obstacles": read_once(obstacles),
         "margin": margin,
         "self_collision": self_collision,
         "stop": stop,
@@ -245,11 +245,6 @@ def _message(status: Any, layout: Layout) -> str:
     for chunk in range(layout.chunks):
         counts += np.bincount(status[layout.region(chunk)], minlength=len(Status))
     return _core._batch_message(counts.tolist())
-
-
-def _listed(things: Any) -> Any:
-    """Returns what can be read once as a list; the core refuses what is none."""
-    return list(things) if isinstance(things, Iterable) else things
 
 
 def _array(name: str, value: Any) -> Any:

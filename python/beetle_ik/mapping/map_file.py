@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,9 +37,9 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
     """Reads a map, of `robot` if that is given."""
     if robot is not None:
         require("robot", robot, Robot)
-    place = str(path_of(file))
-    if Path(place).is_dir():
-        arrays: dict[str, Any] = dict(read_finished(Path(place), "reachability"))
+    place = path_of(file)
+    if place.is_dir():
+        arrays: dict[str, Any] = dict(read_finished(place, "reachability"))
     else:
         arrays = read_arrays(file)
         if "reachability_map" not in arrays:
