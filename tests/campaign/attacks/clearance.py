@@ -68,14 +68,21 @@ class Clear(Attack):
         """Hard scenes are close to the arm, and its configurations at limits."""
         name = str(random.choice(list(ROBOTS)))
         robot = self.robot(name)
-        ends = robot.random_configurations(4, seed=int(random.integers(2**31))).copy()
-        if hard:
-            joint = random.integers(robot.dof)
+        tried = robot.random_configurations(40, seed=int(random.integers(2**31)))
+        ends = tried[np.argsort(-bik.obstacles.clearance(robot, tried))[:4]]
+        if hard:  # the second one is at a limit
+            joint, before = random.integers(robot.dof), ends[1].copy()
             ends[1, joint] = np.clip(robot.upper[joint], -3.0, 3.0)
+            ends[1] = ends[1] if bik.obstacles.clearance(robot, ends[1]) > 0.02 else before
         scene = []
         for _ in range(int(random.integers(*self.things))):
             link = robot.link_poses(ends[random.integers(4)])[random.integers(1, robot.dof + 1), :3, 3]
-            scene.append(shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False))
+            thing = shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False)
+            near = min(
+                shapes.apart(body, shapes.placed(thing)) for q in ends[:2] for _, body in shapes.bodies(robot, q)
+            )
+            if near > 0.03 or random.random() < 0.1:
+                scene.append(thing)
         margin = random.choice([0.0, 0.001, 0.02])
         return {
             "robot": name,

@@ -129,9 +129,24 @@ class Npz(Reader):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         if hard:
             return super().draw(random, hard=True)
-        arrays = {"time": "np.arange(3.0)", "coefficients": "np.ones((2, 2, 4))", "joint_names": "np.array(['a', 'b'])"}
-        for name in random.choice(list(arrays), random.integers(1, 3)):
-            arrays[name] = hostile.array(random)
+        arrays = {
+            "time": "np.arange(3.0)",
+            "coefficients": "np.tile(np.eye(1, 4), (2, 2, 1))",
+            "joint_names": "np.array(['a', 'b'])",
+        }
+        name = str(random.choice(list(arrays)))
+        changes = (
+            ".tolist()",
+            "[::-1]",
+            ".astype('f4')",
+            ".astype('O')",
+            "[:, None]",
+            "[..., ::2]",
+            ".T",
+            ".astype('U9')",
+        )
+        change = changes[random.integers(len(changes))]
+        arrays[name] = hostile.array(random) if random.random() < 0.3 else f"{arrays[name]}{change}"
         return {"arrays": arrays}
 
     def program(self, case: Case) -> str:
