@@ -185,6 +185,8 @@ class ClearTicks(Clear):
             "tracker = bik.Tracker(robot, ends[0], dt=0.01, **given)\n"
             "ways = []\n"
             "for tick in range(160):\n"
+            "    for _ in range(round(tracker.stop() / 0.01) + 2 if tick == 80 else 0):  # at rest when it comes back\n"
+            "        tracker.step(None)\n"
             "    if tick % 40 == 0:  # the last obstacle goes and comes back\n"
             "        tracker.obstacles = scene if tick % 80 == 0 else scene[:-1]\n"
             "    before, step = tracker.q, tracker.step(robot.fk(ends[1 + tick // 55]))\n"

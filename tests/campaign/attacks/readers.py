@@ -161,6 +161,39 @@ class Npz(Reader):
         return 1
 
 
+class MapFile(Reader):
+    name = "map_npz"
+    promise = "A damaged map of the reach, or one with other arrays, is read or refused by name"
+    page = "scale"
+    folder = "map"
+    call = (
+        "found = bik.ReachabilityMap.load({file!r})\n"
+        "seen = [found.index, found.query(np.eye(4)), repr(found), found.manipulability]\n"
+        "found.to_npz('again.npz')\nagain = bik.ReachabilityMap.load('again.npz')"
+    )
+    arrays = ("reachability_map", "robot", "grid", "bits", "manipulability")
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """An easy case has another array, a hard one other bytes."""
+        if hard:
+            return super().draw(random, hard=True)
+        return {"name": str(random.choice(self.arrays)), "array": hostile.array(random)}
+
+    def program(self, case: Case) -> str:
+        if "data" in case:
+            return super().program(case)
+        whole = str(CORPUS / "map" / "map.npz")
+        return (
+            f"arrays = dict(np.load({whole!r}))\narrays[{case['name']!r}] = {case['array']}\n"
+            f"np.savez('case.npz', **arrays)\n{self.call.format(file='case.npz')}"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        if left["found"] != left["again"]:
+            raise BrokenError("a saved map is loaded differently")
+        return 1
+
+
 class Mesh(Reader):
     name = "mesh"
     promise = "A damaged mesh (STL, OBJ, DAE) is read or refused by name, and the bodies that cover it are finite"
@@ -232,4 +265,4 @@ def samples() -> dict[str, bytes]:
     return _SAMPLES
 
 
-ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Csv(), Npz(), Mesh(), Stored()]
+ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Csv(), Npz(), MapFile(), Mesh(), Stored()]
