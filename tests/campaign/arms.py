@@ -83,27 +83,33 @@ def free(joints: list[Joint]) -> list[Joint]:
     return [joint for i, joint in enumerate(joints) if masters(joints)[i] == i]
 
 
-def urdf(joints: list[Joint]) -> str:
-    """The arm as URDF, from link "l0" to the last."""
-    text, followed = "", masters(joints)
-    for i, joint in enumerate(joints):
-        x, y, z = (" ".join(map(repr, joint[key])) for key in ("xyz", "rpy", "axis"))
-        follows = f"<mimic joint='j{followed[i]}' multiplier='{{!r}}' offset='{{!r}}'/>".format(
-            *joint["follows"] or (0, 0)
-        )
-        text += (
-            f"<joint name='j{i}' type='{joint['kind']}'><parent link='l{i}'/><child link='l{i + 1}'/>"
-            f"<origin xyz='{x}' rpy='{y}'/><axis xyz='{z}'/>"
-            f"<limit lower='{joint['lower']!r}' upper='{joint['upper']!r}' velocity='1' effort='1'/>"
-            f"{follows if followed[i] != i else ''}</joint>"
-        )
-    links = "".join(f"<link name='l{i}'/>" for i in range(len(joints) + 1))
+def urdf(*branches: list[Joint]) -> str:
+    """A robot as URDF: an arm from link "l0" on, and, if more are given, branches from its first moving link on.
+
+    Links are named l0, l1 and so on, those of later branches a1, a2, and b1, b2; joints lj0, lj1 and so on.
+    """
+    links, text = "<link name='l0'/>", ""
+    for name, joints in zip("labc", branches, strict=False):
+        followed, parent = masters(joints), "l0" if name == "l" else "l1"
+        for i, joint in enumerate(joints):
+            x, y, z = (" ".join(map(repr, joint[key])) for key in ("xyz", "rpy", "axis"))
+            factor, offset = joint["follows"] or (1.0, 0.0)
+            mimic = f"<mimic joint='{name}j{followed[i]}' multiplier='{factor!r}' offset='{offset!r}'/>"
+            child = f"{name}{i + 1}"
+            links += f"<link name='{child}'/>"
+            text += (
+                f"<joint name='{name}j{i}' type='{joint['kind']}'><parent link='{parent}'/><child link='{child}'/>"
+                f"<origin xyz='{x}' rpy='{y}'/><axis xyz='{z}'/>"
+                f"<limit lower='{joint['lower']!r}' upper='{joint['upper']!r}' velocity='1' effort='1'/>"
+                f"{mimic if followed[i] != i else ''}</joint>"
+            )
+            parent = child
     return f"<robot name='arm'>{links}{text}</robot>"
 
 
-def written(joints: list[Joint], name: str = "robot") -> str:
+def written(*branches: list[Joint], tips: str = "") -> str:
     """The line of Python that makes the robot."""
-    return f'{name} = bik.Robot.from_urdf("""{urdf(joints)}""")\n'
+    return f'robot = bik.Robot.from_urdf("""{urdf(*branches)}"""{tips})\n'
 
 
 def bounds(joints: list[Joint]) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import coal
@@ -14,18 +15,21 @@ from . import arms
 Shape = dict[str, Any]
 Placed = tuple[Any, coal.Transform3s]
 
-KINDS = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull")
+CONVEX = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull")
+KINDS = (*CONVEX, "soup", "cloud", "grid")
+SOUP = ((0, 1, 2), (3, 5, 6), (4, 1, 7))  # triangles of three corners of a hull each
+OCCUPIED = np.array([[[True, False], [False, True]], [[False, False], [True, True]]])
 REQUEST = coal.DistanceRequest()
 REQUEST.gjk_tolerance = 1e-9  # the default gives errors above 1e-6
 
 
-def shape(random: np.random.Generator, center: Any, extent: float, hard: bool) -> Shape:
+def shape(random: np.random.Generator, center: Any, extent: float, hard: bool, kinds: Sequence[str] = KINDS) -> Shape:
     """Draws a shape about a place; a hard one is thin, tiny, huge, or not turned."""
     size = extent * random.uniform(0.1, 1.0, 3)
     if hard and random.random() < 0.6:
         size[random.integers(3)] *= 10.0 ** random.uniform(-4, 1)
     rpy = (0.0, 0.0, 0.0) if hard and random.random() < 0.3 else arms.triple(random.uniform(-3, 3, 3))
-    kind = str(random.choice(KINDS))
+    kind = str(random.choice(kinds))
     return {
         "kind": kind,
         "center": arms.triple(center),
@@ -64,29 +68,55 @@ def written(given: Shape) -> str:
             return f"bik.obstacles.Cylinder({center}, {turn[:, 2].tolist()}, {x}, {y})"
         case "ellipsoid":
             return f"bik.obstacles.Ellipsoid({center}, {(x, y, z)}, {turn.tolist()})"
+        case "soup":
+            return f"bik.obstacles.Mesh({(corners(given) @ turn.T + center).tolist()}, {SOUP})"
+        case "cloud":
+            return f"bik.obstacles.PointCloud({(corners(given) @ turn.T + center).tolist()}, {0.2 * x})"
+        case "grid":
+            return f"bik.obstacles.Grid({center}, {x}, {OCCUPIED.tolist()})"
         case _:
             return f"bik.obstacles.ConvexMesh({(corners(given) @ turn.T + center).tolist()})"
 
 
-def placed(given: Shape) -> Placed:
-    """The shape and its place for coal."""
+def pieces(given: Shape) -> list[Placed]:
+    """What the shape is made of, for coal."""
+    turn, center, x = rotation(given), np.array(given["center"]), given["size"][0]
+    match given["kind"]:
+        case "cloud":
+            places = corners(given) @ turn.T + center
+            return [(coal.Sphere(0.2 * x), coal.Transform3s(np.eye(3), place)) for place in places]
+        case "grid":
+            places = center + x * (np.argwhere(OCCUPIED) + 0.5)
+            return [(coal.Box(x, x, x), coal.Transform3s(np.eye(3), place)) for place in places]
+        case _:
+            return [(_single(given), coal.Transform3s(turn, center))]
+
+
+def _single(given: Shape) -> Any:
+    """A shape of one piece, in its own frame."""
     x, y, z = given["size"]
     match given["kind"]:
         case "sphere":
-            made = coal.Sphere(x)
+            return coal.Sphere(x)
         case "box":
-            made = coal.Box(x, y, z)
+            return coal.Box(x, y, z)
         case "capsule":
-            made = coal.Capsule(x, y)
+            return coal.Capsule(x, y)
         case "cylinder":
-            made = coal.Cylinder(x, y)
+            return coal.Cylinder(x, y)
         case "ellipsoid":
-            made = coal.Ellipsoid(x, y, z)
+            return coal.Ellipsoid(x, y, z)
+        case "soup":
+            model = coal.BVHModelOBBRSS()
+            model.beginModel(len(SOUP), 3 * len(SOUP))
+            for face in SOUP:
+                model.addTriangle(*corners(given)[list(face)])
+            model.endModel()
+            return model
         case _:
             points = coal.StdVec_Vec3s()
             points.extend(corners(given))
-            made = coal.Convex.convexHull(points, False, "Qt")
-    return made, coal.Transform3s(rotation(given), np.array(given["center"]))
+            return coal.Convex.convexHull(points, False, "Qt")
 
 
 def apart(one: Placed, other: Placed) -> float:

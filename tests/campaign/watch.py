@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from .attack import HEADER, Attack, Verdict, drawn
 from .ledger import Ledger
 
 EVERY = 30.0  # s between two writings of the ledger
+ENOUGH = 5  # cases of one defect
 
 
 @dataclass
@@ -30,6 +32,7 @@ class Plan:
     workers: int
     first: int
     out: Path
+    told: Counter[tuple[str, str | None]] = field(default_factory=Counter)  # failures of each attack and kind
 
 
 @dataclass
@@ -146,7 +149,10 @@ def _named(code: int) -> str:
 
 
 def _report(plan: Plan, name: str, index: int, verdict: Verdict, program: str) -> None:
-    """Prints a failing case and keeps its program."""
+    """Prints a failing case and keeps its program; of one defect the first few are enough."""
+    plan.told[name, verdict.failure] += 1
+    if plan.told[name, verdict.failure] > ENOUGH:
+        return
     again = f"python -m campaign repeat {name} --seed {plan.seed} --index {index}"
     what = f"{name}: {verdict.failure}\n{verdict.detail}".rstrip()
     comment = "\n".join(f"# {line}" for line in [*what.splitlines()[:12], again])

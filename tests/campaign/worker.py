@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import TextIO
 
-from .attack import HEADER, Attack, Case, drawn, tried
+from .attack import HEADER, Attack, Case, Verdict, drawn, tried
 from .shrinking import shrunk
 
 MEMORY = 8 * 2**30  # bytes of addresses: a case that wants more raises MemoryError, or crashes and is a failure
@@ -35,7 +35,12 @@ def run(attacks: list[Attack], seed: int, share: Share) -> None:
     for attack, index in _turns(attacks, share):
         _say(out, begin=[attack.name, index])
         start = time.monotonic()
-        case = drawn(attack, seed, index)
+        try:
+            case = drawn(attack, seed, index)
+        except Exception as error:
+            verdict = Verdict(0, failure=f"the generator raises {type(error).__name__}", detail=str(error))
+            _say(out, end=[attack.name, index], verdict=asdict(verdict), seconds=0.0, program="")
+            continue
         verdict = tried(attack, case)
         seconds = time.monotonic() - start
         told = {}

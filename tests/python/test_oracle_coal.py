@@ -199,3 +199,14 @@ def test_thin_hulls_keep_all_their_corners() -> None:
             coal.Transform3s.Identity(),
         )
         assert exact - 1e-6 < found < exact + 1e-6
+
+
+def test_a_box_is_as_far_from_a_cloud_as_from_its_nearest_ball() -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(200):
+        size, radius, points = rng.uniform(0.01, 1.0, 3), rng.uniform(0.01, 0.2), rng.uniform(-2, 2, (20, 3))
+        body = bik.obstacles.Box(-PLACE, size)
+        robot = ARM.with_attached(LINK, body).with_collision_pairs([])
+        found = bik.obstacles.clearance(robot, [0.0], [bik.obstacles.PointCloud(points, radius)])
+        exact = np.linalg.norm(np.maximum(np.abs(points) - size / 2, 0.0), axis=1).min() - radius
+        assert found == pytest.approx(exact, abs=1e-6) or max(found, exact) <= 0.0

@@ -90,3 +90,17 @@ def test_arms_without_one_joint_more_are_refused() -> None:
         bik.self_motion(bik.Robot.named("ur10"), POSE)
     with pytest.raises(bik.InvalidInputError, match=r"^spacing must be from 0.001 to 0.5, got 2$"):
         bik.self_motion(PANDA, POSE, spacing=2.0)
+
+
+def test_curves_of_random_arms_have_no_gaps_where_limits_cut_them() -> None:
+    rng = np.random.default_rng(1)
+    cut = 0
+    for _ in range(5):
+        a, d, alpha = rng.uniform(-0.4, 0.4, 7), rng.uniform(-0.4, 0.4, 7), rng.uniform(-2.0, 2.0, 7)
+        lower, upper = -rng.uniform(1, 6, 7), rng.uniform(1, 6, 7)
+        arm = bik.Robot.from_dh(a=a, alpha=alpha, d=d, lower=lower, upper=upper)
+        for curve in bik.self_motion(arm, arm.fk(rng.uniform(lower, upper)), spacing=0.2):
+            steps = np.linalg.norm(np.diff(curve.q, axis=0), axis=1)
+            assert steps.max(initial=0.0) <= 0.2
+            cut += (curve.lower_cut is not None) + (curve.upper_cut is not None)
+    assert cut > 20

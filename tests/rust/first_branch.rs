@@ -6,6 +6,7 @@ use crate::closed_form::{geared, jaco2, puma560};
 use crate::common::{bits, configurations, pose_at, robot};
 use ikcore::ik::{AllOptions, Solution, SolveOptions, solve, solve_all};
 use ikcore::math::{Frame, pose};
+use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{AnySolver, Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
@@ -226,7 +227,7 @@ fn what_joints_2_and_6_exclude_is_proven() {
             Status::Stalled => {
                 open += 1;
                 assert!(
-                    solution.message().contains("(no solution at 64 values of the redundancy"),
+                    solution.message().contains("(no solution at 80 values of the redundancy"),
                     "{}",
                     solution.message()
                 );
@@ -262,6 +263,35 @@ fn the_same_call_gives_the_same_bits() {
             let target = pose_at(&robot, &q);
             let solution = |seed| solved(&robot, &target, &SolveOptions { seed, ..SolveOptions::default() });
             assert_eq!(bits(&solution(1).q), bits(&solution(2).q));
+        }
+    }
+}
+
+/// Configurations with `fixed` joints at one of their limits.
+fn at_limits(robot: &Robot, fixed: usize, count: usize) -> Vec<Vec<f64>> {
+    let mut rng = rng::stream(7, fixed as u64);
+    let ranges: Vec<(f64, f64)> = robot.joints().iter().map(|joint| joint.sampling_range()).collect();
+    let mut draw = || {
+        let mut q: Vec<f64> = ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
+        let mut free: Vec<usize> = (0..q.len()).collect();
+        for _ in 0..fixed {
+            let joint = free.swap_remove(rng.uniform_in(0.0, free.len() as f64) as usize);
+            let (lower, upper) = ranges[joint];
+            q[joint] = if rng.uniform_in(0.0, 1.0) < 0.5 { lower } else { upper };
+        }
+        q
+    };
+    (0..count).map(|_| draw()).collect()
+}
+
+#[test]
+fn poses_that_only_narrow_ranges_of_the_self_motion_reach_are_solved() {
+    for robot in SEVEN.map(robot) {
+        for fixed in [0, 2, 3, 4, 6] {
+            for q in at_limits(&robot, fixed, 300) {
+                let solution = solved(&robot, &pose_at(&robot, &q), &SolveOptions::default());
+                assert_eq!(solution.status, Status::Solved, "{}: {q:?}", robot.name());
+            }
         }
     }
 }

@@ -36,6 +36,7 @@ mod plan_batch;
 mod planning;
 mod point_to_point;
 mod polynomial;
+mod readers;
 mod redundancy;
 mod region;
 mod resolved_rate;

@@ -158,7 +158,7 @@ fn a_follower_of_factor_zero_stands_at_its_offset() {
         let pose = arm.fk(&[0.2]).unwrap();
         let turn = if kind == "revolute" { 0.5 } else { 0.2 };
         assert_same(&pose, &(pose::translation(0.0, 0.0, place[2]) * pose::rotation(Vector3::z(), turn)), 1e-15);
-        let solution = solve(&arm, &Target::pose(pose).unwrap(), &SolveOptions::default(), &mut Unattended).unwrap();
+        let solution = solve(&arm, &Target::from(&pose), &SolveOptions::default(), &mut Unattended).unwrap();
         assert_eq!(solution.status, Status::Solved);
     }
 }

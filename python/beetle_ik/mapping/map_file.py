@@ -44,9 +44,10 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
         arrays = read_arrays(file)
         if "reachability_map" not in arrays:
             raise InvalidInputError(f"{place}: not a reachability map")
-        if (version := arrays["reachability_map"]) != FORMAT:
+        version = arrays["reachability_map"]
+        if version.shape or version.dtype.kind not in "iu" or version != FORMAT:
             reads = f"this library reads format {FORMAT}: compute it again"
-            raise InvalidInputError(f"{place}: a map of format {version}; {reads}")
+            raise InvalidInputError(f"{place}: a map of format {version!s:.60}; {reads}")
     try:
         stored, grid = _restored(Robot, arrays["robot"]), _restored(MapGrid, arrays["grid"])
         found = ReachabilityMap(stored, grid, arrays["bits"], *(arrays.get(name) for name in QUALITY))

@@ -54,6 +54,10 @@ class ReachabilityMap:
             raise InvalidInputError(
                 f"bits: expected shape {(*grid.shape, grid.bytes)} of uint8, got {bits.shape} of {bits.dtype}"
             )
+        for name, measured in zip(QUALITY, (manipulability, clearance), strict=True):
+            if measured is not None and (measured.shape != (*grid.shape,) or measured.dtype != np.float32):
+                got = f"got {measured.shape} of {measured.dtype}"
+                raise InvalidInputError(f"{name}: expected shape {(*grid.shape,)} of float32, {got}")
         self.robot, self.grid, self.bits = robot, grid, bits
         self.manipulability, self.clearance = manipulability, clearance
         self.origin, self.voxel, self.axis, self.orientations = grid.origin, grid.voxel, grid.axis, grid.orientations

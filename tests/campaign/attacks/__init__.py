@@ -3,9 +3,9 @@
 from importlib import import_module
 
 from ..attack import Attack
-from . import calls, clearance, kinematics, motion, readers, searching, solving, tracking
+from . import calls, clearance, command_line, kinematics, motion, readers, searching, several, solving, tracking
 
-_MODULES = (kinematics, solving, searching, tracking, motion, clearance, readers, calls)
+_MODULES = (kinematics, solving, searching, several, tracking, motion, clearance, readers, calls, command_line)
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
 

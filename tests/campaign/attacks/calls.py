@@ -29,6 +29,15 @@ ELSEWHERE = (
 SETUP = "from test_every_call import CALLS, needed  # of tests/python\n\n"
 
 
+# The right value in another form, or nearly right.
+NEARLY = (
+    "np.array({}, dtype='f4')", "np.array({}, dtype='>f8')", "np.asfortranarray({})", "np.array({}, dtype=object)",
+    "np.stack([{}] * 2, axis=-1)[..., 0]", "np.flip(np.array({}))", "np.array({}).tolist()", "[{}]",
+    "1e3 * np.array({})", "1e-9 * np.array({})", "np.array({}) + 1e-7", "np.nextafter(np.array({}), inf)",
+    "np.broadcast_to(np.array({}), np.shape({}))",
+)  # fmt: skip
+
+
 class Arguments(Attack):
     name = "arguments"
     promise = "A wrong argument raises a declared error: no panic, no hang, and no NaN in a result that says success"
@@ -42,7 +51,14 @@ class Arguments(Attack):
         parameters = callable_names()[name]
         count = min(len(parameters), int(random.integers(2, 4)) if hard else 1)
         chosen = random.choice(parameters, count, replace=False)
-        return {"call": name, "arguments": [(str(each), hostile.value(random)) for each in chosen]}
+        return {"call": name, "arguments": [(str(each), self.value(str(each), random)) for each in chosen]}
+
+    @staticmethod
+    def value(argument: str, random: np.random.Generator) -> str:
+        """Draws an expression for an argument."""
+        if random.random() < 0.6:
+            return hostile.value(random)
+        return str(random.choice(NEARLY)).replace("{}", f"right.get({argument!r}, 1.0)")
 
     def program(self, case: Case) -> str:
         name = case["call"]

@@ -22,13 +22,23 @@ def check_said(said: float, exact: float, what: str) -> None:
         raise BrokenError(f"the clearance of {what} is above the true one", (said, exact))
 
 
+def placed(scene: list[shapes.Shape]) -> list[shapes.Placed]:
+    """All pieces of a scene."""
+    return [piece for thing in scene for piece in shapes.pieces(thing)]
+
+
+def nearest(own: shapes.Shape, other: shapes.Shape) -> float:
+    """The distance of two shapes."""
+    return min(shapes.apart(one, two) for one in shapes.pieces(own) for two in shapes.pieces(other))
+
+
 class Distances(Attack):
     name = "distances"
     promise = "A distance is never above the true one, and at most a nanometre below"
     page = "scenes"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        own = shapes.shape(random, random.uniform(-0.5, 0.5, 3), 0.4, hard)
+        own = shapes.shape(random, random.uniform(-0.5, 0.5, 3), 0.4, hard, shapes.CONVEX)
         near = 0.0 if hard and random.random() < 0.2 else random.uniform(0.2, 1.5)
         return {
             "own": own,
@@ -44,7 +54,7 @@ class Distances(Attack):
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
-        exact, found = shapes.apart(shapes.placed(case["own"]), shapes.placed(case["other"])), left["distance"]
+        exact, found = nearest(case["own"], case["other"]), left["distance"]
         if exact <= EXACT or found <= EXACT:
             if max(exact, found) > 2 * EXACT:
                 raise BrokenError("one says that they overlap", (found, exact))
@@ -68,14 +78,19 @@ class Clear(Attack):
         """Hard scenes are close to the arm, and its configurations at limits."""
         name = str(random.choice(list(ROBOTS)))
         robot = self.robot(name)
-        ends = robot.random_configurations(4, seed=int(random.integers(2**31))).copy()
-        if hard:
-            joint = random.integers(robot.dof)
+        tried = robot.random_configurations(40, seed=int(random.integers(2**31)))
+        ends = tried[np.argsort(-bik.obstacles.clearance(robot, tried))[:4]]
+        if hard:  # the second one is at a limit
+            joint, before = random.integers(robot.dof), ends[1].copy()
             ends[1, joint] = np.clip(robot.upper[joint], -3.0, 3.0)
-        scene = []
+            ends[1] = ends[1] if bik.obstacles.clearance(robot, ends[1]) > 0.02 else before
+        scene, alone = [], robot.with_collision_pairs([])
         for _ in range(int(random.integers(*self.things))):
             link = robot.link_poses(ends[random.integers(4)])[random.integers(1, robot.dof + 1), :3, 3]
-            scene.append(shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False))
+            thing = shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False)
+            near = min(shapes.clearance(alone, q, shapes.pieces(thing)) for q in ends[:2])
+            if near > 0.03 or random.random() < 0.1:
+                scene.append(thing)
         margin = random.choice([0.0, 0.001, 0.02])
         return {
             "robot": name,
@@ -100,7 +115,7 @@ class Clear(Attack):
 
     def check_clear(self, case: Case, robot: bik.Robot, q: np.ndarray, said: float, what: str) -> None:
         """Checks a configuration that is called clear."""
-        exact = shapes.clearance(robot, q, [shapes.placed(thing) for thing in case["scene"]])
+        exact = shapes.clearance(robot, q, placed(case["scene"]))
         if exact < case["margin"] - EXACT:
             raise BrokenError(f"{what} is called clear", f"{exact} of {case['margin']} m")
         check_said(said, exact, what)
@@ -123,7 +138,7 @@ class ClearSolutions(Clear):
             if solution.success:
                 self.check_clear(case, robot, solution.q, solution.clearance, "a solution")
         blocked = [i for i, solution in enumerate(left["found"]) if solution.status == bik.Status.IN_COLLISION]
-        scene = [shapes.placed(thing) for thing in case["scene"]]
+        scene = placed(case["scene"])
         for i in blocked:
             if robot.dof == 6 and shapes.clearance(robot, left["ends"][i], scene) > case["margin"] + EXACT:
                 raise BrokenError("a clear solution exists, and IN_COLLISION is said", left["ends"][i].tolist())
@@ -170,6 +185,8 @@ class ClearTicks(Clear):
             "tracker = bik.Tracker(robot, ends[0], dt=0.01, **given)\n"
             "ways = []\n"
             "for tick in range(160):\n"
+            "    for _ in range(round(tracker.stop() / 0.01) + 2 if tick == 80 else 0):  # at rest when it comes back\n"
+            "        tracker.step(None)\n"
             "    if tick % 40 == 0:  # the last obstacle goes and comes back\n"
             "        tracker.obstacles = scene if tick % 80 == 0 else scene[:-1]\n"
             "    before, step = tracker.q, tracker.step(robot.fk(ends[1 + tick // 55]))\n"
@@ -178,8 +195,7 @@ class ClearTicks(Clear):
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         robot, margin = left["robot"], case["margin"]
-        scene = [shapes.placed(thing) for thing in case["scene"]]
-        kept = [scene[:-1], scene]
+        kept = [placed(case["scene"][:-1]), placed(case["scene"])]
         clear = False
         for whole, before, after, said, status in left["ways"]:
             things = kept[whole]

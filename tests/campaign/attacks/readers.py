@@ -129,9 +129,24 @@ class Npz(Reader):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         if hard:
             return super().draw(random, hard=True)
-        arrays = {"time": "np.arange(3.0)", "coefficients": "np.ones((2, 2, 4))", "joint_names": "np.array(['a', 'b'])"}
-        for name in random.choice(list(arrays), random.integers(1, 3)):
-            arrays[name] = hostile.array(random)
+        arrays = {
+            "time": "np.arange(3.0)",
+            "coefficients": "np.tile(np.eye(1, 4), (2, 2, 1))",
+            "joint_names": "np.array(['a', 'b'])",
+        }
+        name = str(random.choice(list(arrays)))
+        changes = (
+            ".tolist()",
+            "[::-1]",
+            ".astype('f4')",
+            ".astype('O')",
+            "[:, None]",
+            "[..., ::2]",
+            ".T",
+            ".astype('U9')",
+        )
+        change = changes[random.integers(len(changes) if name != "joint_names" else 2)]
+        arrays[name] = hostile.array(random) if random.random() < 0.3 else f"{arrays[name]}{change}"
         return {"arrays": arrays}
 
     def program(self, case: Case) -> str:
@@ -143,6 +158,39 @@ class Npz(Reader):
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         if not np.isfinite(left["motion"].coefficients).all():
             raise BrokenError("a motion was read that is not finite")
+        return 1
+
+
+class MapFile(Reader):
+    name = "map_npz"
+    promise = "A damaged map of the reach, or one with other arrays, is read or refused by name"
+    page = "scale"
+    folder = "map"
+    call = (
+        "found = bik.ReachabilityMap.load({file!r})\n"
+        "seen = [found.index, found.query(np.eye(4)), repr(found), found.manipulability]\n"
+        "found.to_npz('again.npz')\nagain = bik.ReachabilityMap.load('again.npz')"
+    )
+    arrays = ("reachability_map", "robot", "grid", "bits", "manipulability")
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """An easy case has another array, a hard one other bytes."""
+        if hard:
+            return super().draw(random, hard=True)
+        return {"name": str(random.choice(self.arrays)), "array": hostile.array(random)}
+
+    def program(self, case: Case) -> str:
+        if "data" in case:
+            return super().program(case)
+        whole = str(CORPUS / "map" / "map.npz")
+        return (
+            f"arrays = dict(np.load({whole!r}))\narrays[{case['name']!r}] = {case['array']}\n"
+            f"np.savez('case.npz', **arrays)\n{self.call.format(file='case.npz')}"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        if left["found"] != left["again"]:
+            raise BrokenError("a saved map is loaded differently")
         return 1
 
 
@@ -217,4 +265,4 @@ def samples() -> dict[str, bytes]:
     return _SAMPLES
 
 
-ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Csv(), Npz(), Mesh(), Stored()]
+ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Csv(), Npz(), MapFile(), Mesh(), Stored()]

@@ -187,4 +187,40 @@ class Budgets(Attack):
         return len(seen)
 
 
-ATTACKS = [CompleteSets(), SameBits(), Budgets()]
+class BestKept(Attack):
+    name = "best_kept"
+    promise = "A search that runs out of budget returns a configuration no worse than its start, inside the limits"
+    page = "limits"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        joints = arms.arm(random, hard, (2, 8))
+        arms.put(joints, random, hard, 2)
+        by_derivative = ("LevenbergMarquardt", "APPS", "JacobianTranspose", "NewtonRaphson")
+        solvers = [*Budgets.solvers[1:], *(f"bik.{name}()" for name in by_derivative)]
+        shift = arms.triple(random.normal(size=3) * (random.random() < 0.3))
+        return {
+            "joints": joints, "solver": str(random.choice(solvers)), "shift": shift,
+            "budget": int(random.choice([1, 2, 5, 50, 60, 200])), "seed": int(random.integers(100)),
+        }  # fmt: skip
+
+    def program(self, case: Case) -> str:
+        start = arms.configurations(case["joints"])[1].tolist()
+        return (
+            f"{arms.written(case['joints'])}target = np.array({wanted(case)[:3, 3].tolist()})\n"
+            f"start, stop = np.array({start}), bik.Stop(max_evaluations={case['budget']})\n"
+            f"given = dict(solver={case['solver']}, stop=stop, seed={case['seed']})\n"
+            "solution = bik.solve(robot, target, start=start, **given)"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        solution, target = left["solution"], wanted(case)
+        check_solution(case, solution, target, rotation=False)
+        at_start = arms.pose_error(arms.kinematics(case["joints"], left["start"][None])[0], target)[0][0]
+        if solution.position_error > at_start * (1 + 1e-9) + 1e-12 * size(case):
+            raise BrokenError("worse than the start", (solution.position_error, at_start))
+        if solution.evaluations > case["budget"]:
+            raise BrokenError("the budget is exceeded", (solution.evaluations, case["budget"]))
+        return 1
+
+
+ATTACKS = [CompleteSets(), SameBits(), Budgets(), BestKept()]

@@ -1,5 +1,8 @@
 //! The distance between shoulder and wrist, which determines joint 4 of an arm with seven joints: the values of the parameter that
 //! the limits of joint 4 leave.
+//!
+//! Where the first three axes meet, the wrist is a point on axes 5 and 6, which turns about axis 7; where the last three do, the
+//! shoulder is a point on axes 2 and 3, which turns about axis 1.
 
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::orbit::Orbit;
@@ -9,30 +12,45 @@ use crate::closed_form::vector::{Vector, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Shoulder and a point on axes 5 and 6, prepared.
+/// Shoulder and wrist, prepared.
 #[derive(Debug, Clone, Copy)]
 pub struct ElbowDistance {
     shoulder: Vector,
     wrist: Vector,
     /// Their squared distance, by joint 4.
     by_joint_4: Wave,
-    /// The circle of the wrist as joint 7 is turned back.
+    /// The circle of the wrist as joint 7 is turned back, or of the shoulder as joint 1 turns.
     circle: Orbit,
+    /// The parameter is joint 1, not joint 7.
+    by_first: bool,
 }
 
 impl ElbowDistance {
-    /// `None` unless the first three axes meet, and axes 5 and 6.
-    pub fn of(chain: &AxisChain<7>) -> Option<Self> {
-        if chain.joints.iter().any(|joint| joint.motion != AxisMotion::Turns) {
-            return None;
-        }
+    /// For joint 7 or the arm angle as parameter; `None` unless the first three axes meet, and axes 5 and 6.
+    pub fn by_last(chain: &AxisChain<7>) -> Option<Self> {
         let size = chain.size();
         let shoulder = three_meet(&chain.joints[..3], size, EXACT)?;
         let Pair::Meet(wrist) = Pair::of(&chain.joints[4], &chain.joints[5], size, EXACT) else { return None };
-        let [.., elbow, _, _, last] = &chain.joints;
-        let square = |q: f64| squared_distance(&elbow.displacement(q).place::<Baseline>(&wrist), &shoulder);
+        let last = &chain.joints[6];
         let circle = Orbit::of(&scaled(&last.axis, -1.0), &sub(&wrist, &last.point)).moved(&last.point);
-        Some(Self { shoulder, wrist, by_joint_4: Wave::of(square), circle })
+        Self::of(chain, [shoulder, wrist], circle, false)
+    }
+
+    /// For joint 1 as parameter; `None` unless the last three axes meet, and axes 2 and 3.
+    pub fn by_first(chain: &AxisChain<7>) -> Option<Self> {
+        let size = chain.size();
+        let wrist = three_meet(&chain.joints[4..], size, EXACT)?;
+        let Pair::Meet(shoulder) = Pair::of(&chain.joints[1], &chain.joints[2], size, EXACT) else { return None };
+        let first = &chain.joints[0];
+        let circle = Orbit::of(&first.axis, &sub(&shoulder, &first.point)).moved(&first.point);
+        Self::of(chain, [shoulder, wrist], circle, true)
+    }
+
+    fn of(chain: &AxisChain<7>, [shoulder, wrist]: [Vector; 2], circle: Orbit, by_first: bool) -> Option<Self> {
+        let turns = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let elbow = &chain.joints[3];
+        let square = |q: f64| squared_distance(&elbow.displacement(q).place::<Baseline>(&wrist), &shoulder);
+        turns.then(|| Self { shoulder, wrist, by_joint_4: Wave::of(square), circle, by_first })
     }
 
     /// Smallest and largest squared distance within the limits of joint 4 (rad).
@@ -46,11 +64,15 @@ impl ElbowDistance {
         Wave::new(square, 0.0, 0.0).arcs_between(range)
     }
 
-    /// The values of joint 7 at which the squared distance is within `range`.
-    pub fn last_angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
+    /// The values of joint 7, or of joint 1, at which the squared distance is within `range`.
+    pub fn angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
         let Orbit { centre, cosine, sine } = &self.circle;
-        let shoulder = goal.turn_back(&sub(&self.shoulder, &goal.origin));
-        let way = sub(centre, &shoulder);
+        let other = if self.by_first {
+            goal.place::<Baseline>(&self.wrist)
+        } else {
+            goal.turn_back(&sub(&self.shoulder, &goal.origin))
+        };
+        let way = sub(centre, &other);
         let wave = Wave::new(dot(&way, &way) + dot(cosine, cosine), 2.0 * dot(&way, cosine), 2.0 * dot(&way, sine));
         wave.arcs_between(range)
     }

@@ -58,6 +58,11 @@ impl<'a> PoseFamily<'a> {
         self.redundant.parameter() == Parameter::ArmAngle
     }
 
+    /// Whether no configuration is lost beside folds.
+    pub fn finds_all(&self) -> bool {
+        self.redundant.has_exact_candidates()
+    }
+
     /// All configurations with the parameter at `value`.
     pub fn branches_at(&self, value: f64) -> ArmBranches {
         ArmBranches::of(&self.redundant.solve(&self.pose, value), self.drives)

@@ -64,10 +64,11 @@ impl Redundant {
     /// Chooses the parameter; `None` where joints slide and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         let (method, distance) = match ArmAngle::new(chain) {
-            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::of(chain)),
+            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain)),
             None => {
                 let given = GivenJoint::new(chain)?;
-                let distance = if given.axis() == 6 { ElbowDistance::of(chain) } else { None };
+                let distance =
+                    if given.axis() == 6 { ElbowDistance::by_last(chain) } else { ElbowDistance::by_first(chain) };
                 (Method::Given(Box::new(given)), distance)
             }
         };
@@ -178,7 +179,7 @@ impl Redundant {
             (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisMotion::Slides => {
                 ParameterArcs::one(axes[axis])
             }
-            (Parameter::Axis(axis), Some(distance)) => distance.last_angles(&pose.goal, *distances).within(axes[axis]),
+            (Parameter::Axis(axis), Some(distance)) => distance.angles(&pose.goal, *distances).within(axes[axis]),
             (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
         }
     }

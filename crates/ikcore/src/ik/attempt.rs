@@ -101,7 +101,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The same with at most `evaluations`.
-    fn descend_some(&mut self, descent: &LevenbergMarquardt, q: Point, evaluations: usize) -> (bool, Point) {
+    pub fn descend_some(&mut self, descent: &LevenbergMarquardt, q: Point, evaluations: usize) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
         }

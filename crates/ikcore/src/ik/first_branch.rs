@@ -2,6 +2,7 @@
 
 use super::all_branches::all_branches;
 use super::attempt::Attempt;
+use super::near_misses::{LOOKED, Outcome, from_near_misses};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
@@ -10,14 +11,13 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Target;
 
-/// Most values of the parameter of a redundant arm that are tried before a search.
-const SCANNED: usize = 64;
+/// Most values of the parameter of a redundant arm that are tried before near misses are.
+const SCANNED: usize = 32;
 
 /// Values after which it is asked whether any can have a solution: most poses have one before.
 const VALUES_BEFORE_DOUBT: usize = 4;
 
-/// The search after them takes one of so many evaluations that the budget leaves: of 10,000 poses with random orientations, no
-/// solution of a Panda or LBR iiwa was lost that the whole budget finds (measured), and poses without one take a hundredth of the time.
+/// The search after both takes one of so many evaluations that the budget leaves.
 const SEARCHED_SHARE: usize = 150;
 
 /// Evaluations of a descent towards a pose that is proven to be out of reach: it ends within 3 % of what a whole descent reaches
@@ -124,11 +124,15 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
             return None;
         }
     }
-    searched_in_short(attempt, start)
+    match from_near_misses(attempt, family, &arcs, &preference) {
+        Outcome::Solved(solution) => Some(solution),
+        Outcome::Missed => searched_in_short(attempt, start),
+        Outcome::NoBranch => None,
+    }
 }
 
-/// A search with a small share of the budget for what the values of the parameter leave open: narrow ranges of them, and poses that
-/// are reached within wide tolerances alone. What it misses is reported as not found, which is no proof.
+/// A search with a small share of the budget, for poses that are reached within wide tolerances alone. What it misses is reported as
+/// not found, which is no proof.
 #[cold]
 fn searched_in_short(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let x0 = attempt.first_start(start);
@@ -141,7 +145,8 @@ fn searched_in_short(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Op
     if solution.obstruction.is_empty() {
         let evaluations = solution.evaluations;
         solution.obstruction = format!(
-            "no solution at {SCANNED} values of the redundancy, nor by a search, {evaluations} evaluations in all"
+            "no solution at {} values of the redundancy, nor by a search, {evaluations} evaluations in all",
+            SCANNED + LOOKED
         );
     }
     Some(solution)

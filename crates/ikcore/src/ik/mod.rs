@@ -14,6 +14,7 @@ mod clear;
 mod context;
 mod first_branch;
 mod goal_descent;
+mod near_misses;
 mod nearest;
 mod preference;
 mod self_motion;

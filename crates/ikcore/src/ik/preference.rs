@@ -125,6 +125,21 @@ impl Preference {
         if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
     }
 
+    /// Each of `configurations`, moved inside the limits, and how far outside it was (rad, m).
+    pub fn misses(&self, configurations: &ArmConfigurations) -> impl Iterator<Item = (f64, Point)> {
+        (0..configurations.len()).map(|place| {
+            let mut most: f64 = 0.0;
+            let joints = self.joints.iter().zip(configurations.columns());
+            let moved = joints.map(|(joint, values)| {
+                let (outside, value) = joint.moved_inside(values[place]);
+                most = most.max(outside);
+                value
+            });
+            let q = moved.collect();
+            (most, q)
+        })
+    }
+
     /// The preferred one of `configurations` inside the limits, which are at their whole turns nearest to the reference already.
     pub fn nearest<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> Option<&'q [f64]> {
         let cost = |q: &[f64]| self.joints.iter().zip(q).fold(0.0, |sum, (joint, q)| sum + joint.cost(*q));
@@ -175,6 +190,14 @@ impl JointPreference {
     /// Whether polishing may move `q` inside the limits, or the value one whole turn before or after it.
     fn is_near(&self, q: f64) -> bool {
         [q - self.period, q, q + self.period].iter().any(|q| self.is_within(*q, MOVED_BY_POLISHING))
+    }
+
+    /// How far `q`, or a value whole turns away, is outside the limits at least, and the limit there.
+    fn moved_inside(&self, q: f64) -> (f64, f64) {
+        let turned = self.turned(q);
+        let values = [turned, turned - self.period, turned + self.period];
+        let misses = values.map(|value| ((value - self.inside(value)).abs(), self.inside(value)));
+        misses.into_iter().fold((f64::INFINITY, q), |best, miss| if miss.0 < best.0 { miss } else { best })
     }
 
     /// The value inside the limits nearest to `q`.

@@ -73,15 +73,18 @@ impl Shape {
     fn gap_to(&self, body: &PlacedBody, enough: f64) -> Gap {
         let own = body.convex();
         let mut nearest = Gap::beyond(enough);
+        // The boxes of a cloud hold its points, not the balls about them.
+        let ball = if let Geometry::PointCloud(cloud) = self.geometry() { cloud.radius() } else { 0.0 };
+        let around = body.radius + ball;
         // Keeps the nearest piece; returns how far from the axis of the capsule nearer ones are at most.
         let mut compare = |piece: &Convex| {
             let next = gap(&own, piece, nearest.distance);
             if next.distance < nearest.distance {
                 nearest = next;
             }
-            nearest.distance + body.radius
+            nearest.distance + around
         };
-        let reach = enough + body.radius;
+        let reach = enough + around;
         match self.geometry() {
             Geometry::HalfSpace { normal, offset } => {
                 let normal = Vector3::from(*normal);

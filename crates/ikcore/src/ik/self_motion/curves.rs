@@ -92,7 +92,7 @@ pub fn self_motion(
     for curve in &mut curves {
         make_exact(curve, &mut attempt);
         for part in parts(curve, &limits) {
-            found.extend(placed(part, &mut attempt, &limits, start.as_deref()));
+            found.extend(placed(part, *spacing, &mut attempt, &limits, start.as_deref()));
         }
     }
     found.iter_mut().for_each(|curve| curve.complete = complete);

@@ -6,7 +6,7 @@ use super::curve::SelfMotion;
 use super::cut::Part;
 use super::wrapped_limits::WrappedLimits;
 use crate::ik::attempt::Attempt;
-use crate::math::vector::norm;
+use crate::math::vector::{distance, norm};
 use crate::objective::{Bounds, Point};
 use crate::solver::LevenbergMarquardt;
 
@@ -14,9 +14,11 @@ use crate::solver::LevenbergMarquardt;
 pub(super) const EXACT: f64 = 1e-9;
 
 /// The curve of a part, at the whole turns that bring it within the limits; two or more where it takes several turns. A point that
-/// does not reach the target from within the limits is left out.
+/// does not reach the target from within the limits is left out, and so is an end that a limit touches at such a slant that its
+/// solution is elsewhere; a gap wider than `spacing` parts the curve.
 pub(super) fn placed(
     part: Part,
+    spacing: f64,
     attempt: &mut Attempt<'_, '_>,
     limits: &WrappedLimits<'_>,
     start: Option<&[f64]>,
@@ -33,32 +35,32 @@ pub(super) fn placed(
         }
         let first = Part { points: points[..=half].to_vec(), closed: false, cut: [cut[0], false] };
         let second = Part { points: points[half..].to_vec(), closed: false, cut: [false, cut[1]] };
-        return [first, second].into_iter().flat_map(|part| placed(part, attempt, limits, start)).collect();
+        return [first, second].into_iter().flat_map(|part| placed(part, spacing, attempt, limits, start)).collect();
     };
-    let mut values = Vec::with_capacity(points.len() * limits.joints());
-    let (mut first, mut last) = (None, None);
     let end = points.len() - 1;
+    let [lower_cut, upper_cut] =
+        [(cut[0], 0), (cut[1], end)].map(|(cut, k)| cut.then(|| nearest_limit(&points[k], bounds)));
+    let mut runs: Vec<Vec<Point>> = Vec::new();
     for (k, point) in points.into_iter().enumerate() {
         let is_cut = k == 0 && cut[0] || k == end && cut[1];
-        if let Some(q) = settled(point, is_cut, attempt) {
-            values.extend_from_slice(&q);
-            first.get_or_insert_with(|| q.clone());
-            last = Some(q);
+        let Some(q) = settled(point, is_cut, attempt) else { continue };
+        match runs.last_mut() {
+            Some(run) if distance(&q, &run[run.len() - 1]) <= spacing => run.push(q),
+            _ => runs.push(vec![q]),
         }
     }
-    let at_limit = |q: &Option<Point>| q.as_ref().and_then(|q| nearest_limit(q, bounds));
-    let is_closed = closed && !winding;
-    vec![SelfMotion {
+    let whole = runs.len() == 1;
+    runs.retain(|run| whole || run.len() > 1);
+    let last = runs.len().saturating_sub(1);
+    let curve = |(i, run): (usize, Vec<Point>)| SelfMotion {
         joints: limits.joints(),
-        closed: is_closed,
-        lower_cut: if cut[0] { at_limit(&first) } else { None },
-        upper_cut: if cut[1] { at_limit(&last) } else { None },
+        closed: whole && closed && !winding,
+        lower_cut: lower_cut.flatten().filter(|_| i == 0),
+        upper_cut: upper_cut.flatten().filter(|_| i == last),
         complete: false,
-        values,
-    }]
-    .into_iter()
-    .filter(|curve| !curve.values.is_empty())
-    .collect()
+        values: run.iter().flatten().copied().collect(),
+    };
+    runs.into_iter().enumerate().map(curve).collect()
 }
 
 /// The configuration near `q` that reaches the target from within the limits; where they cut the curve, with the joint nearest to a limit

@@ -89,8 +89,18 @@ impl<'a> WrappedLimits<'a> {
             }
         }
         shares.sort_by(f64::total_cmp);
-        let between = shares.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to);
-        between.filter(|[from, to]| (0..ways.len()).all(|j| self.is_within(j, ways[j].at(0.5 * (from + to))))).collect()
+        let is_inside = |share: f64| (0..ways.len()).all(|j| self.is_within(j, ways[j].at(share)));
+        let mut pieces = Pieces::new();
+        for [from, to] in shares.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to) {
+            if is_inside(0.5 * (from + to)) {
+                // A limit that is only touched, or that a joint of more than a turn passes, cuts nothing.
+                match pieces.last_mut() {
+                    Some([_, end]) if *end == from => *end = to,
+                    _ => pieces.push([from, to]),
+                }
+            }
+        }
+        pieces
     }
 
     /// The limits of joint `j`, and where they are met again a turn away.

@@ -1,0 +1,136 @@
+//! Solutions of a redundant arm in narrow ranges of its parameter, which fall between the values that are tried.
+//!
+//! A branch that is inside the limits somewhere is only a little outside them nearby. Descents from the branches that are least outside
+//! lead along the self-motion into the limits.
+
+use smallvec::SmallVec;
+
+use super::attempt::Attempt;
+use super::preference::Preference;
+use super::solution::Solution;
+use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
+use crate::objective::Point;
+use crate::solver::{LevenbergMarquardt, Status};
+
+/// Values of the parameter at which near misses are looked for.
+pub(super) const LOOKED: usize = 48;
+
+/// A branch farther outside its limits (rad, m) is no near miss.
+const NEAR: f64 = 0.4;
+
+/// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
+const TOUCHING: f64 = 0.05;
+
+/// Halvings of the distance between values, two values each, that refine the parameter of such a branch.
+const HALVINGS: usize = 7;
+
+/// Most near misses that are descended from.
+const DESCENTS: usize = 8;
+
+/// Most evaluations of a descent.
+const STEPS: usize = 40;
+
+/// Near misses in which all joints differ by less (rad, m) lead to the same place.
+const APART: f64 = 0.3;
+
+/// A branch near its limits.
+#[derive(Debug, Clone)]
+struct NearMiss {
+    /// How far outside it is (rad, m).
+    outside: f64,
+    /// Value of the parameter (rad, m).
+    value: f64,
+    /// The branch, moved inside.
+    q: Point,
+}
+
+impl NearMiss {
+    fn leads_to_the_same_as(&self, other: &Point) -> bool {
+        other.iter().zip(&self.q).all(|(a, b)| (a - b).abs() < APART)
+    }
+}
+
+/// What near misses lead to.
+pub(super) enum Outcome {
+    /// A solution.
+    Solved(Solution),
+    /// No solution, although some branches were near the limits, or none was.
+    Missed,
+    /// The closed form finds no branch at all, inside the limits or outside: it is beside a fold, where it loses some.
+    NoBranch,
+}
+
+/// Descends from near misses.
+#[cold]
+pub(super) fn from_near_misses(
+    attempt: &mut Attempt<'_, '_>,
+    family: &PoseFamily<'_>,
+    arcs: &ParameterArcs,
+    preference: &Preference,
+) -> Outcome {
+    let mut look = Look::new(family, preference);
+    // At the end of an arc joint 4 is at its limit: the only place inside the limits where another joint is leaving its own.
+    let values = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
+    let mut misses: Vec<NearMiss> = values.flat_map(|value| look.at(value)).collect();
+    if !look.has_branches && !family.finds_all() {
+        return Outcome::NoBranch;
+    }
+    misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
+    let mut tried: Vec<Point> = Vec::with_capacity(DESCENTS);
+    for miss in misses {
+        if tried.len() == DESCENTS {
+            break;
+        }
+        if tried.iter().any(|other| miss.leads_to_the_same_as(other)) {
+            continue;
+        }
+        tried.push(miss.q.clone());
+        let miss = if miss.outside < TOUCHING { look.refined(miss, arcs.length() / LOOKED as f64) } else { miss };
+        let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q, STEPS);
+        if is_solved {
+            return Outcome::Solved(attempt.solution(Status::Solved, q));
+        }
+    }
+    Outcome::Missed
+}
+
+/// Where near misses are looked for.
+struct Look<'a> {
+    family: &'a PoseFamily<'a>,
+    preference: &'a Preference,
+    /// Wider than those of the arm.
+    limits: FamilyLimits,
+    has_branches: bool,
+}
+
+impl<'a> Look<'a> {
+    fn new(family: &'a PoseFamily<'a>, preference: &'a Preference) -> Self {
+        let [lower, upper] = preference.ranges();
+        let wider = |ends: &[f64], by: f64| ends.iter().map(|end| end + by).collect::<Point>();
+        let limits = family.limits(&wider(lower, -NEAR), &wider(upper, NEAR));
+        Self { family, preference, limits, has_branches: false }
+    }
+
+    /// The near misses with the parameter at `value`.
+    fn at(&mut self, value: f64) -> SmallVec<[NearMiss; 8]> {
+        let mut likely = ArmConfigurations::none();
+        self.family.likely_at(value, &self.limits, &mut likely);
+        self.has_branches |= !likely.is_empty();
+        let misses = self.preference.misses(&likely).filter(|(outside, _)| *outside < NEAR);
+        misses.map(|(outside, q)| NearMiss { outside, value, q }).collect()
+    }
+
+    /// The least of the misses around `miss`, which is one of those at values `spacing` apart.
+    fn refined(&mut self, mut miss: NearMiss, spacing: f64) -> NearMiss {
+        let mut step = spacing;
+        for _ in 0..HALVINGS {
+            step *= 0.5;
+            let around = [miss.value - step, miss.value + step].map(|value| self.at(value));
+            let least = around.into_iter().flatten().min_by(|a, b| a.outside.total_cmp(&b.outside));
+            if let Some(nearer) = least.filter(|other| other.outside < miss.outside) {
+                miss = nearer;
+            }
+        }
+        miss
+    }
+}
