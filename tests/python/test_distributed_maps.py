@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 from mistakes import Invalid, assert_told
 from test_distributed import contents, written
+from typer.testing import CliRunner
 
 import beetle_ik as bik
 from beetle_ik import distributed
+from beetle_ik.cli import app
 
 UR5 = bik.Robot.named("ur5e").with_capsules(radius=0.05)
 BOX = bik.obstacles.Box((0.4, 0.0, 0.3), size=(0.2, 0.2, 0.2))
@@ -108,3 +110,11 @@ def test_a_damaged_store_is_not_loaded(store: Path) -> None:
         bik.ReachabilityMap.load(store)
     assert bik.reachability(UR5, **COARSE, store=store) == found
     assert bik.ReachabilityMap.load(store) == found
+
+
+def test_the_command_line_computes_into_a_store(store: Path) -> None:
+    command = ["reach", "ur5e", "--voxel", "0.25", "--directions", "6", "--rolls", "2", "--store", str(store)]
+    done = CliRunner().invoke(app, command)
+    assert done.exit_code == 0, done.output
+    arm = bik.Robot.named("ur5e")
+    assert bik.ReachabilityMap.load(store, robot=arm) == bik.reachability(arm, **COARSE)

@@ -19,6 +19,10 @@ def reach(
     directions: Annotated[int, typer.Option(help="Directions of the tip's z axis.")] = 50,
     rolls: Annotated[int, typer.Option(help="Rolls about each direction.")] = 6,
     out: Annotated[Path | None, typer.Option(help="File to write the map to: .npz.")] = None,
+    store: Annotated[
+        Path | None,
+        typer.Option(help="Folder of a zarr store to compute into, which goes on if interrupted."),
+    ] = None,
     picture: Annotated[Path | None, typer.Option(help="File to draw slices of the map to, such as map.png.")] = None,
     scene: SceneFile = None,
     margin: Margin = None,
@@ -40,6 +44,7 @@ def reach(
         obstacles=None if scene is None else Scene.load(scene),
         margin=margin,
         progress=sys.stderr.isatty(),
+        store=store,
     )
     if out is not None:
         found.to_npz(out)
