@@ -204,7 +204,7 @@ def test_thin_hulls_keep_all_their_corners() -> None:
 def test_a_box_is_as_far_from_a_cloud_as_from_its_nearest_ball() -> None:
     rng = np.random.default_rng(7)
     for _ in range(200):
-        size, radius, points = rng.uniform(0.01, 1.0, 3), rng.uniform(0.01, 0.2), rng.uniform(-2, 2, (20, 3))
+        size, radius, points = rng.uniform(0.01, 1.0, 3), rng.uniform(0.2, 0.6), rng.uniform(-3, 3, (30, 3))
         body = bik.obstacles.Box(-PLACE, size)
         robot = ARM.with_attached(LINK, body).with_collision_pairs([])
         found = bik.obstacles.clearance(robot, [0.0], [bik.obstacles.PointCloud(points, radius)])

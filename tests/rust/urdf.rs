@@ -149,6 +149,12 @@ fn mimic_joints_follow_through_chains_of_mimics() {
 }
 
 #[test]
+fn links_of_absurd_length_are_refused() {
+    let said = error_after("0.1 0.2 0.3", "0 1e160 0");
+    assert!(said.ends_with("its links are 1e160 m long together, more than 1e150 m"), "{said}");
+}
+
+#[test]
 fn a_follower_of_factor_zero_stands_at_its_offset() {
     for (kind, place) in [("prismatic", [0.0, 0.0, 0.3]), ("revolute", [0.0; 3])] {
         let axis = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1'/>";

@@ -12,6 +12,9 @@ use crate::kinematics::RotationVector;
 use crate::kinematics::chain::{Chain, ChainFolder, StageMotion};
 use crate::math::{MAX_DOF, Pose, pose};
 
+/// Squares of longer lengths (m) are not finite.
+const LONGEST: f64 = 1e150;
+
 /// One element between base and tip, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Element {
@@ -106,6 +109,10 @@ impl Description {
             return Err(invalid("no joint moves between base and tip".into()));
         }
         require_supported(&self.name, moving.max(self.joints.len()))?;
+        let length = self.elements.iter().map(Element::length).sum::<f64>();
+        if !(length <= LONGEST) {
+            return Err(invalid(format!("its links are {length:e} m long together, more than {LONGEST:e} m")));
+        }
         let mut names = HashSet::new();
         for joint in &self.joints {
             if !names.insert(&joint.name) {
@@ -140,6 +147,11 @@ impl Element {
             Self::Moving { joint, .. } => *joint..joint + 1,
             Self::RotationVector { joint } => *joint..joint + 3,
         }
+    }
+
+    /// How far it moves the chain on (m).
+    fn length(&self) -> f64 {
+        if let Self::Fixed(transform) = self { transform.translation.vector.norm() } else { 0.0 }
     }
 
     /// How many stages it becomes.
