@@ -58,9 +58,9 @@ impl<'a> PoseFamily<'a> {
         self.redundant.parameter() == Parameter::ArmAngle
     }
 
-    /// Whether no configuration is lost beside folds.
-    pub fn finds_all(&self) -> bool {
-        self.redundant.has_exact_candidates()
+    /// Whether [`Self::arcs`] end where the branches end, and no branch is lost there. Elsewhere solutions may hide beside folds.
+    pub fn is_sure_of_arcs(&self) -> bool {
+        self.redundant.is_sure_of_arcs()
     }
 
     /// All configurations with the parameter at `value`.

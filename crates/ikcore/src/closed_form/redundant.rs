@@ -100,6 +100,11 @@ impl Redundant {
         }
     }
 
+    /// Whether [`Self::arcs`] end where the branches end, and no branch is lost there.
+    pub fn is_sure_of_arcs(&self) -> bool {
+        self.distance.is_some() && self.has_exact_candidates()
+    }
+
     /// The pose that brings the tip to `target`.
     pub fn pose(&self, target: &Frame) -> RedundantPose {
         let goal = target.then::<Baseline>(&self.back);

@@ -2,7 +2,7 @@
 
 use super::all_branches::all_branches;
 use super::attempt::Attempt;
-use super::near_misses::{LOOKED, Outcome, from_near_misses};
+use super::near_misses::{LOOKED, from_near_misses};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
@@ -124,11 +124,11 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
             return None;
         }
     }
-    match from_near_misses(attempt, family, &arcs, &preference) {
-        Outcome::Solved(solution) => Some(solution),
-        Outcome::Missed => searched_in_short(attempt, start),
-        Outcome::NoBranch => None,
+    let solution = from_near_misses(attempt, family, &arcs, &preference);
+    if solution.is_some() || !family.is_sure_of_arcs() {
+        return solution;
     }
+    searched_in_short(attempt, start)
 }
 
 /// A search with a small share of the budget, for poses that are reached within wide tolerances alone. What it misses is reported as

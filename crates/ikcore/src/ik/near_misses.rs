@@ -50,31 +50,18 @@ impl NearMiss {
     }
 }
 
-/// What near misses lead to.
-pub(super) enum Outcome {
-    /// A solution.
-    Solved(Solution),
-    /// No solution, although some branches were near the limits, or none was.
-    Missed,
-    /// The closed form finds no branch at all, inside the limits or outside: it is beside a fold, where it loses some.
-    NoBranch,
-}
-
-/// Descends from near misses.
+/// A solution that a descent from a near miss leads to.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
     family: &PoseFamily<'_>,
     arcs: &ParameterArcs,
     preference: &Preference,
-) -> Outcome {
-    let mut look = Look::new(family, preference);
+) -> Option<Solution> {
+    let look = Look::new(family, preference);
     // At the end of an arc joint 4 is at its limit: the only place inside the limits where another joint is leaving its own.
     let values = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
     let mut misses: Vec<NearMiss> = values.flat_map(|value| look.at(value)).collect();
-    if !look.has_branches && !family.finds_all() {
-        return Outcome::NoBranch;
-    }
     misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
     let mut tried: Vec<Point> = Vec::with_capacity(DESCENTS);
     for miss in misses {
@@ -88,10 +75,10 @@ pub(super) fn from_near_misses(
         let miss = if miss.outside < TOUCHING { look.refined(miss, arcs.length() / LOOKED as f64) } else { miss };
         let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q, STEPS);
         if is_solved {
-            return Outcome::Solved(attempt.solution(Status::Solved, q));
+            return Some(attempt.solution(Status::Solved, q));
         }
     }
-    Outcome::Missed
+    None
 }
 
 /// Where near misses are looked for.
@@ -100,7 +87,6 @@ struct Look<'a> {
     preference: &'a Preference,
     /// Wider than those of the arm.
     limits: FamilyLimits,
-    has_branches: bool,
 }
 
 impl<'a> Look<'a> {
@@ -108,20 +94,19 @@ impl<'a> Look<'a> {
         let [lower, upper] = preference.ranges();
         let wider = |ends: &[f64], by: f64| ends.iter().map(|end| end + by).collect::<Point>();
         let limits = family.limits(&wider(lower, -NEAR), &wider(upper, NEAR));
-        Self { family, preference, limits, has_branches: false }
+        Self { family, preference, limits }
     }
 
     /// The near misses with the parameter at `value`.
-    fn at(&mut self, value: f64) -> SmallVec<[NearMiss; 8]> {
+    fn at(&self, value: f64) -> SmallVec<[NearMiss; 8]> {
         let mut likely = ArmConfigurations::none();
         self.family.likely_at(value, &self.limits, &mut likely);
-        self.has_branches |= !likely.is_empty();
         let misses = self.preference.misses(&likely).filter(|(outside, _)| *outside < NEAR);
         misses.map(|(outside, q)| NearMiss { outside, value, q }).collect()
     }
 
     /// The least of the misses around `miss`, which is one of those at values `spacing` apart.
-    fn refined(&mut self, mut miss: NearMiss, spacing: f64) -> NearMiss {
+    fn refined(&self, mut miss: NearMiss, spacing: f64) -> NearMiss {
         let mut step = spacing;
         for _ in 0..HALVINGS {
             step *= 0.5;
