@@ -226,11 +226,7 @@ fn what_joints_2_and_6_exclude_is_proven() {
             }
             Status::Stalled => {
                 open += 1;
-                assert!(
-                    solution.message().contains("(no solution at 80 values of the redundancy"),
-                    "{}",
-                    solution.message()
-                );
+                assert!(solution.message().starts_with("no further progress, "), "{}", solution.message());
                 assert!(solution.evaluations < 2000, "{}", solution.evaluations);
             }
             status => panic!("{status:?}"),

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use ikcore::load::parse_mesh;
 use ikcore::robot::Robot;
-use ikcore::stored;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -101,8 +100,8 @@ fn use_of(robot: &Robot) {
     let q: Vec<f64> = robot.joints().iter().map(|joint| 0.0_f64.clamp(joint.lower, joint.upper)).collect();
     let pose = robot.fk(&q).unwrap();
     assert!(pose.to_homogeneous().iter().all(|entry| !entry.is_nan()), "{pose}");
-    let bytes = stored::to_bytes("robot", robot).unwrap();
-    assert!(stored::from_bytes::<Robot>("robot", &bytes).unwrap() == *robot);
+    let bytes = robot.to_bytes().unwrap();
+    assert!(Robot::from_bytes(&bytes).unwrap() == *robot);
 }
 
 proptest! {
@@ -140,7 +139,7 @@ proptest! {
         let whole = corpus("stored/robot.bin");
         let payload = damaged(whole[9..].to_vec(), &changes);
         let bytes: Vec<u8> = whole[..1].iter().copied().chain(checksum(&payload).to_le_bytes()).chain(payload).collect();
-        match stored::from_bytes::<Robot>("robot", &bytes) {
+        match Robot::from_bytes(&bytes) {
             Ok(robot) => drop(robot.fk(&vec![0.0; robot.dof()])),
             Err(error) => prop_assert!(error.to_string().starts_with("cannot restore robot: "), "{error}"),
         }

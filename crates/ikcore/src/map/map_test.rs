@@ -107,7 +107,9 @@ impl<'a> MapTest<'a> {
         let (lower, upper): (Vec<f64>, Vec<f64>) =
             robot.joints().iter().map(|joint| (joint.lower, joint.upper)).unzip();
         let any = Frame::IDENTITY;
-        let at_once = robot.solves_at_once() == Some(true) && own.asks_for_pose(&Target::Pose(any));
+        // A task may leave a part of the pose free.
+        let asked = own.read(&[Target::Pose(any)])?;
+        let at_once = robot.solves_at_once() == Some(true) && own.asks_for_pose(&asked[0]);
         let (low, high): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| joint.sampling_range()).unzip();
         let way = match robot.family(&any) {
             _ if !at_once => Way::Search,
