@@ -36,7 +36,7 @@ class Attack(ABC):
     name: ClassVar[str]
     promise: ClassVar[str]
     page: ClassVar[str]  # where the promise is made
-    deadline: ClassVar[float] = 60.0  # s, many times what a case takes: a longer one hangs
+    deadline: ClassVar[float] = 300.0  # s, many times what a case takes on a machine that is busy: a longer one hangs
     refusals: ClassVar[tuple[type[Exception], ...]] = (bik.BeetleIkError,)  # what the program may raise
 
     @abstractmethod

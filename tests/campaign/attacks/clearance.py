@@ -148,7 +148,6 @@ class ClearSolutions(Clear):
 class ClearPlans(Clear):
     name = "clear_plans"
     promise = "A plan that is called clear keeps its margin and its limits at every instant"
-    deadline = 120.0
 
     def program(self, case: Case) -> str:
         jerk = case["seed"] % 3 == 0
@@ -175,7 +174,6 @@ class ClearPlans(Clear):
 class ClearTicks(Clear):
     name = "clear_ticks"
     promise = "Among obstacles no tick comes nearer than the margin, between ticks too, while scenes come and go"
-    deadline = 120.0
 
     def program(self, case: Case) -> str:
         orders = ("velocity=1.5", "velocity=1.5, acceleration=5.0", "velocity=1.5, acceleration=5.0, jerk=50.0")

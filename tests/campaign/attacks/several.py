@@ -116,7 +116,6 @@ class PathsFollowed(Attack):
         "A plan along a path keeps its limits at every instant and stays as near to the path as it says, retimed too"
     )
     page = "planning"
-    deadline = 120.0
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         """The path is that of a curve in joint space; a hard one begins or ends at limits, or rests."""
