@@ -160,6 +160,8 @@ impl Arithmetic for Fma {
     }
 }
 
+// SAFETY of all blocks: code over `Fma` runs only where `has_fma` found the instructions.
+#[allow(clippy::undocumented_unsafe_blocks, reason = "the comment above is that of all blocks")]
 #[cfg(target_arch = "x86_64")]
 impl Arithmetic for Fma {
     #[inline(always)]
@@ -169,7 +171,6 @@ impl Arithmetic for Fma {
 
     #[inline(always)]
     fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
-        // SAFETY (all of these): code over `Fma` runs only where `has_fma` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 
