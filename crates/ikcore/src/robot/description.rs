@@ -149,9 +149,9 @@ impl Element {
         }
     }
 
-    /// How far it moves the chain on (m).
+    /// How far it moves the chain on, along one of the axes (m): finite where the square of the length is not.
     fn length(&self) -> f64 {
-        if let Self::Fixed(transform) = self { transform.translation.vector.norm() } else { 0.0 }
+        if let Self::Fixed(transform) = self { transform.translation.vector.amax() } else { 0.0 }
     }
 
     /// How many stages it becomes.

@@ -76,12 +76,18 @@ impl<'a> WrappedLimits<'a> {
     /// The pieces of a short way that lie within the limits. Joints follow `ways`, which begin near their middles.
     pub fn pieces(&self, ways: &[Cubic]) -> Pieces {
         let mut shares: SmallVec<[f64; 8]> = smallvec![0.0, 1.0];
+        // Where a joint of exactly one turn passes its limit: it is inside on both sides, but a turn away.
+        let mut jumps: SmallVec<[f64; 4]> = smallvec![];
         for (j, way) in ways.iter().enumerate() {
             let [low, high] = way.hull();
             let mut is_crossed = false;
             for limit in self.limits_near(j).filter(|limit| low <= *limit && *limit <= high) {
                 let [a, b, c, d] = way.coefficients;
-                shares.extend(roots(&[a - limit, b, c, d], 0.0, 1.0));
+                let crossings = roots(&[a - limit, b, c, d], 0.0, 1.0);
+                if self.is_one_turn(j) {
+                    jumps.extend(crossings.clone());
+                }
+                shares.extend(crossings);
                 is_crossed = true;
             }
             if !is_crossed && !self.is_within(j, low) {
@@ -95,12 +101,16 @@ impl<'a> WrappedLimits<'a> {
             if is_inside(0.5 * (from + to)) {
                 // A limit that is only touched, or that a joint of more than a turn passes, cuts nothing.
                 match pieces.last_mut() {
-                    Some([_, end]) if *end == from => *end = to,
+                    Some([_, end]) if *end == from && !jumps.contains(&from) => *end = to,
                     _ => pieces.push([from, to]),
                 }
             }
         }
         pieces
+    }
+
+    fn is_one_turn(&self, j: usize) -> bool {
+        self.repeats[j] && (self.bounds.upper()[j] - self.bounds.lower()[j] - TAU).abs() < 1e-9
     }
 
     /// The limits of joint `j`, and where they are met again a turn away.

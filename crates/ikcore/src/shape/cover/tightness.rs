@@ -17,8 +17,8 @@ const DRAWS: usize = 20_000;
 const ACCURACY: f64 = 2e-4;
 /// ... or to this fraction of it, ...
 const RELATIVE_ACCURACY: f64 = 0.05;
-/// ... or as well as this many pieces of the surface tell: a capsule many times longer than it is far from the mesh has no end of them.
-const MOST_CELLS: usize = 1_000_000;
+/// ... or to this fraction of the way over a capsule from pole to pole: a needle would have no end of pieces.
+const FINEST: f64 = 2.5e-4;
 
 /// The volume of the union (m^3), to about 1 %.
 pub(super) fn volume(shapes: &[Shape]) -> f64 {
@@ -55,7 +55,7 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
             pending.push((*own, surface, cell));
         }
     }
-    let (mut proven, mut examined) = (0.0_f64, 0);
+    let mut proven = 0.0_f64;
     while let Some((own, surface, cell)) = pending.pop() {
         let (point, reach) = surface.middle(&cell);
         let depth = depth(own, &point);
@@ -63,14 +63,13 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
             continue;
         }
         let distance = mesh.tangent(&point).value;
-        examined += 1;
         if depth > 0.0 {
             seen = seen.max(distance);
         }
         if distance + reach <= seen.max(proven) {
             continue;
         }
-        if reach <= ACCURACY.max(RELATIVE_ACCURACY * seen) || examined > MOST_CELLS {
+        if reach <= ACCURACY.max(RELATIVE_ACCURACY * seen).max(FINEST * surface.meridian()) {
             proven = proven.max(distance + reach);
         } else {
             pending.extend(cell.quarters().map(|quarter| (own, surface, quarter)));
@@ -110,6 +109,11 @@ impl Cell {
 }
 
 impl Surface {
+    /// The way from pole to pole (m).
+    fn meridian(&self) -> f64 {
+        PI * self.radius + self.length
+    }
+
     fn of(shape: &Shape) -> Option<Self> {
         let (a, b, radius) = match shape.geometry() {
             Geometry::Capsule { a, b, radius } => (Vector3::from(*a), Vector3::from(*b), *radius),
@@ -123,7 +127,7 @@ impl Surface {
 
     /// Cells that make up the whole surface.
     fn cells(&self) -> Vec<Cell> {
-        let whole = PI * self.radius + self.length;
+        let whole = self.meridian();
         let share = |i: usize, all: f64| [i as f64 / 8.0 * all, (i + 1) as f64 / 8.0 * all];
         (0..64).map(|i| Cell { way: share(i / 8, whole), turn: share(i % 8, 2.0 * PI) }).collect()
     }
