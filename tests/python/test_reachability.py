@@ -210,3 +210,9 @@ def test_figures_show_the_share(kind: str) -> None:
 def test_repr_says_what_is_reached() -> None:
     assert repr(MAP).startswith("<ReachabilityMap of 'ur5e': 12x12x12 voxels of 0.2 m, ")
     assert repr(MAP.inverse()).startswith("<InverseReachabilityMap of <ReachabilityMap of 'ur5e'")
+
+
+def test_an_inverse_map_is_drawn_for_one_target() -> None:
+    inverse = bik.reachability(bik.Robot.named("ur5e"), voxel=0.4, directions=4, rolls=1).inverse()
+    with pytest.raises(bik.InvalidInputError, match=r"^target: expected shape \(4, 4\), got \(0, 4, 4\)$"):
+        inverse.plot(np.zeros((0, 4, 4)))

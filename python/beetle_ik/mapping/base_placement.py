@@ -28,20 +28,15 @@ _MOST_PLACES = 10_000_000
 
 @dataclass(frozen=True, eq=False)
 class BasePlacement:
-    """Where the base of a robot best stands for several targets, found by `best_base`.
-
-    Attributes:
-        pose: pose of the base (4, 4).
-        reached: which targets are reached from there (k,) bool, by `solve`.
-        margin: how far the base may be off in x, y and z (m) with the same targets still reached by the map, within
-            the region: in steps of its voxels, at most 8.
-        success: whether all targets are reached.
-        message: how many targets are reached.
-    """
+    """Where the base of a robot best stands for several targets, found by `best_base`."""
 
     pose: NDArray[np.float64]
+    """Pose of the base (4, 4)."""
     reached: NDArray[np.bool_]
+    """Which targets are reached from there (k,) bool, by `solve`."""
     margin: float
+    """How far the base may be off in x, y and z (m) with the same targets still reached by the map, within the region:
+    in steps of its voxels, at most 8."""
 
     @property
     def success(self) -> bool:

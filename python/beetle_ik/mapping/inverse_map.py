@@ -41,11 +41,7 @@ class InverseReachabilityMap:
         Returns:
             A bool, or (n,) bool.
         """
-        bases = rigid("base", base)
-        wanted = np.eye(4) if target is None else rigid("target", target)
-        if wanted.shape != (4, 4):
-            raise InvalidInputError(f"target: expected shape (4, 4), got {wanted.shape}")
-        return self.map.query(inverted(bases) @ wanted)
+        return self.map.query(inverted(rigid("base", base)) @ one_target(target))
 
     def on_floor(
         self, x: ArrayLike, y: ArrayLike, *, target: ArrayLike | None = None, height: float = 0.0, yaws: int = 24
@@ -94,6 +90,14 @@ def _numbers(name: str, value: ArrayLike, *, dimensions: int = 1) -> NDArray[np.
     if numbers.ndim > dimensions or not np.isfinite(numbers).all():
         raise InvalidInputError(f"{name} must be finite, in {dimensions} dimensions at most, got {value!r:.60}")
     return numbers
+
+
+def one_target(target: ArrayLike | None) -> NDArray[np.float64]:
+    """Returns the pose (4, 4) of the only target; None: the origin."""
+    wanted = np.eye(4) if target is None else rigid("target", target)
+    if wanted.shape != (4, 4):
+        raise InvalidInputError(f"target: expected shape (4, 4), got {wanted.shape}")
+    return wanted
 
 
 def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:

@@ -9,7 +9,7 @@ import numpy as np
 from .._arguments import require_text
 from .._core import InvalidInputError
 from .._style import BLACK, VERMILION, new_figure, style
-from .inverse_map import rigid
+from .inverse_map import one_target
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +45,7 @@ def drawn_on_floor(inverse: InverseReachabilityMap, target: ArrayLike | None, he
     """Draws the share of yaws at which an upright base at `height` reaches a target."""
     map = inverse.map  # noqa: A001
     radius = 0.5 * map.voxel * max(map.shape[:2])
-    at = np.zeros(2) if target is None else rigid("target", target)[..., :2, 3].reshape(-1, 2)[0]
+    at = one_target(target)[:2, 3]
     x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
     share = inverse.on_floor(x, y, target=target, height=height)
     with style():

@@ -69,7 +69,9 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
         if distance + reach <= seen.max(proven) {
             continue;
         }
-        if reach <= ACCURACY.max(RELATIVE_ACCURACY * seen).max(FINEST * surface.meridian()) {
+        let enough = ACCURACY.max(RELATIVE_ACCURACY * seen).max(FINEST * surface.meridian());
+        // Not a number where squares of coordinates are infinite.
+        if !(reach > enough) {
             proven = proven.max(distance + reach);
         } else {
             pending.extend(cell.quarters().map(|quarter| (own, surface, quarter)));
