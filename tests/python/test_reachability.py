@@ -216,3 +216,10 @@ def test_an_inverse_map_is_drawn_for_one_target() -> None:
     inverse = bik.reachability(bik.Robot.named("ur5e"), voxel=0.4, directions=4, rolls=1).inverse()
     with pytest.raises(bik.InvalidInputError, match=r"^target: expected shape \(4, 4\), got \(0, 4, 4\)$"):
         inverse.plot(np.zeros((0, 4, 4)))
+
+
+def test_a_region_of_places_must_be_finite() -> None:
+    region = [[0.0, 0.0, 0.0], [1.0, np.nan, 0.0]]
+    with pytest.raises(bik.InvalidInputError) as raised:
+        bik.best_base(bik.Robot.named("ur5e"), [np.eye(4)], region=region)
+    assert str(raised.value) == "region must be finite, got [[0.0, 0.0, 0.0], [1.0, nan, 0.0]]"

@@ -111,8 +111,10 @@ def _axes(region: ArrayLike, voxel: float) -> list[NDArray[np.float64]]:
         corners = np.asarray(region, float)
     except (TypeError, ValueError):
         raise InvalidInputError(f"region must be two corners (2, 3), got {region!r:.60}") from None
-    if corners.shape != (2, 3) or not np.isfinite(corners).all():
-        raise InvalidInputError(f"region: expected two finite corners (2, 3), got shape {corners.shape}")
+    if corners.shape != (2, 3):
+        raise InvalidInputError(f"region: expected two corners (2, 3), got shape {corners.shape}")
+    if not np.isfinite(corners).all():
+        raise InvalidInputError(f"region must be finite, got {corners.tolist()}")
     lower, upper = corners.min(axis=0), corners.max(axis=0)
     counts = np.floor((upper - lower) / voxel + 1.0 + 1e-9)
     if counts.prod() * _YAWS > _MOST_PLACES:

@@ -59,7 +59,7 @@ pub(super) fn from_near_misses(
     preference: &Preference,
 ) -> Option<Solution> {
     let look = Look::new(family, preference);
-    // At the end of an arc joint 4 is at its limit: the only place inside the limits where another joint is leaving its own.
+    // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
     let values = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
     let mut misses: Vec<NearMiss> = values.flat_map(|value| look.at(value)).collect();
     misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
