@@ -49,7 +49,7 @@ def tracker(seconds: int) -> str:
     limits = bik.Limits(velocity=1.5, acceleration=5.0, jerk=50.0)
     wall = [bik.obstacles.Box((0.6, 0.4, 0.4), (0.05, 0.3, 0.5))]
     arm, center = bik.Tracker(robot, start, dt=1e-3, limits=limits, obstacles=wall), robot.fk(start)
-    ticks, late, after_warming = np.zeros(seconds * 1000), 0, 0.0
+    ticks, late, after_warming = np.full(seconds * 1000, np.nan), 0, 0.0  # all of its memory is taken at once
     due = time.perf_counter()
     for i in range(len(ticks)):
         target = center.copy()

@@ -94,6 +94,12 @@ def test_jerk_limits_hold() -> None:
 LIMITS = bik.Limits(velocity=1.0, acceleration=1.0)
 WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
     ([0.0, 1.0], {}, bik.InvalidInputError, "waypoints_q: expected shape (k, n), a row for each waypoint, got (2,)"),
+    (
+        [[], []],
+        {},
+        bik.InvalidInputError,
+        "waypoints_q: expected shape (k, n), a row for each waypoint, got (2, 0)",
+    ),
     ([[0.0, 1.0]], {}, bik.InvalidInputError, "waypoints: expected at least 2, got 1"),
     ([[0.0], [np.nan]], {}, bik.InvalidInputError, "waypoints must be finite, but joint 'q1' of row 1 is NaN"),
     (

@@ -60,8 +60,10 @@ fn a_map_has_what_solves_reach() {
         let layout = MapLayout { voxel: if name == "kr210" { 1.2 } else { 0.4 }, ..LAYOUT };
         let [reached, missed, alone] = compared(&robot, &layout, &MapOptions::default());
         assert!(reached > 200 && alone == 0, "{name}: {reached} reached, {alone} by the map alone");
-        // One orientation missed at one distance from the axis counts up to eight times.
-        assert!(missed * 50 <= reached, "{name}: {missed} of {reached} missed");
+        // Of arms with six joints a map is exact. Of others, one orientation missed at one distance from the axis counts up to eight
+        // times.
+        let most = if robot.dof() == 6 { 0 } else { reached / 50 };
+        assert!(missed <= most, "{name}: {missed} of {reached} missed");
     }
 }
 
@@ -78,7 +80,8 @@ fn limits_of_the_first_joint_count_at_each_azimuth() {
         let [reached, missed, alone] = compared(&robot, &LAYOUT, &MapOptions::default());
         assert!(reached > 100 && alone == 0, "{name}: {reached}, {alone}");
         // The value of the redundancy must suit the first joint too, and fewer do.
-        assert!(missed * 20 <= reached, "{name}: {missed} of {reached} missed");
+        let most = if robot.dof() == 6 { 0 } else { reached / 20 };
+        assert!(missed <= most, "{name}: {missed} of {reached} missed");
     }
 }
 
@@ -90,7 +93,7 @@ fn planar_arms_and_tasks_have_maps() {
     let [reached, missed, alone] = compared(&planar, &MapLayout { voxel: 0.2, ..LAYOUT }, &MapOptions::default());
     assert!(reached > 50 && missed == 0 && alone == 0, "{reached} {missed} {alone}");
     for kind in [TaskKind::Position, TaskKind::Pointing { axis: [0.0, 1.0, 1.0] }] {
-        let options = MapOptions { task: Some(kind.into()), evaluations: 5000, ..MapOptions::default() };
+        let options = MapOptions { task: Some(kind.into()), evaluations: 400, ..MapOptions::default() };
         let grid = MapGrid::new(&robot("ur5e"), &LAYOUT, &options).unwrap();
         assert_eq!(grid.orientations().len(), if kind == TaskKind::Position { 1 } else { 6 });
         let [reached, missed, alone] = compared(&robot("ur5e"), &LAYOUT, &options);

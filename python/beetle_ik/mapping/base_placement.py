@@ -13,9 +13,9 @@ from .._core import InvalidInputError, Obstacle, Robot, pose, solve_batch
 from .._scene import Scene
 from .._text import counted
 from .compute import reachability
-from .inverse_map import inverted, rigid
 from .map_file import require_same_robot
 from .reachability_map import ReachabilityMap
+from .rigid_poses import inverted, rigid
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -15,8 +15,8 @@ from .._scene import Scene
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path
-from .map_file import attached
-from .reachability_map import QUALITY, ReachabilityMap
+from .map_file import QUALITY, attached
+from .reachability_map import ReachabilityMap
 
 if TYPE_CHECKING:
     from distributed import Client

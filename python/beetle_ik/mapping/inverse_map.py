@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._arguments import require, require_count
+from .._arguments import require_count
 from .._core import InvalidInputError, pose
-from .reachability_map import ReachabilityMap
+from .map_figure import MappedVoxels, drawn_on_floor
+from .rigid_poses import inverted, one_target, rigid
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 _MOST_YAWS = 3600
+_PLACES = 81  # of a figure, along x and y
+
+
+@runtime_checkable
+class _Map(MappedVoxels, Protocol):
+    """What is asked of a `ReachabilityMap`."""
+
+    def query(self, T: ArrayLike) -> Any: ...  # noqa: N803
 
 
 class InverseReachabilityMap:
@@ -26,9 +35,10 @@ class InverseReachabilityMap:
         map: the map.
     """
 
-    def __init__(self, map: ReachabilityMap) -> None:  # noqa: A002
+    def __init__(self, map: _Map) -> None:  # noqa: A002
         """Keeps the map."""
-        require("map", map, ReachabilityMap)
+        if not isinstance(map, _Map):
+            raise InvalidInputError(f"map must be a ReachabilityMap, got {map!r:.60}")
         self.map = map
 
     def query(self, base: ArrayLike, target: ArrayLike | None = None) -> Any:
@@ -72,9 +82,11 @@ class InverseReachabilityMap:
 
     def plot(self, target: ArrayLike | None = None, *, height: float = 0.0) -> Figure:
         """Draws where an upright base at this height (m) reaches a target (4, 4), by the share of its yaws."""
-        from . import map_figure
-
-        return map_figure.drawn_on_floor(self, target, height)
+        radius = 0.5 * self.map.voxel * max(self.map.index.shape[:2])
+        at = one_target(target)[:2, 3]
+        x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
+        title = f"{self.map.robot.name}: where an upright base at z = {height:g} m reaches the target"
+        return drawn_on_floor(title, at, x, y, self.on_floor(x, y, target=target, height=height))
 
     def __repr__(self) -> str:
         """Names the map."""
@@ -90,38 +102,6 @@ def _numbers(name: str, value: ArrayLike, *, dimensions: int = 1) -> NDArray[np.
     if numbers.ndim > dimensions or not np.isfinite(numbers).all():
         raise InvalidInputError(f"{name} must be finite, in {dimensions} dimensions at most, got {value!r:.60}")
     return numbers
-
-
-def one_target(target: ArrayLike | None) -> NDArray[np.float64]:
-    """Returns the pose (4, 4) of the only target; None: the origin."""
-    wanted = np.eye(4) if target is None else rigid("target", target)
-    if wanted.shape != (4, 4):
-        raise InvalidInputError(f"target: expected shape (4, 4), got {wanted.shape}")
-    return wanted
-
-
-def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """Returns poses (4, 4) or (n, 4, 4) as an array.
-
-    Raises:
-        InvalidInputError: another shape, or no numbers. Names the argument.
-    """
-    try:
-        poses = np.asarray(value, float)
-    except (TypeError, ValueError):
-        raise InvalidInputError(f"{name} must be an array of numbers, got {value!r:.60}") from None
-    if poses.shape[-2:] != (4, 4) or poses.ndim not in (2, 3) or not np.isfinite(poses).all():
-        raise InvalidInputError(f"{name}: expected finite poses (4, 4) or (n, 4, 4), got shape {poses.shape}")
-    return poses
-
-
-def inverted(poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the inverses of rigid transforms (..., 4, 4)."""
-    turned = np.swapaxes(poses[..., :3, :3], -1, -2)
-    result = np.zeros_like(poses)
-    result[..., :3, :3], result[..., 3, 3] = turned, 1.0
-    result[..., :3, 3] = -(turned @ poses[..., :3, 3:])[..., 0]
-    return result
 
 
 InverseReachabilityMap.__module__ = "beetle_ik"

@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from .._arguments import require_text
-from .._core import InvalidInputError
+from .._core import InvalidInputError, Robot
 from .._style import BLACK, VERMILION, new_figure, style
-from .inverse_map import one_target
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-    from .inverse_map import InverseReachabilityMap
-    from .reachability_map import ReachabilityMap
+    from numpy.typing import NDArray
 
 KINDS = ("slices", "cloud")
 _COLOURS = "viridis"
 _MOST_POINTS = 20_000  # of a cloud; matplotlib draws more slowly
-_PLACES = 81  # along x and y of a floor
 _WIDTH = 180.0  # of all voxels, in points
 _NAMES = "xyz"
 
 
-def drawn(map: ReachabilityMap, kind: str) -> Figure:  # noqa: A002
+class MappedVoxels(Protocol):
+    """The voxels of a `ReachabilityMap`."""
+
+    robot: Robot
+    origin: NDArray[np.float64]
+    voxel: float
+    orientations: int
+    index: NDArray[np.float32]
+
+
+def drawn(map: MappedVoxels, kind: str) -> Figure:  # noqa: A002
     """Draws a map as "slices" or as a "cloud"."""
     require_text("kind", kind)
     if kind not in KINDS:
@@ -41,30 +46,25 @@ def drawn(map: ReachabilityMap, kind: str) -> Figure:  # noqa: A002
     return figure
 
 
-def drawn_on_floor(inverse: InverseReachabilityMap, target: ArrayLike | None, height: float) -> Figure:
-    """Draws the share of yaws at which an upright base at `height` reaches a target."""
-    map = inverse.map  # noqa: A001
-    radius = 0.5 * map.voxel * max(map.shape[:2])
-    at = one_target(target)[:2, 3]
-    x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
-    share = inverse.on_floor(x, y, target=target, height=height)
+def drawn_on_floor(title: str, at: NDArray[Any], x: NDArray[Any], y: NDArray[Any], share: NDArray[Any]) -> Figure:
+    """Draws the share of yaws (i, j) at which a base at the places `x` (i,) and `y` (j,) reaches a target `at` (2,)."""
     with style():
         figure = new_figure(6.5, 5.5)
         axes = figure.add_subplot()
         cells = _shown(axes, x, y, share)
         axes.plot(*at, marker="x", markersize=9, markeredgewidth=2, color=VERMILION, linestyle="none", label="target")
         axes.set(xlabel="x of the base [m]", ylabel="y of the base [m]")
-        axes.set_title(f"{map.robot.name}: where an upright base at z = {height:g} m reaches the target")
+        axes.set_title(title)
         axes.legend(loc="upper right")
         figure.colorbar(cells, ax=axes, label="yaws [%] (white: none)")
     return figure
 
 
-def _slices(figure: Figure, map: ReachabilityMap) -> Any:  # noqa: A002
+def _slices(figure: Figure, map: MappedVoxels) -> Any:  # noqa: A002
     """Draws the planes through the middle, and the layer that is reached best."""
-    best = [map.shape[0] // 2, map.shape[1] // 2, int(np.argmax(map.index.mean(axis=(0, 1))))]
-    centres = [origin + map.voxel * (np.arange(n) + 0.5) for origin, n in zip(map.origin, map.shape, strict=True)]
-    planes = [kept for kept in ((0, 2), (1, 2), (0, 1)) if min(map.shape[axis] for axis in kept) > 1]
+    best = [map.index.shape[0] // 2, map.index.shape[1] // 2, int(np.argmax(map.index.mean(axis=(0, 1))))]
+    centres = [origin + map.voxel * (np.arange(n) + 0.5) for origin, n in zip(map.origin, map.index.shape, strict=True)]
+    planes = [kept for kept in ((0, 2), (1, 2), (0, 1)) if min(map.index.shape[axis] for axis in kept) > 1]
     cells = None
     for panel, (across, up) in enumerate(planes, start=1):
         (fixed,) = {0, 1, 2} - {across, up}
@@ -85,15 +85,15 @@ def _shown(axes: Axes, x: NDArray[Any], y: NDArray[Any], share: NDArray[Any]) ->
     return axes.pcolormesh(x, y, percent, cmap=_COLOURS, vmin=0.0, vmax=100.0, rasterized=True)
 
 
-def _cloud(figure: Figure, map: ReachabilityMap) -> Any:  # noqa: A002
+def _cloud(figure: Figure, map: MappedVoxels) -> Any:  # noqa: A002
     """Draws the voxels behind the middle, so that the inside is in sight."""
     axes: Any = figure.add_subplot(projection="3d")
     points, share = cloud(map)
-    middle = map.origin[1] + 0.5 * map.voxel * map.shape[1]
-    behind = points[:, 1] > middle - 0.25 * map.voxel if map.shape[2] > 1 else np.ones(len(points), bool)
+    middle = map.origin[1] + 0.5 * map.voxel * map.index.shape[1]
+    behind = points[:, 1] > middle - 0.25 * map.voxel if map.index.shape[2] > 1 else np.ones(len(points), bool)
     points, share = points[behind], share[behind]
     kept = np.linspace(0, len(points) - 1, min(len(points), _MOST_POINTS)).astype(int)
-    size = (_WIDTH / max(map.shape)) ** 2
+    size = (_WIDTH / max(map.index.shape)) ** 2
     cells = axes.scatter(
         *points[kept].T, c=100.0 * share[kept], cmap=_COLOURS, vmin=0.0, vmax=100.0, s=size, marker="s", linewidths=0
     )
@@ -102,7 +102,7 @@ def _cloud(figure: Figure, map: ReachabilityMap) -> Any:  # noqa: A002
     return cells
 
 
-def cloud(map: ReachabilityMap) -> tuple[NDArray[np.float64], NDArray[np.float32]]:  # noqa: A002
+def cloud(map: MappedVoxels) -> tuple[NDArray[np.float64], NDArray[np.float32]]:  # noqa: A002
     """Returns the centres (k, 3) (m) of the voxels that are reached, and the share of each (k,)."""
     voxels = np.argwhere(map.index > 0)
     return map.origin + map.voxel * (voxels + 0.5), map.index[tuple(voxels.T)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,6 @@ from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
 from .._files import path_of, whole_file
 from ..chunked.store import read_finished
 from ..export import read_arrays
-from .reachability_map import QUALITY, ReachabilityMap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,20 +21,19 @@ FORMAT = 1
 """Version of the file; a file of another version is refused."""
 
 
-def write(map: ReachabilityMap, file: str | os.PathLike[str]) -> None:  # noqa: A002
-    """Writes a map; the file appears complete or not at all."""
-    arrays: dict[str, Any] = {
-        "reachability_map": np.array(FORMAT),
-        **attached(map.robot, map.grid),
-        "bits": map.bits,
-    }
-    arrays |= {name: getattr(map, name) for name in QUALITY if getattr(map, name) is not None}
+QUALITY = ("manipulability", "clearance")
+"""What may be measured beside the bits."""
+
+
+def write(file: str | os.PathLike[str], robot: Robot, grid: MapGrid, results: Mapping[str, Any]) -> None:
+    """Writes a map, of which `results` are the arrays that there are; the file appears complete or not at all."""
+    arrays: dict[str, Any] = {"reachability_map": np.array(FORMAT), **attached(robot, grid), **results}
     with whole_file(file) as stream:
         np.savez_compressed(stream, **arrays)
 
 
-def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
-    """Reads a map, of `robot` if that is given."""
+def read(file: str | os.PathLike[str], robot: Robot | None) -> dict[str, Any]:
+    """Returns robot, grid and results of a map, checked; of `robot` if that is given."""
     if robot is not None:
         require("robot", robot, Robot)
     place = path_of(file)
@@ -50,11 +49,22 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> ReachabilityMap:
             raise InvalidInputError(f"{place}: a map of format {version!s:.60}; {reads}")
     try:
         stored, grid = _restored(Robot, arrays["robot"]), _restored(MapGrid, arrays["grid"])
-        found = ReachabilityMap(stored, grid, arrays["bits"], *(arrays.get(name) for name in QUALITY))
+        results = {"bits": arrays["bits"], **{name: arrays.get(name) for name in QUALITY}}
+        require_results(grid, results)
     except (KeyError, BeetleIkError) as error:
         raise InvalidInputError(f"{place}: damaged reachability map: {error!s:.200}") from error
     require_same_robot(f"{place}: the map", stored, robot)
-    return found
+    return {"robot": stored, "grid": grid, **results}
+
+
+def require_results(grid: MapGrid, results: Mapping[str, Any]) -> None:
+    """Raises `InvalidInputError` unless the arrays have the shapes and types of a map of this grid."""
+    wanted = {"bits": ((*grid.shape, grid.bytes), np.uint8), **dict.fromkeys(QUALITY, ((*grid.shape,), np.float32))}
+    for name, array in results.items():
+        shape, kind = wanted[name]
+        if array is not None and (array.shape != shape or array.dtype != kind):
+            wrong = f"got {array.shape} of {array.dtype}"
+            raise InvalidInputError(f"{name}: expected shape {shape} of {np.dtype(kind)}, {wrong}")
 
 
 def require_same_robot(what: str, mapped: Robot, robot: Robot | None) -> None:

@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .._arguments import require
-from .._core import InvalidInputError, MapGrid, Robot
+from .._core import MapGrid, Robot
+from .inverse_map import InverseReachabilityMap
+from .map_figure import drawn
+from .map_file import QUALITY, read, require_results, write
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from .inverse_map import InverseReachabilityMap
-
 _A_BATCH = 3  # dimensions
-
-QUALITY = ("manipulability", "clearance")
-"""What may be measured beside the bits."""
 
 
 class ReachabilityMap:
@@ -50,14 +48,7 @@ class ReachabilityMap:
         """Keeps the results of all chunks of a grid; to make a map, call `reachability` or `load`."""
         require("robot", robot, Robot)
         require("grid", grid, MapGrid)
-        if bits.shape != (*grid.shape, grid.bytes) or bits.dtype != np.uint8:
-            raise InvalidInputError(
-                f"bits: expected shape {(*grid.shape, grid.bytes)} of uint8, got {bits.shape} of {bits.dtype}"
-            )
-        for name, measured in zip(QUALITY, (manipulability, clearance), strict=True):
-            if measured is not None and (measured.shape != (*grid.shape,) or measured.dtype != np.float32):
-                got = f"got {measured.shape} of {measured.dtype}"
-                raise InvalidInputError(f"{name}: expected shape {(*grid.shape,)} of float32, {got}")
+        require_results(grid, {"bits": bits, "manipulability": manipulability, "clearance": clearance})
         self.robot, self.grid, self.bits = robot, grid, bits
         self.manipulability, self.clearance = manipulability, clearance
         self.origin, self.voxel, self.axis, self.orientations = grid.origin, grid.voxel, grid.axis, grid.orientations
@@ -100,21 +91,16 @@ class ReachabilityMap:
 
     def inverse(self) -> InverseReachabilityMap:
         """Returns the inverse map: where may the base stand so that a target is reached?"""
-        from .inverse_map import InverseReachabilityMap
-
         return InverseReachabilityMap(self)
 
     def plot(self, kind: Literal["slices", "cloud"] = "slices") -> Figure:
         """Draws the share of orientations reached: in three planes through the best voxel, or as a cloud, cut open."""
-        from . import map_figure
-
-        return map_figure.drawn(self, kind)
+        return drawn(self, kind)
 
     def to_npz(self, file: str | os.PathLike[str]) -> None:
         """Writes the map, with its robot, to a compressed npz file, from which `load` returns an equal one."""
-        from .map_file import write
-
-        write(self, file)
+        results = {name: getattr(self, name) for name in ("bits", *QUALITY) if getattr(self, name) is not None}
+        write(file, self.robot, self.grid, results)
 
     @staticmethod
     def load(file: str | os.PathLike[str], *, robot: Robot | None = None) -> ReachabilityMap:
@@ -127,9 +113,7 @@ class ReachabilityMap:
         Raises:
             InvalidInputError: the file is no map, is damaged, of another version, or of another robot. Names the file.
         """
-        from .map_file import read
-
-        return read(file, robot)
+        return ReachabilityMap(**read(file, robot))
 
     def __eq__(self, other: object) -> bool:
         """Compares robot, voxels, orientations and results."""

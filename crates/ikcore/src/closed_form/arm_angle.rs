@@ -2,11 +2,10 @@
 //! the whole about the line between them.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::angle_range::{AngleRange, MOVED_BY_POLISHING, may_hold};
+use crate::closed_form::angle_range::{AngleRange, may_hold};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::orbit::about_z;
-use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::structure::{EXACT, three_meet};
 use crate::closed_form::subproblem::distance_to_point;
 use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
@@ -21,8 +20,10 @@ pub struct ArmAngle {
     wrist: Vector,
     elbow_axis: Vector,
     elbow: Vector,
-    first: Wrist,
-    last: Wrist,
+    pub(super) first: Wrist,
+    pub(super) last: Wrist,
+    /// The axes of the first and the last three joints.
+    pub(super) axes: [[Vector; 3]; 2],
     /// Axis 1: at arm angle zero the elbow's axis is across the plane of axis 1 and the line from shoulder to wrist.
     upright: Vector,
     floor: f64,
@@ -32,29 +33,42 @@ pub struct ArmAngle {
 #[derive(Debug, Clone, Copy)]
 pub struct ArmAnglePose {
     /// z along the line from shoulder to wrist, y along the elbow's axis at arm angle zero.
-    frame: Frame,
+    pub(super) frame: Frame,
     /// Where the last three joints point, seen from there.
-    last: Pointing,
+    pub(super) last: Pointing,
     /// Only the first `count` count.
-    elbows: [Elbow; 2],
+    elbows: [ElbowTurn; 2],
     count: usize,
     /// Joint 4 is free.
-    free: bool,
+    pub(super) free: bool,
+}
+
+impl ArmAnglePose {
+    /// The values of joint 4 that its limits may hold.
+    pub(super) fn elbows(&self, limits: &AngleRange) -> impl Iterator<Item = &ElbowTurn> {
+        self.elbows[..self.count].iter().filter(|elbow| limits.may_hold(&elbow.q4))
+    }
 }
 
 /// A value of joint 4.
 #[derive(Debug, Clone, Copy)]
-struct Elbow {
+pub(super) struct ElbowTurn {
     q4: Angle,
-    /// Where the first three joints point, seen from the line from shoulder to wrist.
-    first: Pointing,
+    /// The rotation of the arm without that of its first three joints, seen from the line from shoulder to wrist.
+    pub(super) from_line: Frame,
+    /// Where the first three joints point, seen from there.
+    pub(super) first: Pointing,
     /// From there to the last three joints.
-    to_wrist: Frame,
+    pub(super) to_wrist: Frame,
 }
 
-impl Elbow {
-    const NONE: Self =
-        Self { q4: Angle::NONE, first: Pointing { end: [0.0; 3], mark: [0.0; 3] }, to_wrist: Frame::IDENTITY };
+impl ElbowTurn {
+    const NONE: Self = Self {
+        q4: Angle::NONE,
+        from_line: Frame::IDENTITY,
+        first: Pointing { end: [0.0; 3], mark: [0.0; 3] },
+        to_wrist: Frame::IDENTITY,
+    };
 }
 
 impl ArmAngle {
@@ -67,13 +81,15 @@ impl ArmAngle {
         let [a, b, c, elbow, d, e, f] = &chain.joints;
         let shoulder = three_meet(&[*a, *b, *c], size, EXACT)?;
         let wrist = three_meet(&[*d, *e, *f], size, EXACT)?;
+        let axes = [[a.axis, b.axis, c.axis], [d.axis, e.axis, f.axis]];
         Some(Self {
             shoulder,
             wrist,
             elbow_axis: elbow.axis,
             elbow: elbow.point,
-            first: Wrist::new(&[a.axis, b.axis, c.axis]),
-            last: Wrist::new(&[d.axis, e.axis, f.axis]),
+            first: Wrist::new(&axes[0]),
+            last: Wrist::new(&axes[1]),
+            axes,
             upright: a.axis,
             floor: 1e-11 * size * size,
         })
@@ -88,15 +104,17 @@ impl ArmAngle {
         let frame = self.frame(&reached, &self.across(&reached));
         let pointing = self.last.pointing(goal);
         let last = Pointing { end: frame.turn_back(&pointing.end), mark: frame.turn_back(&pointing.mark) };
-        let mut pose = ArmAnglePose { frame, last, elbows: [Elbow::NONE; 2], count: 0, free: q4.free };
+        let mut pose = ArmAnglePose { frame, last, elbows: [ElbowTurn::NONE; 2], count: 0, free: q4.free };
         for q4 in q4.iter() {
             let arm = sub(&q4.about(&self.elbow_axis, &from_elbow), &to_shoulder);
             let at_zero = self.frame(&arm, &self.elbow_axis);
             let [x, y, z] = &at_zero.axes;
             let turned = |v: &Vector| q4.back().about(&self.elbow_axis, v);
-            pose.elbows[pose.count] = Elbow {
+            let from_line = at_zero.inverse();
+            pose.elbows[pose.count] = ElbowTurn {
                 q4: *q4,
-                first: self.first.pointing(&at_zero.inverse()),
+                from_line,
+                first: self.first.pointing(&from_line),
                 to_wrist: Frame { axes: [turned(x), turned(y), turned(z)], origin: [0.0; 3] },
             };
             pose.count += 1;
@@ -112,7 +130,7 @@ impl ArmAngle {
         let back = |v: &Vector| about_z(arm_angle.back(), v);
         let seen = Pointing { end: back(&pose.last.end), mark: back(&pose.last.mark) };
         found.singular |= pose.free;
-        for Elbow { q4, first, to_wrist } in pose.elbows[..pose.count].iter().filter(|it| of_elbow.may_hold(&it.q4)) {
+        for ElbowTurn { q4, first, to_wrist, .. } in pose.elbows(&of_elbow) {
             let first = self.first.turns(&first.turned(&target));
             // R567 = R4' R123' R.
             let last = self.last.turns(&seen.turned(to_wrist));
@@ -123,28 +141,6 @@ impl ArmAngle {
                 }
             }
         }
-    }
-
-    /// Whether the limits of joints 2, 4 and 6 (rad) exclude every arm angle. Each of joints 2 and 6 leaves some arcs; where those of
-    /// both have nothing in common, there is no configuration.
-    pub fn is_excluded(&self, pose: &ArmAnglePose, limits: &[[f64; 2]; 7], of_elbow: &AngleRange) -> bool {
-        // Polishing may bring what is little outside inside.
-        let within = |wrist: &Wrist, [lower, upper]: [f64; 2], reached: &dyn Fn(Angle) -> Vector| {
-            let (axis, cosine) = wrist.bending();
-            let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
-            Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range)
-        };
-        let mut elbows = pose.elbows[..pose.count].iter().filter(|elbow| of_elbow.may_hold(&elbow.q4));
-        !pose.free
-            && elbows.all(|Elbow { first, to_wrist, .. }| {
-                let shoulder = within(&self.first, limits[1], &|arm_angle| {
-                    pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos).turn::<Baseline>(&first.end)
-                });
-                let wrist = within(&self.last, limits[5], &|arm_angle| {
-                    to_wrist.turn::<Baseline>(&about_z(arm_angle.back(), &pose.last.end))
-                });
-                !shoulder.meet(&wrist)
-            })
     }
 
     /// The direction of the elbow's axis at arm angle zero.

@@ -60,18 +60,20 @@ pub(crate) struct ArmConfigurations {
     columns: AxisColumns,
     count: usize,
     joints: usize,
+    /// No solution is missing, and none stands for a family; false says nothing.
+    pub is_all: bool,
 }
 
 impl ArmConfigurations {
     /// None.
     pub fn none() -> Self {
-        Self { columns: AxisColumns::default(), count: 0, joints: 0 }
+        Self { columns: AxisColumns::default(), count: 0, joints: 0, is_all: false }
     }
 
     /// Replaces all by those whose values of the axes `write` leaves in the first `count` places of each column.
     #[inline]
     pub fn replace(&mut self, drives: &Drives, count: usize, write: impl FnOnce(&mut AxisColumns)) {
-        (self.count, self.joints) = (count, drives.axes.len());
+        (self.count, self.joints, self.is_all) = (count, drives.axes.len(), false);
         write(&mut self.columns);
         if !drives.is_plain {
             let of_axes = self.columns;
@@ -83,7 +85,7 @@ impl ArmConfigurations {
 
     /// From the values of `joints` joints, one configuration after the other.
     pub fn of_sets(sets: &[[f64; MOST_JOINTS]], joints: usize) -> Self {
-        let mut all = Self { columns: AxisColumns::default(), count: sets.len(), joints };
+        let mut all = Self { columns: AxisColumns::default(), count: sets.len(), joints, is_all: false };
         for (place, set) in sets.iter().enumerate() {
             (0..joints).for_each(|j| all.columns[j][place] = set[j]);
         }

@@ -14,6 +14,7 @@ mod angle;
 mod angle_range;
 mod arm;
 mod arm_angle;
+mod arm_angle_limits;
 mod arm_branches;
 mod axis_chain;
 mod branches;

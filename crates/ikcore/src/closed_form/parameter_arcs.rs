@@ -44,6 +44,15 @@ impl Wave {
         [least, most]
     }
 
+    /// The angles at which the wave has a value, in (-pi, pi]: two, or its peak or trough where it misses the value by little.
+    pub fn angles_at(&self, value: f64) -> impl Iterator<Item = f64> {
+        let Self { base, swing, peak } = *self;
+        let slack = CLAMP * (base.abs() + swing);
+        let is_met = swing > 0.0 && (value - base).abs() <= swing + slack;
+        let off = ((value - base) / swing).clamp(-1.0, 1.0).acos();
+        [peak - off, peak + off].into_iter().filter(move |_| is_met).map(|angle| angle - TAU * (angle / TAU).round())
+    }
+
     /// The arcs on which the wave lies between two bounds. Bounds missed by little give an arc without length: whether the parameter
     /// there has a configuration is to be tried.
     pub fn arcs_between(&self, [least, most]: [f64; 2]) -> ParameterArcs {
@@ -196,6 +205,16 @@ mod tests {
                 assert_eq!(inside, bounds[0] <= value && value <= bounds[1], "{bounds:?} {q} {arcs:?}");
             }
         }
+    }
+
+    #[test]
+    fn angles_at_a_value_have_it() {
+        let wave = Wave::of(|q: f64| 0.7 + 0.4 * (q - 2.9).cos());
+        for value in [0.3, 0.5, 0.9, 1.1] {
+            let angles: Vec<f64> = wave.angles_at(value).collect();
+            assert!(angles.len() == 2 && angles.iter().all(|q| q.abs() <= PI && (wave.at(*q) - value).abs() < 1e-12));
+        }
+        assert_eq!([0.2, 1.2].map(|value| wave.angles_at(value).count()), [0, 0]);
     }
 
     #[test]

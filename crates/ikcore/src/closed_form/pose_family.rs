@@ -1,5 +1,6 @@
 //! All configurations of a redundant arm for one pose, as a function of one parameter.
 
+use crate::closed_form::arm_angle_limits::Values;
 use crate::closed_form::arm_branches::ArmBranches;
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
@@ -51,6 +52,12 @@ impl<'a> PoseFamily<'a> {
     /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves some values. False says nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits) -> bool {
         self.redundant.is_excluded(&self.pose, &limits.0)
+    }
+
+    /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are
+    /// not known.
+    pub fn decisive(&self, limits: &FamilyLimits) -> Option<Values> {
+        self.redundant.decisive(&self.pose, &limits.0)
     }
 
     /// Whether the parameter is the arm angle: then every branch exists at every value.
@@ -127,9 +134,13 @@ mod tests {
     const LIMITS: [[f64; 7]; 2] = [[-2.9, -1.8, -2.9, -3.07, -2.9, -0.1, -2.9], [2.9, 1.8, 2.9, -0.07, 2.9, 3.75, 2.9]];
 
     fn is_inside(q: &[f64]) -> bool {
-        q.iter().zip(LIMITS[0]).zip(LIMITS[1]).all(|((q, lower), upper)| {
+        is_within(&LIMITS, q)
+    }
+
+    fn is_within([lower, upper]: &[[f64; 7]; 2], q: &[f64]) -> bool {
+        q.iter().zip(lower).zip(upper).all(|((q, lower), upper)| {
             let turned = [-1.0, 0.0, 1.0].map(|turn| q + turn * std::f64::consts::TAU);
-            turned.iter().any(|q| lower <= *q && *q <= upper)
+            turned.iter().any(|q| lower - 1e-7 <= *q && *q <= upper + 1e-7)
         })
     }
 
@@ -171,6 +182,32 @@ mod tests {
             }
             assert!(inside > 500, "{inside}");
         }
+    }
+
+    #[test]
+    fn decisive_values_have_a_configuration_inside_if_any_value_has() {
+        let chain = AxisChain::of_rows(&IIWA14);
+        let redundant = Redundant::new(&chain).expect("a method");
+        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+        let mut decided = [0, 0];
+        for (trial, q) in random_angles(400).into_iter().enumerate() {
+            // Ranges around another configuration, some wide and some narrow, some with a joint exactly at its limit.
+            let half = 0.3 + 0.3 * (trial % 9) as f64;
+            let middle: [f64; 7] = std::array::from_fn(|k| q[(k + 2) % 7] * 0.5 + q[k] * 0.5);
+            let mut limits = [middle.map(|m| m - half), middle.map(|m| m + half)];
+            if trial % 4 == 0 {
+                (limits[0][0], limits[1][4]) = (q[0], q[4]);
+            }
+            let all = FamilyLimits::new(&redundant, &drives, [&limits[0], &limits[1]]);
+            let family = PoseFamily::new(&redundant, &drives, &all, &chain.tip_at(&q));
+            let inside = |value: f64| family.branches_at(value).iter().any(|(found, _)| is_within(&limits, found));
+            let by_scan = (0..1500).any(|k| inside(f64::from(k) * (std::f64::consts::TAU / 1500.0)));
+            let decisive = family.decisive(&all).expect("joint 4 is not free");
+            let found = decisive.iter().any(|value| inside(*value));
+            assert!(found || !by_scan, "trial {trial}: {q:?}");
+            decided[usize::from(found)] += 1;
+        }
+        assert!(decided.iter().all(|count| *count > 50), "{decided:?}");
     }
 
     #[test]

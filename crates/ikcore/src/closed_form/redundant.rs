@@ -7,6 +7,7 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
+use crate::closed_form::arm_angle_limits::Values;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
@@ -170,6 +171,17 @@ impl Redundant {
         match (&self.method, &pose.by_arm_angle) {
             (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
             _ => false,
+        }
+    }
+
+    /// Values of the parameter of which one at least has a configuration within limits, if there is any; None where these are not
+    /// known.
+    pub fn decisive(&self, pose: &RedundantPose, limits: &AxisLimits) -> Option<Values> {
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::ArmAngle(method), Some(by_angle)) => {
+                method.decisive(by_angle, &pose.goal, &limits.axes, &limits.ranges[3])
+            }
+            _ => None,
         }
     }
 

@@ -209,6 +209,7 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
         found.replace(drives, candidates.count, |columns| values_of_six(&self.verifier, &candidates, columns));
+        found.is_all = self.has_exact_candidates() && !candidates.unsettled && !candidates.singular;
     }
 
     /// Whether candidates are solutions but for rounding.

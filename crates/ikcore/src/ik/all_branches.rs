@@ -1,12 +1,15 @@
 //! All solutions of a pose by the closed form of the arm.
 
 use super::attempt::{APPROACHES, Attempt};
+use super::out_of_reach::{ended, is_wide, obstruction};
+use super::preference::Preference;
+use super::solution::Solution;
 use super::solutions::Solutions;
 use super::whole_turns::NearestTurns;
 use crate::closed_form::{ArmBranches, BranchError, FamilyLimits, MOST_JOINTS, PoseFamily, VERIFIED};
 use crate::math::Frame;
 use crate::objective::Point;
-use crate::solver::{LevenbergMarquardt, MultiStart};
+use crate::solver::{LevenbergMarquardt, MultiStart, Status};
 use crate::task::{Target, TipError};
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
@@ -17,9 +20,6 @@ const SAME: f64 = 1e-6;
 
 /// A branch that is outside its limits by less (rad, m) may reach the pose within tolerances from inside them.
 const NEAR_LIMIT: f64 = 1e-4;
-
-/// Tolerances (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
-const WIDE: f64 = 1e-5;
 
 /// How many times more values of the parameter are tried where none has a solution.
 const FINER: usize = 4;
@@ -55,7 +55,7 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
         turns: NearestTurns::new(robot, bounds, reference),
         descent,
         verified_is_solved: tolerance.position.min(tolerance.rotation) >= VERIFIED,
-        nearly: tolerance.position.max(tolerance.rotation) > WIDE,
+        nearly: is_wide(attempt),
         found: AllBranches {
             solutions: Solutions::new(robot.dof()),
             obstruction: None,
@@ -75,24 +75,27 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
     };
     let mut found = taker.found;
     if found.solutions.is_empty() {
-        found.obstruction = found.complete.then(|| match attempt.problem.reach_shortfall(bounds) {
-            Some(beyond) => beyond.to_string(),
-            None => outside(count),
-        });
+        found.obstruction = found.complete.then(|| obstruction(attempt, count));
         // The search goes on from what is left open.
         found.obstruction.as_ref()?;
     }
     Some(found)
 }
 
-/// Where the solutions of a pose are that has none inside the limits; `count` is None if that is not known.
-fn outside(count: Option<usize>) -> String {
-    match count {
-        None => "no configuration inside the limits has this pose".into(),
-        Some(0) => "no configuration has this pose".into(),
-        Some(1) => "its one solution is outside the limits".into(),
-        Some(count) => format!("all {count} solutions are outside the limits"),
+/// The one of them nearest to the reference of `preference`, or a configuration near the target where there is none for certain; None
+/// where that is left open.
+#[cold]
+pub(super) fn nearest_of_all_branches(
+    attempt: &mut Attempt<'_, '_>,
+    preference: &Preference,
+    start: Option<&[f64]>,
+) -> Option<Solution> {
+    // Of a redundant arm only whether there are any: a single value of its parameter tells.
+    let all = all_branches(attempt, &preference.reference(), 1)?;
+    if let Some(q) = preference.nearest(all.solutions.iter().map(|solution| solution.q)) {
+        return attempt.solved_at(Point::from_slice(q));
     }
+    Some(ended(attempt, start, Status::OutOfReach, all.obstruction?))
 }
 
 /// Takes the branches that are inside the limits.
@@ -118,8 +121,12 @@ impl Taker<'_, '_, '_> {
         for finer in [1, FINER, FINER * FINER] {
             self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
             if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
-                break;
+                return;
             }
+        }
+        if let Some(values) = family.decisive(&limits) {
+            self.take_values(family, &limits, values.into_iter());
+            self.found.complete = self.found.solutions.is_empty() && !self.found.interrupted && !self.nearly;
         }
     }
 

@@ -3,7 +3,9 @@
 use super::budget::Budget;
 use super::context::SolveContext;
 use super::goal_descent::GoalDescent;
+use super::preference::{Miss, Preference};
 use super::solution::Solution;
+use crate::closed_form::{ArmConfigurations, VERIFIED};
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
@@ -148,13 +150,6 @@ impl<'m, 'p> Attempt<'m, 'p> {
         best.map_or(x, |(_, q)| q)
     }
 
-    /// The result of a few steps towards a target that cannot be reached.
-    pub fn neared(&mut self, x0: &[f64], evaluations: usize) -> Solution {
-        let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
-        let (_, q) = self.descend_some(&descent, Point::from_slice(x0), evaluations);
-        self.solution(Status::OutOfReach, q)
-    }
-
     /// The result of approaching a target that cannot be reached.
     pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
         let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
@@ -192,6 +187,20 @@ impl<'m, 'p> Attempt<'m, 'p> {
     pub fn solved_at(&mut self, q: Point) -> Option<Solution> {
         let error = self.error_if_solved(&q)?;
         Some(self.result(Status::Solved, q, error))
+    }
+
+    /// The result at the preferred one of `configurations`, if it reaches the pose as well as a verified branch does.
+    #[inline]
+    pub fn preferred(
+        &mut self,
+        preference: &Preference,
+        configurations: &mut ArmConfigurations,
+    ) -> Result<Solution, Miss> {
+        let q = preference.choose(configurations)?;
+        match self.error_if_solved(&q) {
+            Some(error) if error.position.max(error.rotation) <= VERIFIED => Ok(self.result(Status::Solved, q, error)),
+            _ => Err(Miss::Near),
+        }
     }
 
     /// The errors at `q` if that solves the target.

@@ -13,13 +13,13 @@ use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, Status};
 
 /// Values of the parameter at which near misses are looked for.
-pub(super) const LOOKED: usize = 48;
+pub(super) const LOOKED: usize = 40;
 
 /// A branch farther outside its limits (rad, m) is no near miss.
-const NEAR: f64 = 0.4;
+const NEAR: f64 = 0.15;
 
 /// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
-const TOUCHING: f64 = 0.05;
+pub(super) const TOUCHING: f64 = 0.02;
 
 /// Halvings of the distance between values, two values each, that refine the parameter of such a branch.
 const HALVINGS: usize = 7;
@@ -28,7 +28,7 @@ const HALVINGS: usize = 7;
 const DESCENTS: usize = 8;
 
 /// Most evaluations of a descent.
-const STEPS: usize = 40;
+const STEPS: usize = 15;
 
 /// Near misses in which all joints differ by less (rad, m) lead to the same place.
 const APART: f64 = 0.3;
@@ -50,20 +50,28 @@ impl NearMiss {
     }
 }
 
-/// A solution that a descent from a near miss leads to.
+/// A solution that a descent from a near miss leads to, or how far outside its limits (rad, m) the nearest branch is that was seen.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
     family: &PoseFamily<'_>,
     arcs: &ParameterArcs,
     preference: &Preference,
-) -> Option<Solution> {
-    let look = Look::new(family, preference);
+) -> Result<Solution, f64> {
+    let mut look = Look::new(family, preference);
+    let mut misses: Vec<NearMiss> = Vec::new();
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
-    let values = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
-    let mut misses: Vec<NearMiss> = values.flat_map(|value| look.at(value)).collect();
+    for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
+        for miss in look.at(value) {
+            if miss.outside == 0.0 {
+                return descended(attempt, &miss).ok_or(0.0);
+            }
+            misses.push(miss);
+        }
+    }
     misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
-    let mut tried: Vec<Point> = Vec::with_capacity(DESCENTS);
+    let least = misses.first().map_or(f64::INFINITY, |miss| miss.outside);
+    let mut tried: SmallVec<[Point; DESCENTS]> = SmallVec::new();
     for miss in misses {
         if tried.len() == DESCENTS {
             break;
@@ -73,12 +81,17 @@ pub(super) fn from_near_misses(
         }
         tried.push(miss.q.clone());
         let miss = if miss.outside < TOUCHING { look.refined(miss, arcs.length() / LOOKED as f64) } else { miss };
-        let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q, STEPS);
-        if is_solved {
-            return Some(attempt.solution(Status::Solved, q));
+        if let Some(solution) = descended(attempt, &miss) {
+            return Ok(solution);
         }
     }
-    None
+    Err(least)
+}
+
+/// The solution that a descent from a near miss leads to.
+fn descended(attempt: &mut Attempt<'_, '_>, miss: &NearMiss) -> Option<Solution> {
+    let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q.clone(), STEPS);
+    is_solved.then(|| attempt.solution(Status::Solved, q))
 }
 
 /// Where near misses are looked for.
@@ -87,6 +100,7 @@ struct Look<'a> {
     preference: &'a Preference,
     /// Wider than those of the arm.
     limits: FamilyLimits,
+    likely: ArmConfigurations,
 }
 
 impl<'a> Look<'a> {
@@ -94,19 +108,18 @@ impl<'a> Look<'a> {
         let [lower, upper] = preference.ranges();
         let wider = |ends: &[f64], by: f64| ends.iter().map(|end| end + by).collect::<Point>();
         let limits = family.limits(&wider(lower, -NEAR), &wider(upper, NEAR));
-        Self { family, preference, limits }
+        Self { family, preference, limits, likely: ArmConfigurations::none() }
     }
 
     /// The near misses with the parameter at `value`.
-    fn at(&self, value: f64) -> SmallVec<[NearMiss; 8]> {
-        let mut likely = ArmConfigurations::none();
-        self.family.likely_at(value, &self.limits, &mut likely);
-        let misses = self.preference.misses(&likely).filter(|(outside, _)| *outside < NEAR);
+    fn at(&mut self, value: f64) -> SmallVec<[NearMiss; 4]> {
+        self.family.likely_at(value, &self.limits, &mut self.likely);
+        let misses = self.preference.misses(&mut self.likely, NEAR);
         misses.map(|(outside, q)| NearMiss { outside, value, q }).collect()
     }
 
     /// The least of the misses around `miss`, which is one of those at values `spacing` apart.
-    fn refined(&self, mut miss: NearMiss, spacing: f64) -> NearMiss {
+    fn refined(&mut self, mut miss: NearMiss, spacing: f64) -> NearMiss {
         let mut step = spacing;
         for _ in 0..HALVINGS {
             step *= 0.5;

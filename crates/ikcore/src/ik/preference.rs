@@ -125,18 +125,13 @@ impl Preference {
         if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
     }
 
-    /// Each of `configurations`, moved inside the limits, and how far outside it was (rad, m).
-    pub fn misses(&self, configurations: &ArmConfigurations) -> impl Iterator<Item = (f64, Point)> {
-        (0..configurations.len()).map(|place| {
-            let mut most: f64 = 0.0;
+    /// Those of `configurations` that are outside the limits by less than `most` (rad, m): how far, and the nearest configuration
+    /// inside. All are brought to whole turns near the limits.
+    pub fn misses(&self, configurations: &mut ArmConfigurations, most: f64) -> impl Iterator<Item = (f64, Point)> {
+        let outside = turn_near(&self.joints, configurations);
+        (0..configurations.len()).filter(move |place| outside[*place] < most).map(move |place| {
             let joints = self.joints.iter().zip(configurations.columns());
-            let moved = joints.map(|(joint, values)| {
-                let (outside, value) = joint.moved_inside(values[place]);
-                most = most.max(outside);
-                value
-            });
-            let q = moved.collect();
-            (most, q)
+            (outside[place], joints.map(|(joint, values)| joint.moved_inside(values[place])).collect())
         })
     }
 
@@ -172,6 +167,30 @@ by_instructions! {
     }
 }
 
+by_instructions! {
+    /// Brings each of `configurations` to the whole turns below its upper limits; returns how far each is outside the limits at
+    /// least (rad, m), or a whole turn later.
+    fn turn_near(joints: &[JointPreference], configurations: &mut ArmConfigurations) -> [f64; MOST_CONFIGURATIONS] {
+        let count = configurations.len();
+        let mut most = [0.0; MOST_CONFIGURATIONS];
+        for (joint, values) in joints.iter().zip(configurations.columns_mut()) {
+            let turns = joint.period < NO_PERIOD;
+            for first in (0..count).step_by(LANES) {
+                let (mut lanes, mut outside) = ([0.0; LANES], [0.0; LANES]);
+                lanes.copy_from_slice(&values[first..first + LANES]);
+                outside.copy_from_slice(&most[first..first + LANES]);
+                for w in 0..LANES {
+                    lanes[w] = if turns { joint.turned(lanes[w]) } else { lanes[w] };
+                    outside[w] = larger(outside[w], joint.outside(lanes[w]));
+                }
+                values[first..first + LANES].copy_from_slice(&lanes);
+                most[first..first + LANES].copy_from_slice(&outside);
+            }
+        }
+        most
+    }
+}
+
 impl JointPreference {
     /// The value `q` at the whole turn nearest to the reference inside the limits, where there is one.
     #[inline(always)]
@@ -192,12 +211,17 @@ impl JointPreference {
         [q - self.period, q, q + self.period].iter().any(|q| self.is_within(*q, MOVED_BY_POLISHING))
     }
 
-    /// How far `q`, or a value whole turns away, is outside the limits at least, and the limit there.
-    fn moved_inside(&self, q: f64) -> (f64, f64) {
-        let turned = self.turned(q);
-        let values = [turned, turned - self.period, turned + self.period];
-        let misses = values.map(|value| ((value - self.inside(value)).abs(), self.inside(value)));
-        misses.into_iter().fold((f64::INFINITY, q), |best, miss| if miss.0 < best.0 { miss } else { best })
+    /// How far `turned`, from [`Self::turned`], or the value a whole turn later is outside the limits.
+    #[inline(always)]
+    fn outside(&self, turned: f64) -> f64 {
+        let nearer = smaller(self.lower - turned, turned + self.period - self.upper);
+        larger(0.0, larger(nearer, turned - self.upper))
+    }
+
+    /// The value inside the limits nearest to `turned`, or to the value a whole turn later.
+    fn moved_inside(&self, turned: f64) -> f64 {
+        let is_later = turned + self.period - self.upper < self.lower - turned;
+        self.inside(if is_later { turned + self.period } else { turned })
     }
 
     /// The value inside the limits nearest to `q`.

@@ -1,0 +1,100 @@
+//! What the limits of the joints leave of the arm angles of an SRS arm.
+//!
+//! As the arm angle turns, a vector that the first three joints carry along moves on a circle, and so does one before the last three.
+//! A joint is at a given angle where such a vector has a given component: at two arm angles at most (Shimizu, Kakuya, Yoon,
+//! Kitagaki and Kosuge 2008 give the same for arms with axes at right angles).
+
+use std::f64::consts::TAU;
+
+use smallvec::SmallVec;
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::{AngleRange, MOVED_BY_POLISHING};
+use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose, ElbowTurn};
+use crate::closed_form::orbit::about_z;
+use crate::closed_form::parameter_arcs::Wave;
+use crate::closed_form::vector::{Vector, dot};
+use crate::closed_form::wrist::Wrist;
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// Values of a parameter (rad, m).
+pub type Values = SmallVec<[f64; 64]>;
+
+impl ArmAngle {
+    /// Whether the limits of joints 2, 4 and 6 (rad) exclude every arm angle. Each of joints 2 and 6 leaves some arcs; where those of
+    /// both have nothing in common, there is no configuration.
+    pub fn is_excluded(&self, pose: &ArmAnglePose, limits: &[[f64; 2]; 7], of_elbow: &AngleRange) -> bool {
+        // Polishing may bring what is little outside inside.
+        let within = |wrist: &Wrist, [lower, upper]: [f64; 2], reached: &dyn Fn(Angle) -> Vector| {
+            let (axis, cosine) = wrist.bending();
+            let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
+            Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range)
+        };
+        !pose.free
+            && pose.elbows(of_elbow).all(|ElbowTurn { first, to_wrist, .. }| {
+                let shoulder = within(&self.first, limits[1], &|arm_angle| {
+                    pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos).turn::<Baseline>(&first.end)
+                });
+                let wrist = within(&self.last, limits[5], &|arm_angle| {
+                    to_wrist.turn::<Baseline>(&about_z(arm_angle.back(), &pose.last.end))
+                });
+                !shoulder.meet(&wrist)
+            })
+    }
+
+    /// Arm angles (rad) of which one at least has a configuration within limits, if there is any: those at which a joint reaches a
+    /// limit, and one between each two of them. None where joint 4 is free.
+    pub fn decisive(
+        &self,
+        pose: &ArmAnglePose,
+        goal: &Frame,
+        limits: &[[f64; 2]; 7],
+        of_elbow: &AngleRange,
+    ) -> Option<Values> {
+        let mut at_limits = Values::new();
+        for ElbowTurn { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
+            let shoulder = |arm_angle: Angle, v: &Vector| {
+                let line = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
+                line.turn::<Baseline>(&from_line.turn::<Baseline>(v))
+            };
+            let wrist = |arm_angle: Angle, v: &Vector| {
+                let seen = pose.frame.turn_back(&goal.turn::<Baseline>(v));
+                to_wrist.turn::<Baseline>(&about_z(arm_angle.back(), &seen))
+            };
+            add_at_limits(&self.axes[0], &limits[..3], &shoulder, &mut at_limits);
+            add_at_limits(&self.axes[1], &limits[4..], &wrist, &mut at_limits);
+        }
+        at_limits.sort_by(f64::total_cmp);
+        let next = at_limits.iter().skip(1).copied().chain(at_limits.first().map(|first| first + TAU));
+        let between: Values = at_limits.iter().zip(next).map(|(a, b)| 0.5 * (a + b)).collect();
+        let anywhere = if at_limits.is_empty() { Some(0.0) } else { None };
+        (!pose.free).then(|| between.into_iter().chain(at_limits).chain(anywhere).collect())
+    }
+}
+
+/// Adds the arm angles, in (-pi, pi], at which a joint of three is at a limit; `turned` is where these joints turn a vector at an arm
+/// angle.
+///
+/// With their axes a, b, c and R = rot(a, q1) rot(b, q2) rot(c, q3): (rot(a, q1) b)'R c = b'c, a'R c = a'rot(b, q2) c and
+/// a'R rot(c, -q3) b = a'b.
+fn add_at_limits(
+    [a, b, c]: &[Vector; 3],
+    limits: &[[f64; 2]],
+    turned: &dyn Fn(Angle, &Vector) -> Vector,
+    found: &mut Values,
+) {
+    let mut add = |seen_along: &Vector, v: &Vector, component: f64| {
+        let wave = Wave::of(|arm_angle| dot(seen_along, &turned(Angle::by(arm_angle), v)));
+        found.extend(wave.angles_at(component));
+    };
+    for (joint, range) in limits.iter().enumerate().filter(|(_, [lower, upper])| upper - lower < TAU) {
+        for limit in range.map(Angle::by) {
+            match joint {
+                0 => add(&limit.about(a, b), c, dot(b, c)),
+                1 => add(a, c, dot(a, &limit.about(b, c))),
+                _ => add(a, &limit.back().about(c, b), dot(a, b)),
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The first solution of a pose by the closed form of an arm with one joint more than the pose needs.
+
+use std::borrow::Cow;
+
+use super::all_branches::nearest_of_all_branches;
+use super::attempt::Attempt;
+use super::context::SolveContext;
+use super::near_misses::{LOOKED, TOUCHING, from_near_misses};
+use super::out_of_reach::{ended, is_wide, obstruction};
+use super::preference::{Miss, Preference};
+use super::solution::Solution;
+use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
+use crate::solver::{Status, Stop};
+
+/// Most values of the parameter of a redundant arm that are tried before near misses are.
+const SCANNED: usize = 8;
+
+/// Values after which it is asked whether any can have a solution: most poses have one before.
+const VALUES_BEFORE_DOUBT: usize = 4;
+
+/// The search after both takes one of so many evaluations that the budget leaves.
+const SEARCHED_SHARE: usize = 150;
+
+/// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
+const ROUNDED: f64 = 1e-6;
+
+/// How a look at scattered values ends.
+enum Scattered {
+    Solved(Solution),
+    /// No solution is within the limits.
+    Unreachable,
+    /// None is at these values.
+    Open,
+    /// Branches that failed took half the budget: the rest is for a search.
+    TooCostly,
+}
+
+/// A pose of such an arm, and which of its solutions to take.
+pub(super) struct FamilySearch<'a> {
+    family: &'a PoseFamily<'a>,
+    limits: FamilyLimits,
+    arcs: ParameterArcs,
+    preference: Cow<'a, Preference>,
+    start: Option<&'a [f64]>,
+}
+
+impl<'a> FamilySearch<'a> {
+    /// The solution nearest to the start or, without one, the most central one, each among few.
+    pub fn new(context: &'a SolveContext<'_>, family: &'a PoseFamily<'_>, start: Option<&'a [f64]>) -> Self {
+        let [lower, upper] = context.sampling_ranges();
+        let limits = family.limits(lower, upper);
+        let arcs = family.arcs(&limits);
+        Self { family, limits, arcs, preference: context.preference(start), start }
+    }
+
+    /// From the start by descent; then the first value of the parameter that has a branch inside the limits; then what is known of the
+    /// values between. None where a search is to go on.
+    pub fn first(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        if let Some(start) = self.start {
+            let (status, q) = attempt.search_once(start);
+            if status != Status::Stalled {
+                return Some(attempt.explained(status, q));
+            }
+        }
+        match self.at_scattered_values(attempt) {
+            Scattered::Solved(solution) => Some(solution),
+            Scattered::Unreachable => self.unreachable(attempt),
+            Scattered::TooCostly => None,
+            Scattered::Open => match self.at_decisive_values(attempt) {
+                Ok(solution) => Some(solution),
+                Err(Miss::Far) => self.unreachable(attempt),
+                Err(Miss::Near) => self.near_the_limits(attempt),
+            },
+        }
+    }
+
+    /// Tries a few values: most poses have a solution at one of the first.
+    fn at_scattered_values(&self, attempt: &mut Attempt<'_, '_>) -> Scattered {
+        if self.arcs.is_empty() {
+            return Scattered::Unreachable;
+        }
+        let mut likely = ArmConfigurations::none();
+        let half_the_budget = attempt.budget.left() / 2;
+        for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
+            if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits) {
+                return Scattered::Unreachable;
+            }
+            self.family.likely_at(value, &self.limits, &mut likely);
+            if likely.is_empty() {
+                continue;
+            }
+            match attempt.preferred(&self.preference, &mut likely) {
+                Ok(solution) => return Scattered::Solved(solution),
+                Err(Miss::Far) => continue,
+                Err(Miss::Near) => {}
+            }
+            // Beside singular poses, what is near a branch is still to be polished.
+            let branches = self.family.branches_at(value);
+            attempt.budget.evaluations += branches.evaluations;
+            if let Ok(q) = self.preference.choose(&mut branches.configurations())
+                && let Some(solution) = attempt.solved_at(q)
+            {
+                return Scattered::Solved(solution);
+            }
+            if attempt.budget.left() < half_the_budget {
+                return Scattered::TooCostly;
+            }
+        }
+        Scattered::Open
+    }
+
+    /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
+    #[cold]
+    fn at_decisive_values(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Miss> {
+        let values = self.family.decisive(&self.limits).ok_or(Miss::Near)?;
+        let (mut likely, mut miss) = (ArmConfigurations::none(), Miss::Far);
+        for value in values {
+            self.family.likely_at(value, &self.limits, &mut likely);
+            if let Ok(solution) = attempt.preferred(&self.preference, &mut likely) {
+                return Ok(solution);
+            }
+            if self.preference.misses(&mut likely, ROUNDED).next().is_some() {
+                miss = Miss::Near;
+            }
+        }
+        Err(miss)
+    }
+
+    /// A solution near branches that are little outside the limits.
+    #[cold]
+    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        match from_near_misses(attempt, self.family, &self.arcs, &self.preference) {
+            Ok(solution) => Some(solution),
+            // The tolerances are tighter than rounding allows the closed form, or it is not sure that none is missing.
+            Err(outside) if outside == 0.0 || !self.family.is_sure_of_arcs() => None,
+            Err(outside) if outside < TOUCHING || is_wide(attempt) => self.searched_in_short(attempt),
+            // Who gives more than the default budget has it searched.
+            Err(_) if attempt.budget.left() > Stop::default().max_evaluations => self.searched_in_short(attempt),
+            Err(_) => {
+                let values = SCANNED + LOOKED;
+                let obstruction = format!("no solution at {values} values of the redundancy, nor near them");
+                Some(ended(attempt, self.start, Status::Stalled, obstruction))
+            }
+        }
+    }
+
+    /// A search with a small share of the budget, for poses that are reached within wide tolerances alone. What it misses is reported
+    /// as not found, which is no proof.
+    #[cold]
+    fn searched_in_short(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        let x0 = attempt.first_start(self.start);
+        let reserve = attempt.budget.left() - attempt.budget.left() / SEARCHED_SHARE;
+        let (status, q) = attempt.search(attempt.context.bounds(), &x0, reserve);
+        if status != Status::BudgetSpent || attempt.budget.is_spent() {
+            return Some(attempt.explained(status, q));
+        }
+        let mut solution = attempt.explained(Status::Stalled, q);
+        if solution.obstruction.is_empty() {
+            let (values, evaluations) = (SCANNED + LOOKED, solution.evaluations);
+            solution.obstruction = format!(
+                "no solution at {values} values of the redundancy, nor by a search, {evaluations} evaluations in all"
+            );
+        }
+        Some(solution)
+    }
+
+    /// No solution is within the limits.
+    #[cold]
+    fn unreachable(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        if is_wide(attempt) {
+            return nearest_of_all_branches(attempt, &self.preference, self.start);
+        }
+        let obstruction = obstruction(attempt, None);
+        Some(ended(attempt, self.start, Status::OutOfReach, obstruction))
+    }
+}

@@ -1,0 +1,44 @@
+"""Rigid transforms given by users, as arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._core import InvalidInputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+def one_target(target: ArrayLike | None) -> NDArray[np.float64]:
+    """Returns the pose (4, 4) of the only target; None: the origin."""
+    wanted = np.eye(4) if target is None else rigid("target", target)
+    if wanted.shape != (4, 4):
+        raise InvalidInputError(f"target: expected shape (4, 4), got {wanted.shape}")
+    return wanted
+
+
+def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """Returns poses (4, 4) or (n, 4, 4) as an array.
+
+    Raises:
+        InvalidInputError: another shape, or no numbers. Names the argument.
+    """
+    try:
+        poses = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise InvalidInputError(f"{name} must be an array of numbers, got {value!r:.60}") from None
+    if poses.shape[-2:] != (4, 4) or poses.ndim not in (2, 3) or not np.isfinite(poses).all():
+        raise InvalidInputError(f"{name}: expected finite poses (4, 4) or (n, 4, 4), got shape {poses.shape}")
+    return poses
+
+
+def inverted(poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the inverses of rigid transforms (..., 4, 4)."""
+    turned = np.swapaxes(poses[..., :3, :3], -1, -2)
+    result = np.zeros_like(poses)
+    result[..., :3, :3], result[..., 3, 3] = turned, 1.0
+    result[..., :3, 3] = -(turned @ poses[..., :3, 3:])[..., 0]
+    return result
