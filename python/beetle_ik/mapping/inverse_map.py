@@ -85,8 +85,9 @@ class InverseReachabilityMap:
         radius = 0.5 * self.map.voxel * max(self.map.index.shape[:2])
         at = one_target(target)[:2, 3]
         x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
+        share = self.on_floor(x, y, target=target, height=height)
         title = f"{self.map.robot.name}: where an upright base at z = {height:g} m reaches the target"
-        return drawn_on_floor(title, at, x, y, self.on_floor(x, y, target=target, height=height))
+        return drawn_on_floor(title, at, x, y, share)
 
     def __repr__(self) -> str:
         """Names the map."""

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::all_branches::nearest_of_all_branches;
 use super::attempt::Attempt;
 use super::context::SolveContext;
-use super::near_misses::{LOOKED, TOUCHING, from_near_misses};
+use super::near_misses::{LOOKED, MissedBy, from_near_misses};
 use super::out_of_reach::{ended, is_wide, obstruction};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
@@ -24,9 +24,8 @@ const SEARCHED_SHARE: usize = 150;
 /// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
 const ROUNDED: f64 = 1e-6;
 
-/// How a look at scattered values ends.
+/// How a look at scattered values ends without a solution.
 enum Scattered {
-    Solved(Solution),
     /// No solution is within the limits.
     Unreachable,
     /// None is at these values.
@@ -63,10 +62,10 @@ impl<'a> FamilySearch<'a> {
             }
         }
         match self.at_scattered_values(attempt) {
-            Scattered::Solved(solution) => Some(solution),
-            Scattered::Unreachable => self.unreachable(attempt),
-            Scattered::TooCostly => None,
-            Scattered::Open => match self.at_decisive_values(attempt) {
+            Ok(solution) => Some(solution),
+            Err(Scattered::Unreachable) => self.unreachable(attempt),
+            Err(Scattered::TooCostly) => None,
+            Err(Scattered::Open) => match self.at_decisive_values(attempt) {
                 Ok(solution) => Some(solution),
                 Err(Miss::Far) => self.unreachable(attempt),
                 Err(Miss::Near) => self.near_the_limits(attempt),
@@ -75,22 +74,22 @@ impl<'a> FamilySearch<'a> {
     }
 
     /// Tries a few values: most poses have a solution at one of the first.
-    fn at_scattered_values(&self, attempt: &mut Attempt<'_, '_>) -> Scattered {
+    fn at_scattered_values(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Scattered> {
         if self.arcs.is_empty() {
-            return Scattered::Unreachable;
+            return Err(Scattered::Unreachable);
         }
         let mut likely = ArmConfigurations::none();
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
             if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits) {
-                return Scattered::Unreachable;
+                return Err(Scattered::Unreachable);
             }
             self.family.likely_at(value, &self.limits, &mut likely);
             if likely.is_empty() {
                 continue;
             }
             match attempt.preferred(&self.preference, &mut likely) {
-                Ok(solution) => return Scattered::Solved(solution),
+                Ok(solution) => return Ok(solution),
                 Err(Miss::Far) => continue,
                 Err(Miss::Near) => {}
             }
@@ -100,13 +99,13 @@ impl<'a> FamilySearch<'a> {
             if let Ok(q) = self.preference.choose(&mut branches.configurations())
                 && let Some(solution) = attempt.solved_at(q)
             {
-                return Scattered::Solved(solution);
+                return Ok(solution);
             }
             if attempt.budget.left() < half_the_budget {
-                return Scattered::TooCostly;
+                return Err(Scattered::TooCostly);
             }
         }
-        Scattered::Open
+        Err(Scattered::Open)
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
@@ -131,12 +130,14 @@ impl<'a> FamilySearch<'a> {
     fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         match from_near_misses(attempt, self.family, &self.arcs, &self.preference) {
             Ok(solution) => Some(solution),
-            // The tolerances are tighter than rounding allows the closed form, or it is not sure that none is missing.
-            Err(outside) if outside == 0.0 || !self.family.is_sure_of_arcs() => None,
-            Err(outside) if outside < TOUCHING || is_wide(attempt) => self.searched_in_short(attempt),
-            // Who gives more than the default budget has it searched.
-            Err(_) if attempt.budget.left() > Stop::default().max_evaluations => self.searched_in_short(attempt),
-            Err(_) => {
+            Err(MissedBy::Rounding) => None,
+            Err(_) if !self.family.is_sure_of_arcs() => None,
+            Err(MissedBy::Little) => self.searched_in_short(attempt),
+            // Who gives wide tolerances or more than the default budget has it searched.
+            Err(MissedBy::Much) if is_wide(attempt) || attempt.budget.left() > Stop::default().max_evaluations => {
+                self.searched_in_short(attempt)
+            }
+            Err(MissedBy::Much) => {
                 let values = SCANNED + LOOKED;
                 let obstruction = format!("no solution at {values} values of the redundancy, nor near them");
                 Some(ended(attempt, self.start, Status::Stalled, obstruction))

@@ -13,19 +13,22 @@ use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, Status};
 
 /// Values of the parameter at which near misses are looked for.
-pub(super) const LOOKED: usize = 40;
+pub(super) const LOOKED: usize = 32;
 
 /// A branch farther outside its limits (rad, m) is no near miss.
 const NEAR: f64 = 0.15;
 
 /// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
-pub(super) const TOUCHING: f64 = 0.02;
+const TOUCHING: f64 = 0.03;
+
+/// A branch that is farther outside wherever the parameter is refined to does not touch its limits.
+const APART_FROM_LIMITS: f64 = 0.002;
 
 /// Halvings of the distance between values, two values each, that refine the parameter of such a branch.
 const HALVINGS: usize = 7;
 
-/// Most near misses that are descended from.
-const DESCENTS: usize = 8;
+/// Most near misses that are refined or descended from.
+const DESCENTS: usize = 5;
 
 /// Most evaluations of a descent.
 const STEPS: usize = 15;
@@ -50,27 +53,37 @@ impl NearMiss {
     }
 }
 
-/// A solution that a descent from a near miss leads to, or how far outside its limits (rad, m) the nearest branch is that was seen.
+/// How far the branches of a pose without a solution are outside the limits.
+pub(super) enum MissedBy {
+    /// One is inside, but does not reach the pose: the tolerances are tighter than rounding allows the closed form.
+    Rounding,
+    /// One touches them, or nearly.
+    Little,
+    /// All are clearly outside.
+    Much,
+}
+
+/// A solution that a descent from a near miss leads to.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
     family: &PoseFamily<'_>,
     arcs: &ParameterArcs,
     preference: &Preference,
-) -> Result<Solution, f64> {
+) -> Result<Solution, MissedBy> {
     let mut look = Look::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
     for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
         for miss in look.at(value) {
             if miss.outside == 0.0 {
-                return descended(attempt, &miss).ok_or(0.0);
+                return descended(attempt, &miss).ok_or(MissedBy::Rounding);
             }
             misses.push(miss);
         }
     }
     misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
-    let least = misses.first().map_or(f64::INFINITY, |miss| miss.outside);
+    let mut end = MissedBy::Much;
     let mut tried: SmallVec<[Point; DESCENTS]> = SmallVec::new();
     for miss in misses {
         if tried.len() == DESCENTS {
@@ -80,12 +93,21 @@ pub(super) fn from_near_misses(
             continue;
         }
         tried.push(miss.q.clone());
-        let miss = if miss.outside < TOUCHING { look.refined(miss, arcs.length() / LOOKED as f64) } else { miss };
+        let miss = if miss.outside < TOUCHING {
+            let refined = look.refined(miss, arcs.length() / LOOKED as f64);
+            if refined.outside > APART_FROM_LIMITS {
+                continue;
+            }
+            end = MissedBy::Little;
+            refined
+        } else {
+            miss
+        };
         if let Some(solution) = descended(attempt, &miss) {
             return Ok(solution);
         }
     }
-    Err(least)
+    Err(end)
 }
 
 /// The solution that a descent from a near miss leads to.

@@ -54,7 +54,7 @@ pub fn time_optimal(
     #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
 ) -> PyResult<PyTrajectory> {
     let waypoints = array("waypoints_q", waypoints_q)?;
-    let &[_, n @ 1..] = waypoints.shape() else {
+    let &[_, n @ (1..)] = waypoints.shape() else {
         let got = shape_text(waypoints.shape());
         return Err(invalid(format!("waypoints_q: expected shape (k, n), a row for each waypoint, got {got}")));
     };
