@@ -5,12 +5,12 @@ use std::borrow::Cow;
 use super::all_branches::nearest_of_all_branches;
 use super::attempt::Attempt;
 use super::context::SolveContext;
-use super::near_misses::{LOOKED, MissedBy, from_near_misses};
+use super::near_misses::{LOOKED, from_near_misses};
 use super::out_of_reach::{ended, is_wide, obstruction};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
-use crate::solver::{Status, Stop};
+use crate::solver::Status;
 
 /// Most values of the parameter of a redundant arm that are tried before near misses are.
 const SCANNED: usize = 8;
@@ -19,7 +19,7 @@ const SCANNED: usize = 8;
 const VALUES_BEFORE_DOUBT: usize = 4;
 
 /// The search after both takes one of so many evaluations that the budget leaves.
-const SEARCHED_SHARE: usize = 150;
+const SEARCHED_SHARE: usize = 200;
 
 /// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
 const ROUNDED: f64 = 1e-6;
@@ -130,23 +130,12 @@ impl<'a> FamilySearch<'a> {
     fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         match from_near_misses(attempt, self.family, &self.arcs, &self.preference) {
             Ok(solution) => Some(solution),
-            Err(MissedBy::Rounding) => None,
-            Err(_) if !self.family.is_sure_of_arcs() => None,
-            Err(MissedBy::Little) => self.searched_in_short(attempt),
-            // Who gives wide tolerances or more than the default budget has it searched.
-            Err(MissedBy::Much) if is_wide(attempt) || attempt.budget.left() > Stop::default().max_evaluations => {
-                self.searched_in_short(attempt)
-            }
-            Err(MissedBy::Much) => {
-                let values = SCANNED + LOOKED;
-                let obstruction = format!("no solution at {values} values of the redundancy, nor near them");
-                Some(ended(attempt, self.start, Status::Stalled, obstruction))
-            }
+            Err(Miss::Far) if self.family.is_sure_of_arcs() => self.searched_in_short(attempt),
+            Err(_) => None,
         }
     }
 
-    /// A search with a small share of the budget, for poses that are reached within wide tolerances alone. What it misses is reported
-    /// as not found, which is no proof.
+    /// A search with a small share of the budget. What it misses is reported as not found, which is no proof.
     #[cold]
     fn searched_in_short(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         let x0 = attempt.first_start(self.start);

@@ -6,7 +6,7 @@
 use smallvec::SmallVec;
 
 use super::attempt::Attempt;
-use super::preference::Preference;
+use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
 use crate::objective::Point;
@@ -16,7 +16,7 @@ use crate::solver::{LevenbergMarquardt, Status};
 pub(super) const LOOKED: usize = 32;
 
 /// A branch farther outside its limits (rad, m) is no near miss.
-const NEAR: f64 = 0.15;
+const NEAR: f64 = 0.4;
 
 /// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
 const TOUCHING: f64 = 0.03;
@@ -28,7 +28,7 @@ const APART_FROM_LIMITS: f64 = 0.002;
 const HALVINGS: usize = 7;
 
 /// Most near misses that are refined or descended from.
-const DESCENTS: usize = 5;
+const DESCENTS: usize = 3;
 
 /// Most evaluations of a descent.
 const STEPS: usize = 15;
@@ -53,37 +53,27 @@ impl NearMiss {
     }
 }
 
-/// How far the branches of a pose without a solution are outside the limits.
-pub(super) enum MissedBy {
-    /// One is inside, but does not reach the pose: the tolerances are tighter than rounding allows the closed form.
-    Rounding,
-    /// One touches them, or nearly.
-    Little,
-    /// All are clearly outside.
-    Much,
-}
-
-/// A solution that a descent from a near miss leads to.
+/// A solution that a descent from a near miss leads to; a near miss if a branch is inside the limits that does not reach the pose: the
+/// tolerances are tighter than rounding allows the closed form.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
     family: &PoseFamily<'_>,
     arcs: &ParameterArcs,
     preference: &Preference,
-) -> Result<Solution, MissedBy> {
+) -> Result<Solution, Miss> {
     let mut look = Look::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
     for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
         for miss in look.at(value) {
             if miss.outside == 0.0 {
-                return descended(attempt, &miss).ok_or(MissedBy::Rounding);
+                return descended(attempt, &miss).ok_or(Miss::Near);
             }
             misses.push(miss);
         }
     }
     misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
-    let mut end = MissedBy::Much;
     let mut tried: SmallVec<[Point; DESCENTS]> = SmallVec::new();
     for miss in misses {
         if tried.len() == DESCENTS {
@@ -98,7 +88,6 @@ pub(super) fn from_near_misses(
             if refined.outside > APART_FROM_LIMITS {
                 continue;
             }
-            end = MissedBy::Little;
             refined
         } else {
             miss
@@ -107,7 +96,7 @@ pub(super) fn from_near_misses(
             return Ok(solution);
         }
     }
-    Err(end)
+    Err(Miss::Far)
 }
 
 /// The solution that a descent from a near miss leads to.
