@@ -2,7 +2,8 @@
 
 use crate::common::robot;
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
-use ikcore::math::so3::{norm, rotation_between};
+use ikcore::math::Frame;
+use ikcore::math::so3::{norm, rotated, rotation_between};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
@@ -94,6 +95,31 @@ fn noise_neither_delays_nor_shakes() {
                 assert!(shaking < 0.1, "{name}: {shaking} rad/s^2");
                 let [velocity, acceleration, largest_jerk] = commands.largest();
                 assert!(velocity <= 1.5 && acceleration <= 5.0 && largest_jerk <= jerk, "{name}: {largest_jerk}");
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_leaves_the_self_motion_at_rest() {
+    let arm = robot("panda");
+    let mut rng = rng::stream(9, 0);
+    for trial in 0..12 {
+        let start: Vec<f64> = START.iter().map(|q| q + rng.uniform_in(-0.5, 0.5)).collect();
+        let goal: Vec<f64> = start.iter().map(|q| q + rng.uniform_in(-0.3, 0.3)).collect();
+        let (goal, noise, dt) = (arm.tip(&goal), 5e-3, if trial % 2 == 0 { 0.001 } else { 0.005 });
+        let options = TrackOptions { limits: Some(moderate(&arm, f64::INFINITY)), ..TrackOptions::default() };
+        let mut session = Session::new(&arm, &start, dt, &options).unwrap();
+        for tick in 0..(4.0 / dt) as usize {
+            let mut draw = || noise * normal(&mut rng);
+            let turn = [draw(), draw(), draw()];
+            let axes = goal.axes.map(|axis| rotated(&axis, &turn));
+            let target = Target::Pose(Frame { axes, origin: goal.origin.map(|x| x + draw()) });
+            session.step(&target, &mut Unattended).unwrap();
+            if tick as f64 * dt > 2.5 {
+                let away = distance(arm.tip_position(session.q()), goal.origin);
+                let fastest = session.qd().iter().fold(0.0_f64, |most, qd| most.max(qd.abs()));
+                assert!(away < 3.0 * noise && fastest < 0.3, "trial {trial} tick {tick}: {away} m, {fastest} rad/s");
             }
         }
     }

@@ -3,15 +3,17 @@
 //! A virtual sixth joint is added behind the last or before the first, so that a method for six joints fits. The branches that leave
 //! it at zero are those of the arm; a pose without one is out of reach.
 
+use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
 use crate::closed_form::branches::Branches;
-use crate::closed_form::six::{ClosedForm, Structure};
+use crate::closed_form::six::{ClosedForm, Structure, samples};
 use crate::closed_form::structure::{EXACT, Pair};
 use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit};
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 
-/// Where the virtual joint is farther than this from zero (rad), the pose is out of reach; nearer, Newton's method decides.
+/// Where the virtual joint is farther than this from zero (rad), or the tip from the pose without it (m, rad), the pose is out of reach;
+/// nearer, Newton's method decides.
 const NEAR_ZERO: f64 = 1e-4;
 
 /// The method for a chain of five revolute joints.
@@ -32,7 +34,8 @@ impl FiveJoints {
         let with = |joint: JointAxis, before: bool| {
             let mut joints = [joint; 6];
             joints[usize::from(before)..][..5].copy_from_slice(&chain.joints);
-            (ClosedForm::new(&AxisChain { joints, tip: chain.tip }), before)
+            let six = ClosedForm::new(&AxisChain { joints, tip: chain.tip });
+            Self { six, before, verifier: Verifier::new(chain, 1e-2) }
         };
         let [first, second, .., fourth, fifth] = &chain.joints;
         let size = chain.size();
@@ -42,18 +45,28 @@ impl FiveJoints {
             Some((aside(fifth, size), false)),
             Some((aside(first, size), true)),
         ];
-        let forms = virtual_joints.into_iter().flatten().map(|(joint, before)| with(joint, before));
-        let (six, before) = forms.min_by_key(|(form, _)| match form.structure() {
+        let mut forms: Vec<Self> =
+            virtual_joints.into_iter().flatten().map(|(joint, before)| with(joint, before)).collect();
+        forms.sort_by_key(|form| match form.structure() {
             Structure::ThreeMeet { nearly: false, .. } | Structure::ThreeParallel { nearly: false, .. } => 0,
             Structure::General => 1,
             _ => 2,
-        })?;
-        Some(Self { six, before, verifier: Verifier::new(chain, 1e-2) })
+        });
+        // Axes that coincide with the virtual one, say, defeat the method.
+        forms.into_iter().find(|form| form.finds_samples(chain))
     }
 
     /// The structure with the virtual joint.
     pub fn structure(&self) -> Structure {
         self.six.structure()
+    }
+
+    /// Whether the method finds configurations spread evenly again.
+    fn finds_samples(&self, chain: &AxisChain<5>) -> bool {
+        samples().all(|[q @ .., _]| {
+            let near = |set: &[f64; 5]| set.iter().zip(&q).all(|(a, b)| (Angle::by(a - b).cos - 1.0).abs() < 1e-6);
+            self.solve(&chain.tip_at(&q)).iter().any(near)
+        })
     }
 
     /// All joint angles, in (-pi, pi], that bring the tip to `target`; none where five joints cannot reach it.
@@ -62,11 +75,24 @@ impl FiveJoints {
         let mut found = Branches::none();
         for set in six.iter() {
             let (added, rest) = if self.before { (set[0], &set[1..]) } else { (set[5], &set[..5]) };
+            let set: [f64; 5] = std::array::from_fn(|k| rest[k]);
             if added.abs() < NEAR_ZERO {
-                self.verifier.add_near(target, std::array::from_fn(|k| rest[k]), &mut found);
+                self.verifier.add_near(target, set, &mut found);
+            } else {
+                // Where the wrist is straight, the joint on its other side may turn instead of the virtual one.
+                let partner = if self.before { 1 } else { 3 };
+                for turn in [added, -added] {
+                    let mut set = set;
+                    set[partner] += turn;
+                    if self.verifier.residual(target, &set) < NEAR_ZERO {
+                        self.verifier.add_near(target, set, &mut found);
+                    }
+                }
             }
         }
-        (found.complete, found.singular) = (six.complete, six.singular);
+        // Of a family of six joints one stands for all: without it, another may leave the virtual joint at zero.
+        let is_settled = !six.singular || !found.is_empty();
+        (found.complete, found.singular) = (six.complete && is_settled, six.singular);
         found.evaluations += six.evaluations;
         found.nearly |= six.nearly;
         found
@@ -92,7 +118,6 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2 as Q, PI, TAU};
 
     use super::*;
-    use crate::closed_form::angle::Angle;
     use crate::math::arithmetic::Baseline;
     use crate::rng;
 
@@ -105,6 +130,10 @@ mod tests {
     ];
     const LAST_TWO_MEET: [[f64; 4]; 5] =
         [[0.1, 1.2, 0.3, 0.0], [0.3, 0.4, 0.1, 0.0], [0.2, -1.0, 0.2, 0.0], [0.0, 0.9, 0.3, 0.0], [0.0, 0.0, 0.1, 0.0]];
+    const RIGHT_ANGLE: [[f64; 4]; 5] =
+        [[0.1, 1.2, 0.3, 0.0], [0.3, 0.4, 0.1, 0.0], [0.2, -1.0, 0.2, 0.0], [0.0, Q, 0.3, 0.0], [0.0, 0.0, 0.1, 0.0]];
+    const WRIST: [[f64; 4]; 5] =
+        [[0.3, 0.0, 0.0, 0.0], [0.4, 0.7, 0.1, 0.0], [0.0, 1.1, 0.0, 0.0], [0.0, 0.9, 0.0, 0.0], [0.0, 0.0, 0.1, 0.0]];
     const GENERAL: [[f64; 4]; 5] = [
         [0.1, 1.2, 0.3, 0.0],
         [0.3, 0.4, 0.1, 0.0],
@@ -116,12 +145,16 @@ mod tests {
     #[test]
     fn five_joints_reach_their_own_poses_and_no_tilted_ones() {
         let mut rng = rng::stream(31, 0);
-        for rows in [YOUBOT, LAST_TWO_MEET, GENERAL] {
+        for rows in [YOUBOT, LAST_TWO_MEET, RIGHT_ANGLE, WRIST, GENERAL] {
             let chain = AxisChain::of_rows(&rows);
             let method = FiveJoints::new(&chain).expect("a method");
             assert_eq!(method.structure() == Structure::General, rows == GENERAL);
-            for _ in 0..if rows == GENERAL { 40 } else { 200 } {
-                let q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-PI, PI));
+            for draw in 0..if rows == GENERAL { 40 } else { 200 } {
+                let mut q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-PI, PI));
+                // Straight wrists with the virtual joint, or nearly.
+                if rows != GENERAL && draw % 4 == 0 {
+                    q[4] = [Q, -Q, Q + 1e-9, Q - 1e-6][draw / 4 % 4];
+                }
                 let target = chain.tip_at(&q);
                 let near =
                     |b: &[f64; 5]| b.iter().zip(&q).all(|(b, q)| ((b - q + PI).rem_euclid(TAU) - PI).abs() < 1e-4);

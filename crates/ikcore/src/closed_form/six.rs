@@ -322,7 +322,7 @@ fn general_ways(joints: &[JointAxis; 6], size: f64) -> Box<[General; 2]> {
 }
 
 /// A few configurations spread evenly: multiples of irrational numbers, as turns.
-fn samples() -> impl Iterator<Item = [f64; 6]> {
+pub fn samples() -> impl Iterator<Item = [f64; 6]> {
     let roots = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0_f64].map(f64::sqrt);
     (1..=8).map(move |sample| roots.map(|root| TAU * (f64::from(sample) * root).fract() - PI))
 }

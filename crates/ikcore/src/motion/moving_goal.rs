@@ -105,14 +105,15 @@ impl MovingGoal {
         self.noise.level()
     }
 
-    /// Ticks between samples.
-    pub fn interval(&self) -> f64 {
-        self.interval
-    }
-
     /// Ticks over which noise is averaged; 1 without noise.
     pub fn memory(&self) -> f64 {
         self.memory.samples() * self.interval
+    }
+
+    /// Ticks from the first sample that the goal remembers to the last; without noise, from the last but one.
+    pub fn remembered(&self) -> f64 {
+        let memory = self.memory.samples();
+        self.samples.map_or(memory, |samples| memory.min(samples as f64)).max(1.0) * self.interval
     }
 
     /// Root mean square of the corrections of its position that noise causes.

@@ -50,6 +50,11 @@ impl<const N: usize> Verifier<N> {
         self.accept_polished(target, set, found);
     }
 
+    /// How far joint values leave the tip from `target` (m, rad).
+    pub fn residual(&self, target: &Frame, set: &[f64; N]) -> f64 {
+        residuals::difference(&self.chain.tip_at(set), target)
+    }
+
     /// The candidates that bring the tip to `target`, as joint values. Where speed matters, [`verified`] and [`verified_seven`].
     pub fn verified(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         self.branches_by::<Baseline>(target, candidates)

@@ -176,13 +176,13 @@ impl GoalPursuit {
         tick.aim().linearize(tick.robot, &self.sample, &mut self.linearization).score.value
     }
 
-    /// Where the joints should be at `time` as far as the target leaves them free: where the goal was one sample before, moved
-    /// as the goals in the null space ask. The motion of the goal is not extrapolated there, since no target would ever stop
-    /// it.
+    /// Where the joints should be at `time` as far as the target leaves them free: where the goal was before the samples that it
+    /// remembers, moved as the goals in the null space ask. The motion of the goal is not extrapolated there, since no target
+    /// would ever stop it; nor would a filter that remembers many samples, were it told where the goal was one sample before.
     fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
         let mut preferred = self.sample.clone();
         if let Some(goal) = &self.goal {
-            goal.expected(time - goal.interval(), &mut preferred);
+            goal.expected(time - goal.remembered(), &mut preferred);
         }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();
