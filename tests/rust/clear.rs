@@ -266,6 +266,21 @@ fn nothing_is_checked_unless_asked_for() {
 }
 
 #[test]
+fn nearest_bodies_left_for_later_are_those_found_at_once() {
+    let robot = arm("panda");
+    let mut rng = rng::stream(16, 0);
+    for _ in 0..20 {
+        let (scene, target) = cluttered(&robot, &mut rng);
+        let options = among(&scene);
+        let at_once = solved(&robot, &target, &options);
+        let mut later = solved(&robot, &target, &SolveOptions { nearest_later: true, ..options.clone() });
+        assert!(later.status != Status::Solved || later.nearest.is_none());
+        later.find_nearest(&robot, &options.surroundings).unwrap();
+        assert_eq!((later.q, later.nearest), (at_once.q, at_once.nearest));
+    }
+}
+
+#[test]
 fn a_margin_larger_than_the_free_space_ends_within_its_budget() {
     for name in ["panda", "ur5e", "gen3"] {
         let robot = arm(name);

@@ -1,7 +1,11 @@
 //! `solve` and `Solution`.
 
-use ikcore::ik;
+use std::sync::{Arc, OnceLock};
+
+use ikcore::ik::{self, SolveOptions};
 use ikcore::math::Frame;
+use ikcore::obstacle::Surroundings;
+use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Target, TipError};
 use numpy::{PyArray1, PyUntypedArrayMethods};
@@ -24,7 +28,9 @@ use crate::traversal::traversed;
 /// The best configuration found, and how the search ended.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
+    /// As it was found: perhaps without its nearest bodies.
     core: ik::Solution,
+    around: Option<Box<Around>>,
     /// What was asked of each tip.
     tips: TipErrors,
     /// The configuration (n,) (rad, m), inside the limits.
@@ -35,6 +41,13 @@ pub struct PySolution {
     limits: Py<PyLimits>,
 }
 
+/// What the nearest bodies of a solution are found in, when they are first asked for.
+struct Around {
+    robot: Arc<Robot>,
+    surroundings: Surroundings,
+    whole: OnceLock<ik::Solution>,
+}
+
 traversed!(PySolution: limits);
 
 outcome! {
@@ -43,7 +56,7 @@ outcome! {
     success,
     /// Why the search ended, a `Status`.
     status: result.core.status,
-    message: result.core.message(),
+    message: result.whole().message(),
     /// Evaluations of the forward kinematics.
     evaluations: result.core.evaluations,
     elapsed: result.core.elapsed,
@@ -76,13 +89,13 @@ impl PySolution {
     /// deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
-        self.core.clearance()
+        self.whole().clearance()
     }
 
     /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        self.core.nearest.as_ref()?.bodies.clone().map(PyNearest::from)
+        self.whole().nearest.as_ref()?.bodies.clone().map(PyNearest::from)
     }
 
     /// Iterations over all starts.
@@ -98,11 +111,11 @@ impl PySolution {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Solution {}: {}>", self.core.status.name(), self.core.message())
+        format!("<Solution {}: {}>", self.core.status.name(), self.whole().message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = pickling::bytes(py, to_bytes("solution", &self.core))?;
+        let core = pickling::bytes(py, to_bytes("solution", self.whole()))?;
         pickling::restored_from::<Self>(py, (core, &self.limits, self.tips.bytes(py)?))
     }
 
@@ -116,7 +129,19 @@ impl PySolution {
 
 impl PySolution {
     pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>, tips: TipErrors) -> Self {
-        Self { q: copied(py, &core.q).unbind(), limits, tips, core }
+        Self { q: copied(py, &core.q).unbind(), limits, tips, core, around: None }
+    }
+
+    /// With its nearest bodies.
+    fn whole(&self) -> &ik::Solution {
+        let Some(around) = &self.around else { return &self.core };
+        let Around { robot, surroundings, whole } = &**around;
+        whole.get_or_init(|| {
+            let mut solution = self.core.clone();
+            let found = solution.find_nearest(robot, surroundings);
+            found.expect("the arm was solved in these surroundings");
+            solution
+        })
     }
 }
 
@@ -198,10 +223,13 @@ pub fn solve(
         seed,
     };
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let options = arguments.read(robot, &asked, start, resolved)?;
+    let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| asked.values().iter().copied().collect(), &options, &core.q)?;
-    Ok(PySolution::new(py, core, in_force, tips))
+    let surroundings = options.surroundings;
+    let around = (surroundings.is_given() && core.nearest.is_none())
+        .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));
+    Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
 }
 
 /// A pose (4, 4) or a position (3,).

@@ -4,8 +4,10 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::Result;
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, NearestContact};
+use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
+use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
 use crate::wording::number;
@@ -21,7 +23,8 @@ pub struct Solution {
     pub error: TipError,
     /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
-    /// The nearest two bodies at `q`, if obstacles or the robot's own links were to be kept clear of.
+    /// The nearest two bodies at `q`, if obstacles or the robot's own links were to be kept clear of; `None` too while they are left for
+    /// later ([`SolveOptions::nearest_later`](super::SolveOptions)).
     pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -55,6 +58,19 @@ impl Nearest {
 }
 
 impl Solution {
+    /// Finds the nearest two bodies where they were left for later.
+    ///
+    /// # Errors
+    /// As [`Surroundings::clear_space`].
+    pub fn find_nearest(&mut self, robot: &Robot, surroundings: &Surroundings) -> Result<()> {
+        if self.nearest.is_none()
+            && let Some(space) = surroundings.clear_space(robot)?
+        {
+            self.nearest = Some(Box::new(Nearest::at(&space, &self.q)));
+        }
+        Ok(())
+    }
+
     /// The smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
     /// checked.
     pub fn clearance(&self) -> f64 {

@@ -42,6 +42,9 @@ pub struct SolveOptions {
     pub limits: Option<Limits>,
     /// What solutions keep clear of. By default nothing is checked.
     pub surroundings: Surroundings,
+    /// The nearest two bodies of a solution are left for [`Solution::find_nearest`](super::Solution::find_nearest): finding them takes
+    /// about as long as the solve.
+    pub nearest_later: bool,
     /// Budgets.
     pub stop: Stop,
     /// Seed of the random draws; the same seed gives the same bits. Most targets are solved without a random draw, and

@@ -23,6 +23,11 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
+    /// Whether there is anything to keep clear of.
+    pub fn is_given(&self) -> bool {
+        self.obstacles.is_some() || self.self_collision == Some(true)
+    }
+
     /// The first obstacle that is a mesh which is not closed.
     pub(crate) fn first_open_mesh(&self) -> Option<usize> {
         self.obstacles.as_ref()?.iter().position(Shape::is_open_mesh)
@@ -35,7 +40,7 @@ impl Surroundings {
     /// margin without anything to keep it from.
     pub fn clear_space<'a>(&'a self, robot: &'a Robot) -> Result<Option<ClearSpace<'a>>> {
         let margin = kept_margin(self.margin)?;
-        if self.obstacles.is_none() && self.self_collision != Some(true) {
+        if !self.is_given() {
             let problem = "margin= needs obstacles= (a list, which may be empty) or self_collision=True".into();
             return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
         }

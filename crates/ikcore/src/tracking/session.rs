@@ -496,8 +496,7 @@ impl Session {
         let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, Vec::len))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let is_asked = surroundings.obstacles.is_some() || surroundings.self_collision == Some(true);
-        let space = if is_asked { clear_space(&surroundings, &self.robot)? } else { None };
+        let space = if surroundings.is_given() { clear_space(&surroundings, &self.robot)? } else { None };
         if space.is_some() || self.tips.is_some() {
             let kept = match self.kept.take() {
                 Some(kept) => self.kept.insert(kept),

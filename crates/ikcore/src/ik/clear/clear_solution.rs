@@ -27,7 +27,7 @@ pub(in crate::ik) fn clear_solution<'p>(
         (_, start) => search.first(start).map(|q| search.improved(q, start)),
     };
     let solution = found.map_or_else(|missed| *missed, |q| attempt.solution(Status::Solved, q));
-    if solution.nearest.is_some() {
+    if solution.nearest.is_some() || context.options().nearest_later {
         return solution;
     }
     let nearest = Some(Box::new(Nearest::at(space, &solution.q)));
