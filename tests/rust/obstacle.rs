@@ -345,17 +345,40 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
                 let gap = distance(point, point, 0.0, &obstacles[0]);
                 assert!((gap - found.contact.distance).abs() < 1e-6, "{gap} {found:?}");
             }
-            Neighbor::Obstacle(..) => {
-                // Where two faces are equally deep, the distance has a corner.
-                inside += 1;
-                continue;
-            }
+            Neighbor::Obstacle(..) => inside += 1,
         }
         for (j, slope) in slopes(&scene, &q, 1e-6, 1e-4) {
-            assert!((slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
+            // Halfway between opposite faces the depth does not change, and the gradient leads out past one of them.
+            let is_halfway = found.contact.distance < 0.0 && slope.abs() < 1e-9;
+            assert!(is_halfway || (slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
         }
     }
     assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
+}
+
+#[test]
+fn the_deepest_of_several_bodies_in_an_obstacle_is_the_nearest() {
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+    let mut rng = rng::stream(29, 0);
+    let mut several = 0;
+    for case in 0..200 {
+        let q = robot.random_configurations(1, &mut rng).unwrap();
+        let center = robot.tip_position(&q).map(|x| x + rng.uniform_in(-0.1, 0.1));
+        let size = std::array::from_fn(|_| rng.uniform_in(0.05, 0.2));
+        let shape = if case % 2 == 0 { Shape::cuboid(center, size, None) } else { Shape::sphere(center, size[0]) };
+        let obstacles = [shape.unwrap()];
+        let all = Scene::new(&robot, &obstacles).unwrap().clearance(&q).unwrap();
+        // Each body by itself, with no other to compare it with.
+        let alone = robot.capsules().iter().map(|capsule| {
+            let robot = Robot::named("panda").unwrap().with_capsules(vec![capsule.clone()]).unwrap();
+            Scene::new(&robot, &obstacles).unwrap().clearance(&q).unwrap()
+        });
+        let alone: Vec<f64> = alone.collect();
+        several += usize::from(alone.iter().filter(|distance| **distance < 0.0).count() > 1);
+        let deepest = alone.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(deepest > 0.0 || (all - deepest).abs() < 1e-9, "case {case}: {all}, one by one {deepest}");
+    }
+    assert!(several > 40, "{several}");
 }
 
 /// A Panda with spheres, capsules and other shapes.

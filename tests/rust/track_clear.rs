@@ -194,6 +194,41 @@ fn an_arm_that_starts_in_collision_moves_out() {
 }
 
 #[test]
+fn an_arm_gets_out_of_what_is_put_deep_into_its_links() {
+    let robot = panda();
+    let mut rng = rng::stream(8, 0);
+    let (mut tried, mut left) = (0, [0; 3]);
+    while tried < 40 {
+        let start = robot.random_configurations(1, &mut rng).unwrap();
+        let tip = robot.tip_position(&start);
+        let center = tip.map(|x| x + rng.uniform_in(-0.2, 0.2));
+        let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.08, 0.2));
+        let shape = if tried % 2 == 0 { Shape::sphere(center, sizes[0]) } else { Shape::cuboid(center, sizes, None) };
+        let obstacles = vec![shape.unwrap()];
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let [alone, among] = [&[][..], &obstacles].map(|shapes| Scene::new(&robot, shapes).unwrap().clearance(&start));
+        // The base cannot get out of the way.
+        let far_from_base = center[0].hypot(center[1]) > 0.35;
+        if alone.unwrap() < 0.03 || !(-0.1..-0.04).contains(&among.unwrap()) || !far_from_base {
+            continue;
+        }
+        tried += 1;
+        let here = Target::from(&robot.fk(&start).unwrap());
+        for (limits, left) in all_limits(&robot).into_iter().zip(&mut left) {
+            let surroundings = surroundings(obstacles.clone());
+            let options = TrackOptions { limits: Some(limits), surroundings, ..TrackOptions::default() };
+            let mut session = Session::new(&robot, &start, 0.01, &options).unwrap();
+            for _ in 0..400 {
+                session.step(&here, &mut Unattended).unwrap();
+            }
+            *left += usize::from(scene.clearance(session.q()).unwrap() >= MARGIN - ROUNDING);
+        }
+    }
+    // An axis through the middle of a sphere has no shortest way out.
+    assert!(left.iter().all(|left| *left >= 37), "{left:?} of {tried}");
+}
+
+#[test]
 fn an_arm_gets_out_of_the_way_of_a_sphere_no_faster_than_said() {
     let robot = panda();
     let speed = 0.3;

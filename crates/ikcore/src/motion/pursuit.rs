@@ -53,6 +53,8 @@ struct Relative {
     /// Distance before the tick.
     distance: f64,
     step: f64,
+    /// The last change.
+    change: f64,
     /// Admissible changes.
     changes: [f64; 2],
 }
@@ -70,6 +72,7 @@ impl Pursuit<'_> {
             let relative = Relative {
                 distance: q[j] - (self.goal.q()[j] - goal_step),
                 step: state.step[j] - (goal_step - goal_change),
+                change: state.change[j] - goal_change,
                 changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
             };
             let Braking { acceleration, jerk } = self.braking[j];
@@ -83,7 +86,7 @@ impl Pursuit<'_> {
             } else {
                 slowest
             };
-            out[j] = straight + relative.change(&braking, law, EDGE * noise, shares.step[j] * self.scales.step[j]);
+            out[j] = straight + relative.next_change(&braking, law, EDGE * noise, shares.step[j] * self.scales.step[j]);
         }
         self.reachable.clip(out);
     }
@@ -129,11 +132,15 @@ struct Shares {
 
 impl Relative {
     /// The change of the joint, relative to the goal. `law` is the time of the linear law.
-    fn change(&self, braking: &Braking, law: f64, edge: f64, fastest: f64) -> f64 {
+    fn next_change(&self, braking: &Braking, law: f64, edge: f64, fastest: f64) -> f64 {
         let [least, most] = self.changes;
         let toward = |speed: f64| if speed >= 0.0 { longest_first(speed, braking.jerk) } else { speed };
         let [least, most] =
             [least.max(-toward(fastest + self.step)).min(most), most.min(toward(fastest - self.step)).max(least)];
+        // Speeding up is in proportion too; braking may take all that there is.
+        let eager = |change: f64| (change.max(0.0) + braking.jerk).min(braking.acceleration);
+        let most = if self.step >= 0.0 { most.min(eager(self.change)).max(least) } else { most };
+        let least = if self.step <= 0.0 { least.max(-eager(-self.change)).min(most) } else { least };
         let pole = 1.0 - 1.0 / law;
         let linear = -(1.0 - pole).powi(2) * self.distance - (1.0 - pole * pole) * self.step;
         let linear = linear.clamp(least.min(most), most);

@@ -238,6 +238,9 @@ impl ChordCheck {
             (scene.change_at(pair, first, &self.halfway), scene.change_at(pair, last, &self.halfway));
         let at_first = scene.distance_at(pair, first, needed + change_first);
         let at_last = scene.distance_at(pair, last, needed + change_last);
+        if kept.only_parts && needed < 0.0 {
+            return if at_last < needed { Verdict::TooNear(interval.to) } else { Verdict::Clear };
+        }
         if at_first < needed_first {
             return Verdict::TooNear(interval.from);
         }
@@ -265,7 +268,8 @@ impl ChordCheck {
         let BodyPair::Obstacle { body, obstacle } = pair else { return None };
         let (shape, carried, frames) = (&scene.others.obstacles[obstacle], &scene.bodies.carried[body], first);
         let at = |frames: &FrameBuffer| frames[carried.stages];
-        let (_, normal) = shape.nearest_to_body(&carried.placed(&carried.axis_at(&at(nearer)), &at(nearer)));
+        let (_, slope) = shape.nearest_to_body(&carried.placed(&carried.axis_at(&at(nearer)), &at(nearer)));
+        let normal = slope.normalize();
         let end = shape.farthest_along(&normal)?;
         let least = |frames: &FrameBuffer| {
             let frame = at(frames);

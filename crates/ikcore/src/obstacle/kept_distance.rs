@@ -14,17 +14,19 @@ pub(crate) struct KeptDistance<'a> {
     pub since: f64,
     /// Length of a tick (s).
     pub dt: f64,
-    /// Near pairs where the arm would come to rest if it braked now. A pair that is nearer than it should be even there need only not
-    /// come nearer: a motion may end no worse than the stop.
+    /// Near pairs where the arm would come to rest if it braked now, the nearest first. A pair that is nearer than it should be even
+    /// there need only not come nearer: a motion may end no worse than the stop.
     pub at_rest: &'a [NearRow],
     /// By how much it may (m), since a motion outwards must be certified too.
     pub leeway: f64,
+    /// Bodies that overlap at rest need only end no deeper in each other than the deepest of them are there, whatever is in between.
+    pub only_parts: bool,
 }
 
 impl KeptDistance<'static> {
     /// The same distance (m) from everything, all of it at rest.
     pub fn constant(margin: f64) -> Self {
-        Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], leeway: 0.0 }
+        Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], leeway: 0.0, only_parts: false }
     }
 }
 
@@ -45,9 +47,9 @@ impl KeptDistance<'_> {
     pub(super) fn needed(&self, pair: BodyPair, tick: f64) -> f64 {
         let obstacle = if let BodyPair::Obstacle { obstacle, .. } = pair { Some(obstacle) } else { None };
         let wanted = self.wanted(obstacle, tick);
-        // The nearest come first.
-        let near = self.at_rest.iter().take_while(|row| row.distance < wanted);
-        let same = |row: &&NearRow| row.pair.order() == pair.order();
-        near.filter(same).map(|row| row.distance - self.leeway).next().unwrap_or(wanted)
+        let mut near = self.at_rest.iter().take_while(|row| row.distance < wanted);
+        let Some(row) = near.find(|row| row.pair.order() == pair.order()) else { return wanted };
+        let counts = if self.only_parts && row.distance < 0.0 { &self.at_rest[0] } else { row };
+        counts.distance - self.leeway
     }
 }

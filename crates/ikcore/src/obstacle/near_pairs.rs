@@ -94,7 +94,8 @@ impl Scene<'_> {
             };
             if shape.has_lanes() && (0.0..f64::INFINITY).contains(&up_to) {
                 for group in groups.near_groups(&balls.lanes, shape, up_to) {
-                    for body in groups.near_bodies(group, &placement.frames, shape, up_to) {
+                    // Below zero once a body has been found that overlaps.
+                    for body in groups.near_bodies(group, &placement.frames, shape, up_to.max(0.0)) {
                         up_to = visit(body, up_to);
                     }
                 }

@@ -169,7 +169,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Adds `factor` times the derivative of a pair's distance by the joints. Returns the point of the link that is nearest to the
-    /// other body, and the normal there.
+    /// other body, and the unit normal there.
     pub(super) fn add_gradient(
         &self,
         pair: BodyPair,
@@ -177,7 +177,7 @@ impl<'a> Scene<'a> {
         factor: f64,
         gradient: &mut [f64],
     ) -> [Vector3<f64>; 2] {
-        let (point, normal) = match pair {
+        let (point, slope) = match pair {
             BodyPair::Obstacle { body, obstacle } => {
                 self.others.obstacles[obstacle].nearest_to_body(&self.placed(body, placement))
             }
@@ -187,10 +187,10 @@ impl<'a> Scene<'a> {
         for (frame, factor) in [(own, factor), (other, -factor)] {
             for (moved, motion) in self.robot.carriers(frame, below) {
                 let velocity = motion.velocity(&placement.frames[moved], &point.into());
-                gradient[motion.joint] += factor * normal.dot(&Vector3::from(velocity));
+                gradient[motion.joint] += factor * slope.dot(&Vector3::from(velocity));
             }
         }
-        [point, normal]
+        [point, slope.normalize()]
     }
 
     /// The nearest obstacle and body that no joint moves, such as a capsule about the axis of the first joint, if they are nearer

@@ -61,7 +61,8 @@ impl Shape {
         self.gap_to(body, enough).distance
     }
 
-    /// The point of a body that is nearest to the shape (m), and the unit normal there, out of the shape.
+    /// The point of a body that is nearest to the shape (m), and the derivative of the distance by the place of the body, as
+    /// [`nearest_to_capsule`](Self::nearest_to_capsule).
     pub(crate) fn nearest_to_body(&self, body: &PlacedBody) -> (Vector3<f64>, Vector3<f64>) {
         if body.solid.is_none() {
             return self.nearest_to_capsule(body.axis, body.radius);

@@ -5,16 +5,33 @@ use nalgebra::Vector3;
 use super::along_segment::LineSegment;
 use super::checked_shape::Shape;
 use super::segment_distance::between;
-use super::tangent::nearest_on_segment;
+use super::tangent::{Tangent, nearest_on_segment};
+
+/// So far from the deepest point of an axis (as a share of its length) other faces are looked for.
+const BESIDE: f64 = 1e-6;
+
+/// Normals with less than this in common are of opposite faces: either leads out.
+const LEAST_IN_COMMON: f64 = 0.05;
 
 impl Shape {
-    /// The point of a capsule that is nearest to the shape (m), and the unit normal there, out of the shape.
+    /// The point of a capsule that is nearest to the shape (m), and the derivative of the distance by the place of the capsule: the unit
+    /// normal there, out of the shape. Where faces on both sides of the deepest point of the axis are equally near, it is what their
+    /// normals have in common, and shorter.
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [a, b] = segment;
         let share = self.geometry().approach(segment, f64::INFINITY).share;
         let on_axis = a + share * (b - a);
-        let normal = self.geometry().tangent(&on_axis).normal;
-        (on_axis - radius * normal, normal)
+        let Tangent { value, normal } = self.geometry().tangent(&on_axis);
+        if value >= 0.0 || share <= 0.0 || share >= 1.0 {
+            return (on_axis - radius * normal, normal);
+        }
+        let beside = |share: f64| self.geometry().tangent(&(a + share * (b - a))).normal;
+        let [before, after] = [share - BESIDE, share + BESIDE].map(beside);
+        let [falls, rises] = [before, after].map(|normal| normal.dot(&(b - a)));
+        let common = before + (after - before) * (falls / (falls - rises));
+        let is_corner = falls < 0.0 && rises > 0.0 && common.norm() > LEAST_IN_COMMON;
+        let slope = if is_corner { common } else { normal };
+        (on_axis - radius * slope.normalize(), slope)
     }
 }
 

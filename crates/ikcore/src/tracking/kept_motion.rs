@@ -163,17 +163,19 @@ impl Around {
             dt,
             at_rest: self.near.rows(),
             leeway: ROOM,
+            only_parts: true,
         };
         self.space.is_kept_by(motion, end, &kept, &mut self.check)
     }
 
-    /// Sets the rows of a command that ends in `rest` after `stop_ticks`. Returns whether `wanted` breaks one.
+    /// Sets the rows of a command that ends in `rest` after `stop_ticks`; what overlaps there is wanted to part. Returns whether
+    /// `command` breaks one.
     fn set_rows(
         &self,
         wish: &Wish<'_>,
         (rest, stop_ticks): (&[f64], f64),
-        wanted: &[f64],
-        rows: &mut Vec<Row>,
+        command: &[f64],
+        RowMotion { rows, wanted, .. }: &mut RowMotion,
     ) -> bool {
         if self.near.rows().is_empty() {
             return false;
@@ -184,20 +186,26 @@ impl Around {
         for near in self.near.rows() {
             let [until_rest, while_leaving] = self.approach_of(near, stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
-            let wanted = missing + ROOM + while_leaving;
+            let whole = missing + ROOM + while_leaving;
             // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
             // velocity at once also comes nearer in time, so that it can give way.
-            let paced = if wanted > 0.0 || wish.limited.is_some() { pace * wanted } else { wanted };
-            rows.push(response.row(&near.gradient, paced.max(missing + LEAST_ROOM)));
+            let paced = if whole > 0.0 || wish.limited.is_some() { pace * whole } else { whole };
+            if near.distance < 0.0 {
+                // The deepest counts most: bodies on both sides of an obstacle want opposite ways out.
+                let weight = (near.distance / self.near.rows()[0].distance).powi(2);
+                wanted.push(response.row(&near.gradient.map(|entry| weight * entry), weight * paced));
+            } else {
+                rows.push(response.row(&near.gradient, paced.max(missing + LEAST_ROOM)));
+            }
         }
-        rows.iter().any(|row| dot(&row.gradient, wanted) < row.least)
+        rows.iter().chain(&*wanted).any(|row| dot(&row.gradient, command) < row.least)
     }
 
     /// Sets the rows of the place where the arm comes to rest after the command `q`: they bend on the way there.
     fn set_rows_after(&mut self, wish: &Wish<'_>, (rest, stop_ticks): (&[f64], f64), q: &[f64], rows: &mut Vec<Row>) {
         let slope = Response::new(wish, rest).slope;
         self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
-        for near in self.after.rows() {
+        for near in self.after.rows().iter().filter(|near| near.distance >= 0.0) {
             let [until_rest, _] = self.approach_of(near, wish.dt * stop_ticks);
             let mut row =
                 Row { gradient: [0.0; MAX_DOF], least: self.space.margin() + until_rest + LEAST_ROOM - near.distance };
@@ -300,7 +308,7 @@ impl KeptMotion {
         let wanted = q.clone();
         let mut may_stay = false;
         if self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted) {
-            may_stay = wish.limited.is_none() && self.rows.are_kept_at(&brake);
+            may_stay = wish.limited.is_none() && self.rows.are_kept_at(&brake) && self.rows.wanted.is_empty();
             self.step_beside_rows(wish, q);
         }
         let certified = self.certifies(wish, q) || {
@@ -358,9 +366,9 @@ impl KeptMotion {
     /// Finds the stop after the command `q`, beside no rows: these are for the command.
     fn finds_stop(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
         let Self { rows, next_stop, .. } = self;
-        let near = std::mem::take(&mut rows.rows);
+        let [near, wanted] = [&mut rows.rows, &mut rows.wanted].map(std::mem::take);
         let found = next_stop.find(wish, q, rows);
-        rows.rows = near;
+        (rows.rows, rows.wanted) = (near, wanted);
         found
     }
 
@@ -390,6 +398,7 @@ impl KeptMotion {
     /// beside the rows, beginning at `from`.
     pub fn clear_goal(&mut self, goal: &GoalToClear<'_>, from: &[f64], sample: &mut Point) {
         let Self { around: Some(around), rows, goal_is_held, .. } = self else { return };
+        rows.wanted.clear();
         *goal_is_held = !around.set_goal_rows(sample, &mut rows.rows);
         if !*goal_is_held {
             return;
@@ -413,20 +422,23 @@ impl KeptMotion {
         self.goal_is_held
     }
 
-    /// Sets the rows of the command. Returns whether `wanted` breaks one.
-    fn set_rows(&mut self, wish: &Wish<'_>, (rest, stop_ticks): (&[f64], f64), wanted: &[f64]) -> bool {
+    /// Sets the rows of the command. Returns whether `command` breaks one.
+    fn set_rows(&mut self, wish: &Wish<'_>, (rest, stop_ticks): (&[f64], f64), command: &[f64]) -> bool {
         let Self { around, rows, .. } = self;
         rows.rows.clear();
+        rows.wanted.clear();
         around.as_mut().is_some_and(|around| {
             around.find_near(wish, rest);
-            around.set_rows(wish, (rest, stop_ticks), wanted, &mut rows.rows)
+            around.set_rows(wish, (rest, stop_ticks), command, rows)
         })
     }
 
     /// Moves `q` to the command that keeps the rows and disturbs the task least.
     fn step_beside_rows(&mut self, wish: &Wish<'_>, q: &mut Point) {
-        // What the rule wants under acceleration limits is not the target itself, but on the way there.
-        let (towards, steps) = if wish.limited.is_some() { (Towards::Start, 1) } else { (Towards::Target, STEPS) };
+        // What the rule wants under acceleration limits is not the target itself, but on the way there. A target far away must not
+        // rival bodies that are to part.
+        let at_once = wish.limited.is_none() && self.rows.wanted.is_empty();
+        let (towards, steps) = if at_once { (Towards::Target, STEPS) } else { (Towards::Start, 1) };
         for _ in 0..steps {
             let start = q.clone();
             self.rows.write(&beside(wish, towards), &start, q);

@@ -15,6 +15,9 @@ use crate::task::TipAims;
 /// Damping of the joints beside the task, relative to the squared size of the Jacobian.
 const DAMPING: f64 = 1e-5;
 
+/// How much more what is wanted counts than the task does.
+const URGENT: f64 = 10.0;
+
 /// Newton steps onto the poses of pairs; they converge quadratically.
 const HOLDING_STEPS: usize = 5;
 
@@ -29,6 +32,9 @@ const ROWS_OF_PAIR: usize = ROWS;
 pub(super) struct RowMotion {
     /// Inequalities.
     pub rows: Vec<Row>,
+    /// Inequalities that cannot be kept at once, to be approached before the task; the first few count.
+    pub wanted: Vec<Row>,
+    wanted_columns: Vec<[f64; ROWS]>,
     /// Equations: pairs of tips stay where they are to be.
     held: Vec<Row>,
     solver: RowSolver,
@@ -65,6 +71,8 @@ impl RowMotion {
     pub fn with_room(n: usize, rows: usize) -> Self {
         Self {
             rows: Vec::with_capacity(rows),
+            wanted: Vec::with_capacity(rows),
+            wanted_columns: Vec::with_capacity(n),
             solver: RowSolver::with_room(n, rows + 2 * ROWS_OF_PAIR),
             ..Self::default()
         }
@@ -84,6 +92,7 @@ impl RowMotion {
     /// Writes the point after the step from `start`, where the linearization is, into `out`.
     fn write_linearized(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
         let n = start.len();
+        let short = self.set_wanted_columns(start);
         let tips = step.aim.and_then(TickAim::tips);
         self.held.clear();
         if let Some(aims) = tips.filter(|_| step.holds_pairs) {
@@ -97,11 +106,27 @@ impl RowMotion {
             Towards::Target => TaskRows { columns, residual },
             Towards::Start | Towards::Joints => TaskRows { columns, residual: &[0.0; ROWS] },
         });
-        let tasks: SmallVec<[TaskRows<'_>; 4]> = tasks.collect();
+        let mut tasks: SmallVec<[TaskRows<'_>; 5]> = tasks.collect();
+        if !self.wanted.is_empty() {
+            tasks.push(TaskRows { columns: &self.wanted_columns, residual: &short });
+        }
         let size: f64 = tasks.iter().map(|task| squared_size(&task.columns[..n])).sum();
         let lambda = if tasks.is_empty() { 1.0 } else { (DAMPING * size).max(f64::MIN_POSITIVE.sqrt()) };
         let step = RowStep { tasks: &tasks, lambda, start, lower, upper, rows: &self.rows, held: &self.held };
         self.solver.write(&step, out);
+    }
+
+    /// Sets the columns of what is wanted, as a task; returns by how much it falls short at `start`.
+    fn set_wanted_columns(&mut self, start: &[f64]) -> [f64; ROWS] {
+        let mut short = [0.0; ROWS];
+        self.wanted_columns.clear();
+        self.wanted_columns.resize(start.len(), [0.0; ROWS]);
+        for (k, row) in self.wanted.iter().take(ROWS).enumerate() {
+            short[k] = URGENT * (dot(&row.gradient, start) - row.least).min(0.0);
+            let columns = self.wanted_columns.iter_mut().zip(&row.gradient);
+            columns.for_each(|(column, entry)| column[k] = URGENT * entry);
+        }
+        short
     }
 
     /// Moves `q` to the poses of all pairs, by as little as they allow. Returns whether they are held there.

@@ -24,12 +24,15 @@ const PART: f64 = 0.01;
 /// down the gradient of the distances.
 pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Result<Option<Trajectory>> {
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
+    let mut near = space.near_rows();
+    space.find_rows(from, space.margin(), &mut near);
+    let kept = KeptDistance { at_rest: near.rows(), leeway: LEEWAY, ..KeptDistance::constant(space.margin()) };
     let mut motion: Option<Trajectory> = None;
     let mut at = 0;
     // Each line as far along the descent as it is certified to come no nearer.
     while at + 1 < descent.len() {
         let Some(next) =
-            (at + 1..descent.len()).rev().find(|next| comes_no_nearer(space, &descent[at], &descent[*next]))
+            (at + 1..descent.len()).rev().find(|next| comes_no_nearer(space, &kept, [&descent[at], &descent[*next]]))
         else {
             return Ok(None);
         };
@@ -43,18 +46,15 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
     Ok(motion)
 }
 
-/// Whether bodies that are nearer than the margin at `from` come no nearer on the straight line, and all others keep it.
-fn comes_no_nearer(space: &ClearSpace<'_>, from: &[f64], to: &[f64]) -> bool {
-    let mut near = space.near_rows();
-    space.find_rows(from, space.margin(), &mut near);
-    let kept = KeptDistance { at_rest: near.rows(), leeway: LEEWAY, ..KeptDistance::constant(space.margin()) };
+/// Whether all bodies keep these distances on the straight line.
+fn comes_no_nearer(space: &ClearSpace<'_>, kept: &KeptDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
     let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let parts = (longest / PART).ceil().max(1.0) as usize;
     let mut check = space.chord_check();
     let at = |i: usize| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + (to - from) * i as f64 / parts as f64).collect()
     };
-    (0..parts).all(|i| space.is_kept_by(&Edge { from: &at(i), to: &at(i + 1) }, 1.0, &kept, &mut check))
+    (0..parts).all(|i| space.is_kept_by(&Edge { from: &at(i), to: &at(i + 1) }, 1.0, kept, &mut check))
 }
 
 /// Configurations down the gradient of the shortfall, the last one of which keeps the margin and a little more.
