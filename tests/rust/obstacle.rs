@@ -350,7 +350,10 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
         for (j, slope) in slopes(&scene, &q, 1e-6, 1e-4) {
             // Halfway between opposite faces the depth does not change, and the gradient leads out past one of them.
             let is_halfway = found.contact.distance < 0.0 && slope.abs() < 1e-9;
-            assert!(is_halfway || (slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
+            assert!(
+                is_halfway || (slope - found.gradient[j]).abs() < 5e-3,
+                "case {case}, joint {j}: {slope} {found:?}"
+            );
         }
     }
     assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
