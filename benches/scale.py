@@ -108,6 +108,8 @@ def main() -> None:
     parser.add_argument("--rows", type=int, default=500_000)
     parser.add_argument("--out", type=Path)
     arguments = parser.parse_args()
+    if arguments.out is not None:
+        arguments.out.mkdir(parents=True, exist_ok=True)
     lines: list[list[object]] = [[*COLUMNS]]
     print(*COLUMNS, sep=", ")
 
