@@ -107,6 +107,22 @@ class Visitor:
         center = 0.5 * np.array([camera.image_width, camera.image_height])
         return np.asarray(center + focal * seen[:2] / seen[2])
 
+    def enter(self, number: float, happened: Callable[[], object]) -> None:
+        """Types a number into the first field that is shown, until it has had its effect.
+
+        What the server sent just before may arrive while the number is typed, and replace it.
+        """
+        field = self.page.locator("input[type=text]:visible").first
+
+        def typed() -> object:
+            if not happened():
+                field.fill(str(number))
+                field.press("Enter")
+                self.settle()
+            return happened()
+
+        self.until(typed)
+
     def drag(self, name: str, axis: int, distance: float) -> None:
         """Drags an arrow of a handle, such as "/target", by a distance along its axis (m)."""
         self.settle()  # until the handle is where the server put it
