@@ -19,7 +19,7 @@ const SCANNED: usize = 8;
 const VALUES_BEFORE_DOUBT: usize = 4;
 
 /// The search after both takes one of so many evaluations that the budget leaves.
-const SEARCHED_SHARE: usize = 200;
+const SEARCHED_SHARE: usize = 400;
 
 /// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
 const ROUNDED: f64 = 1e-6;

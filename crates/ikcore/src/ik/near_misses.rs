@@ -16,7 +16,10 @@ use crate::solver::{LevenbergMarquardt, Status};
 pub(super) const LOOKED: usize = 32;
 
 /// A branch farther outside its limits (rad, m) is no near miss.
-const NEAR: f64 = 0.4;
+const NEAR: f64 = 1.2;
+
+/// A branch less far outside is at a limit just where a solution is: it is descended from at once.
+const AT_A_SOLUTION: f64 = 1e-3;
 
 /// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
 const TOUCHING: f64 = 0.03;
@@ -28,7 +31,7 @@ const APART_FROM_LIMITS: f64 = 0.002;
 const HALVINGS: usize = 7;
 
 /// Most near misses that are refined or descended from.
-const DESCENTS: usize = 3;
+const DESCENTS: usize = 6;
 
 /// Most evaluations of a descent.
 const STEPS: usize = 15;
@@ -67,15 +70,19 @@ pub(super) fn from_near_misses(
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
     for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
         for miss in look.at(value) {
+            if miss.outside < AT_A_SOLUTION && let Some(solution) = descended(attempt, &miss) {
+                return Ok(solution);
+            }
             if miss.outside == 0.0 {
-                return descended(attempt, &miss).ok_or(Miss::Near);
+                return Err(Miss::Near);
             }
             misses.push(miss);
         }
     }
-    misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
+    let mut order: Vec<usize> = (0..misses.len()).collect();
+    order.sort_unstable_by(|a, b| misses[*a].outside.total_cmp(&misses[*b].outside).then(a.cmp(b)));
     let mut tried: SmallVec<[Point; DESCENTS]> = SmallVec::new();
-    for miss in misses {
+    for miss in order.iter().map(|place| misses[*place].clone()) {
         if tried.len() == DESCENTS {
             break;
         }
