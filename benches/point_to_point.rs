@@ -43,7 +43,7 @@ fn panda(c: &mut Criterion) {
     ] {
         let options = PointToPointOptions {
             limits: limits(&arm, None, 10.0),
-            obstacles: vec![obstacle.clone()],
+            obstacles: vec![obstacle.clone()].into(),
             ..Default::default()
         };
         group.bench_function(name, |b| {

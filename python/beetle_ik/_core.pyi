@@ -2785,6 +2785,12 @@ class Body:
         """Where it comes from: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
 
 @final
+class PreparedObstacles:
+    """The obstacles of a `Scene`, read and prepared once."""
+
+    def __new__(cls, obstacles: Sequence[Obstacle]) -> PreparedObstacles: ...
+
+@final
 class Moving:
     """An obstacle that moves, for a `Tracker`: where it is now, and its velocity.
 

@@ -3,6 +3,7 @@
 import copy
 import json
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -199,6 +200,36 @@ world:
           triangles: [{vertex_indices: [0, 1, 2]}]
       mesh_poses: [{position: [0, 0, 2], orientation: [0, 0, 0, 1]}]
 """
+
+
+@pytest.mark.parametrize("many", [1, 40])
+def test_a_scene_and_the_list_of_its_obstacles_are_the_same_to_every_call(many: int) -> None:
+    robot = bik.Robot.named("panda").with_capsules(radius=0.05)
+    boxes = [bik.obstacles.Box((0.5 + 0.01 * i, 0.4, 0.3 + 0.02 * i), (0.1, 0.1, 0.01)) for i in range(many)]
+    scene = bik.Scene(boxes)
+    q = np.array([0.2, -0.4, 0.1, -2.0, 0.0, 1.8, 0.6])
+    calls: list[Callable[[Any], Any]] = [
+        lambda obstacles: bik.solve(robot, robot.fk(q), obstacles=obstacles).q,
+        lambda obstacles: bik.solve_all(robot, robot.fk(q), obstacles=obstacles).q,
+        lambda obstacles: bik.solve_batch(robot, robot.fk(np.array([q, -q])), obstacles=obstacles).q,
+        lambda obstacles: bik.obstacles.clearance(robot, q, obstacles),
+        lambda obstacles: bik.obstacles.nearest(robot, q, obstacles),
+        lambda obstacles: bik.Tracker(robot, q, 0.01, obstacles=obstacles).obstacles,
+        lambda obstacles: bik.plan_point_to_point(robot, q, q + 0.1, obstacles=obstacles).obstacles,
+    ]
+    for call in calls:
+        for _ in range(2):
+            np.testing.assert_array_equal(call(scene), call(boxes))
+            np.testing.assert_array_equal(call(tuple(boxes)), call(boxes))
+
+
+def test_a_scene_that_was_used_is_copied_and_pickled() -> None:
+    scene = bik.Scene(obstacle for obstacle in OBSTACLES if not isinstance(obstacle, bik.obstacles.Ellipse))
+    robot = bik.Robot.named("panda").with_capsules(radius=0.05)
+    before = bik.obstacles.clearance(robot, np.zeros(7), scene)
+    for copied in (copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+        assert copied == scene
+        assert bik.obstacles.clearance(robot, np.zeros(7), copied) == before
 
 
 def moveit(tmp_path: Path, text: str, **options: Any) -> bik.Scene:

@@ -58,7 +58,7 @@ fn a_step_among_obstacles_allocates_nothing() {
         let center = std::array::from_fn(|k| tip[k] + away[k]);
         Shape::cuboid(center, [0.1, 0.2, 0.2], None).unwrap()
     });
-    let surroundings = Surroundings { obstacles: Some(boxes.to_vec()), margin: Some(0.01), self_collision: None };
+    let surroundings = Surroundings { obstacles: Some((&boxes).into()), margin: Some(0.01), self_collision: None };
     count_allocations(&arm, surroundings, TICKS / 20);
 }
 

@@ -46,7 +46,7 @@ fn swing(robot: &Robot) -> TipPath {
 }
 
 fn among(obstacles: Vec<Shape>) -> Surroundings {
-    Surroundings { obstacles: Some(obstacles), margin: Some(MARGIN), self_collision: None }
+    Surroundings { obstacles: Some(obstacles.into()), margin: Some(MARGIN), self_collision: None }
 }
 
 fn options(robot: &Robot, obstacles: Vec<Shape>) -> AlongPathOptions {

@@ -39,7 +39,7 @@ fn rows(pose: &Pose) -> [f64; 16] {
 }
 
 fn among(obstacles: &[Shape]) -> SolveOptions {
-    let surroundings = Surroundings { obstacles: Some(obstacles.to_vec()), margin: Some(MARGIN), self_collision: None };
+    let surroundings = Surroundings { obstacles: Some(obstacles.into()), margin: Some(MARGIN), self_collision: None };
     SolveOptions { surroundings, ..SolveOptions::default() }
 }
 
@@ -286,7 +286,7 @@ fn a_margin_larger_than_the_free_space_ends_within_its_budget() {
         let robot = arm(name);
         let (_, target) = cluttered(&robot, &mut rng::stream(15, 0));
         let obstacles = vec![Shape::sphere([1.5, 0.0, 0.5], 0.05).unwrap()];
-        let surroundings = Surroundings { obstacles: Some(obstacles), margin: Some(3.0), self_collision: None };
+        let surroundings = Surroundings { obstacles: Some(obstacles.into()), margin: Some(3.0), self_collision: None };
         let stop = Stop { max_evaluations: 5_000, ..Stop::default() };
         let found = solved(&robot, &target, &SolveOptions { surroundings, stop, ..SolveOptions::default() });
         assert_eq!(found.status, Status::InCollision, "{}", found.message());
@@ -303,7 +303,7 @@ fn wrong_surroundings_are_refused() {
         let options = SolveOptions { surroundings, ..SolveOptions::default() };
         solve(robot, &target, &options, &mut Unattended).unwrap_err().to_string()
     };
-    let given = |margin| Surroundings { obstacles: Some(vec![]), margin, self_collision: None };
+    let given = |margin| Surroundings { obstacles: Some(vec![].into()), margin, self_collision: None };
     assert_eq!(error(&robot, given(Some(-0.1))), "margin must be zero or more and finite, got -0.1");
     assert_eq!(
         error(&robot, Surroundings { margin: Some(0.1), ..Surroundings::default() }),

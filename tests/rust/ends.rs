@@ -88,7 +88,7 @@ fn the_cheapest_of_several_poses_is_taken() {
 fn ends_that_cannot_be_reached_are_passed_over_unless_all_are() {
     let robot = panda();
     let ball = Shape::sphere([0.5, 0.0, 0.3], 0.1).unwrap();
-    let among = PointToPointOptions { obstacles: vec![ball], ..options(&robot) };
+    let among = PointToPointOptions { obstacles: vec![ball].into(), ..options(&robot) };
     let far = |x: f64| Endpoint::Target(Target::Position([x, 0.0, 0.0]));
     let beyond = Endpoint::Configuration(vec![9.0; 7]);
     let hitting = Endpoint::Configuration(vec![0.0, 0.9, 0.0, -1.6, 0.0, 2.4, 0.8]);
@@ -166,7 +166,8 @@ fn a_task_leaves_a_part_of_the_end_to_the_planner() {
     for obstacles in [vec![], vec![Shape::sphere([0.6, 0.3, 0.5], 0.05).unwrap()]] {
         for (kind, tool) in [(pointing, None), (TaskKind::Position, None), (pointing, Some(tool))] {
             let task = Task::new(kind, None, None, tool).unwrap();
-            let options = PointToPointOptions { task: Some(task), obstacles: obstacles.clone(), ..options(&robot) };
+            let options =
+                PointToPointOptions { task: Some(task), obstacles: obstacles.clone().into(), ..options(&robot) };
             let plan = planned(&robot, &ends, &options);
             let held = task.robot(&robot).unwrap().unwrap_or_else(|| robot.clone());
             let Frame { origin, axes } = held.tip(&last_of(&plan));
@@ -188,7 +189,7 @@ fn an_end_is_anywhere_in_a_region() {
     let task = height.within(Region::new(lower, upper).unwrap()).unwrap();
     let ends = [Endpoint::Target(Target::Position([0.0, 0.0, 0.3]))];
     for obstacles in [vec![], vec![Shape::sphere([0.6, 0.3, 0.5], 0.05).unwrap()]] {
-        let options = PointToPointOptions { task: Some(task), obstacles, ..options(&robot) };
+        let options = PointToPointOptions { task: Some(task), obstacles: obstacles.into(), ..options(&robot) };
         let tip = robot.tip_position(&last_of(&planned(&robot, &ends, &options)));
         assert!((0..3).all(|k| lower[k] < tip[k] && tip[k] < upper[k]), "{tip:?}");
         assert!((tip[2] - 0.3).abs() < 2e-6, "{tip:?}");

@@ -182,7 +182,7 @@ fn it_drives_round_an_obstacle() {
     let ready = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
     let [start, end] = [-1.5, 1.5].map(|x| [&[x, 0.0, 0.0], &ready[..]].concat());
     let pillar = vec![Shape::cylinder([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 0.3, 2.0).unwrap()];
-    let options = PointToPointOptions { obstacles: pillar, ..PointToPointOptions::default() };
+    let options = PointToPointOptions { obstacles: pillar.into(), ..PointToPointOptions::default() };
     let plan = plan_point_to_point(
         &robot,
         &Endpoint::Configuration(start),

@@ -504,3 +504,30 @@ fn bodies_that_no_joint_moves_count_against_obstacles() {
         assert_eq!(smallest.contact, found.contact);
     }
 }
+
+#[test]
+fn of_many_obstacles_the_nearest_is_found_and_each_counts() {
+    let mut rng = rng::stream(30, 0);
+    let mut nearest_to_base = 0;
+    for case in 0..40 {
+        let robot = with_random_bodies("panda", &mut rng);
+        let q = robot.random_configurations(1, &mut rng).unwrap();
+        // Far fewer are near than there are; in some cases none is.
+        let (count, spread) = (24 + 10 * case, if case % 4 == 0 { 6.0 } else { 2.0 });
+        let balls: Vec<Shape> = (0..count)
+            .map(|_| Shape::sphere(point(&mut rng, spread), rng.uniform_in(0.01, 0.1)).unwrap())
+            .collect();
+        let scene = Scene::new(&robot, &balls).unwrap().without_self_collision();
+        let alone = |ball: &Shape| Scene::new(&robot, std::slice::from_ref(ball)).unwrap().without_self_collision();
+        let found = scene.nearest(&q).unwrap().unwrap();
+        let one_by_one: Vec<f64> = balls.iter().map(|ball| alone(ball).clearance(&q).unwrap()).collect();
+        let least = one_by_one.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!((found.distance - least).abs() < 1e-9, "case {case}: {found:?}, one by one {least}");
+        for margin in [0.0, 0.02, 0.5] {
+            let tied = (least - margin).abs() < 1e-6;
+            assert!(tied || scene.is_clear(&q, margin) == (least >= margin), "case {case}, margin {margin}: {least}");
+        }
+        nearest_to_base += usize::from(found.link == "base");
+    }
+    assert!(nearest_to_base > 0);
+}

@@ -32,7 +32,7 @@ fn problems(robot: &Robot) -> Vec<PlanProblem> {
     let ball = Shape::sphere([0.55, 0.2, 0.5], 0.1).unwrap();
     let options = Arc::new(PointToPointOptions {
         limits: Some(limits),
-        obstacles: vec![ball],
+        obstacles: vec![ball].into(),
         seed: 3,
         ..PointToPointOptions::default()
     });

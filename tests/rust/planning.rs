@@ -140,7 +140,10 @@ fn obstacle_is_passed_at_its_margin() {
         let objective = Cost::TipTravel;
         let margin = Some(0.005);
         let method = by_evolution();
-        plan(4, PointToPointOptions { objective, obstacles, margin, seed, method, ..Default::default() })
+        plan(
+            4,
+            PointToPointOptions { objective, obstacles: obstacles.into(), margin, seed, method, ..Default::default() },
+        )
     };
     let mean = mean(3, |seed| {
         let plan = plan(seed);

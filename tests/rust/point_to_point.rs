@@ -110,7 +110,7 @@ fn arms_find_their_way_around_a_box() {
             let ends = [end];
             let options = PointToPointOptions {
                 limits: Some(limits(&robot, None, 10.0)),
-                obstacles: obstacles.clone(),
+                obstacles: obstacles.clone().into(),
                 ..Default::default()
             };
             let plan =
@@ -146,7 +146,7 @@ fn a_way_around_a_wall_is_found_and_smooth() {
     for seed in 0..5 {
         let options = PointToPointOptions {
             limits: Some(limits(&robot, None, 10.0)),
-            obstacles: obstacles.clone(),
+            obstacles: obstacles.clone().into(),
             seed,
             ..Default::default()
         };
@@ -181,7 +181,14 @@ fn a_larger_budget_finds_no_worse_plan() {
             let plan = |stop: Option<Stop>| {
                 let limits = Some(limits(&robot, None, 10.0));
                 let obstacles = obstacles.clone();
-                let options = PointToPointOptions { limits, obstacles, seed, objective, stop, ..Default::default() };
+                let options = PointToPointOptions {
+                    limits,
+                    obstacles: obstacles.into(),
+                    seed,
+                    objective,
+                    stop,
+                    ..Default::default()
+                };
                 plan_point_to_point(&robot, &side(-0.7), &[side(0.7)], &options, &mut Unattended).unwrap()
             };
             let (first, better) = (plan(None), plan(Some(Stop { max_evaluations: 100_000, ..Stop::default() })));
@@ -201,7 +208,7 @@ fn cut_off(end: Endpoint, stop: Stop) -> Plan {
     let within = limits(&robot, Some(1.0), 10.0).replace(Field::Lower, constant(-2.0)).unwrap();
     let options = PointToPointOptions {
         limits: Some(within.replace(Field::Upper, constant(2.0)).unwrap()),
-        obstacles: vec![Shape::cuboid([1.2, 0.0, 0.0], [2.0, 0.02, 1.0], None).unwrap()],
+        obstacles: vec![Shape::cuboid([1.2, 0.0, 0.0], [2.0, 0.02, 1.0], None).unwrap()].into(),
         stop: Some(stop),
         ..Default::default()
     };
@@ -267,7 +274,7 @@ fn plans_reported_free_are_free_at_every_sample() {
         let [start, end] = [&ends[..n], &ends[n..]].map(|q| Endpoint::Configuration(q.to_vec()));
         let options = PointToPointOptions {
             limits: Some(limits(robot, Some(1.0), 5.0)),
-            obstacles: obstacles.clone(),
+            obstacles: obstacles.clone().into(),
             stop: Some(Stop { max_evaluations: 4000, ..Stop::default() }),
             ..Default::default()
         };
@@ -307,10 +314,11 @@ fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
         };
         let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
         let plan =
-            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![]), &mut Unattended).unwrap();
+            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![].into()), &mut Unattended)
+                .unwrap();
         assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
         let ball = Shape::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
-        let says = refused(&arm, &start, &end, options(vec![ball]));
+        let says = refused(&arm, &start, &end, options(vec![ball].into()));
         assert!(says.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link"), "{says}");
     }
 }
@@ -325,7 +333,7 @@ fn mistakes_are_named() {
     let thin = arm.with_capsules_along_links(0.01).unwrap();
     let (here, there) = (Endpoint::Configuration(vec![0.0, 0.0]), Endpoint::Configuration(vec![1.0, 0.0]));
     let with = |obstacles: Vec<Shape>, arm: &Robot| PointToPointOptions {
-        obstacles,
+        obstacles: obstacles.into(),
         limits: Some(limits(arm, Some(1.0), 1.0)),
         ..Default::default()
     };
@@ -385,7 +393,7 @@ fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
     let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.01).unwrap();
     let options = PointToPointOptions {
         limits: Some(limits(&robot, Some(1.0), 5.0)),
-        obstacles: vec![Shape::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()],
+        obstacles: vec![Shape::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()].into(),
         objective,
         stop,
         ..Default::default()

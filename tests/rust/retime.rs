@@ -44,7 +44,7 @@ fn pairs_around(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<[Vec<f6
 
 fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limits: Limits) -> Plan {
     let options =
-        PointToPointOptions { limits: Some(limits), obstacles: obstacles.to_vec(), ..PointToPointOptions::default() };
+        PointToPointOptions { limits: Some(limits), obstacles: obstacles.into(), ..PointToPointOptions::default() };
     let [start, end] = [start, end].map(|q| Endpoint::Configuration(q.clone()));
     plan_point_to_point(robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
@@ -171,7 +171,7 @@ fn a_plan_can_begin_at_a_velocity() {
     for [start, end] in &pairs_around(&robot, &obstacles, 10) {
         let options = PointToPointOptions {
             limits: Some(limits.clone()),
-            obstacles: obstacles.clone(),
+            obstacles: obstacles.clone().into(),
             start_velocity: Some(velocity.clone()),
             ..PointToPointOptions::default()
         };

@@ -80,7 +80,7 @@ fn a_link_that_may_touch_an_obstacle_is_not_kept_from_it() {
             seen[usize::from(clear)] += 1;
         }
         let given = |obstacles: &[Shape]| Surroundings {
-            obstacles: Some(obstacles.to_vec()),
+            obstacles: Some(obstacles.into()),
             margin: Some(0.0),
             self_collision: Some(false),
         };
@@ -122,7 +122,7 @@ fn four_configurations_side_by_side_are_judged_as_one() {
 fn on_floor(robot: &Robot, height: f64, touch: &[&str]) -> Result<ikcore::ik::Solution> {
     let target = Target::Pose(Frame::from(&robot.fk(&READY).unwrap()));
     let floor = Shape::half_space([0.0, 0.0, 1.0], height).unwrap().with_touch(names(touch));
-    let surroundings = Surroundings { obstacles: Some(vec![floor]), ..Surroundings::default() };
+    let surroundings = Surroundings { obstacles: Some(vec![floor].into()), ..Surroundings::default() };
     solve(robot, &target, &SolveOptions { surroundings, ..SolveOptions::default() }, &mut Unattended)
 }
 
@@ -153,7 +153,7 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
     let to: Vec<f64> = READY.iter().map(|x| x + 0.3).collect();
     let plan = |touch: &[&str]| {
         let floor = Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap().with_touch(names(touch));
-        let options = PointToPointOptions { obstacles: vec![floor], ..PointToPointOptions::default() };
+        let options = PointToPointOptions { obstacles: vec![floor].into(), ..PointToPointOptions::default() };
         let [start, end] = [READY.to_vec(), to.clone()].map(Endpoint::Configuration);
         plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended)
     };

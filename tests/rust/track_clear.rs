@@ -24,7 +24,7 @@ fn panda() -> Robot {
 }
 
 fn surroundings(obstacles: Vec<Shape>) -> Surroundings {
-    Surroundings { obstacles: Some(obstacles), margin: Some(MARGIN), self_collision: None }
+    Surroundings { obstacles: Some(obstacles.into()), margin: Some(MARGIN), self_collision: None }
 }
 
 /// Shapes of several kinds that are clear of the start.
@@ -153,7 +153,7 @@ fn a_redundant_arm_keeps_its_tip_on_the_path_while_its_elbow_gives_way() {
         for tick in 0..1500 {
             let y = -0.17 + speed * 0.002 * f64::from(tick);
             let post = Shape::cuboid([-0.12, y, 0.64], [0.1, 0.02, 0.1], None).unwrap();
-            session.set_obstacles(Some(vec![post]), vec![[0.0, speed, 0.0]]).unwrap();
+            session.set_obstacles(Some(vec![post].into()), vec![[0.0, speed, 0.0]]).unwrap();
             let step = session.step(&target(&robot, 0, 0.002, &[[0.0; 3]]), &mut Unattended).unwrap();
             worst = worst.max(step.error.position);
             assert_ne!(step.status, Status::InCollision, "tick {tick}");
@@ -239,7 +239,7 @@ fn an_arm_gets_out_of_the_way_of_a_sphere_no_faster_than_said() {
             for tick in 0..1000 {
                 let center = [x, 0.7 - speed * 0.004 * f64::from(tick), 0.45];
                 let sphere = vec![Shape::sphere(center, 0.1).unwrap()];
-                session.set_obstacles(Some(sphere.clone()), vec![[0.0, -speed, 0.0]]).unwrap();
+                session.set_obstacles(Some(sphere.clone().into()), vec![[0.0, -speed, 0.0]]).unwrap();
                 session.step(&target(&robot, 0, 0.004, &[[0.0; 3]]), &mut Unattended).unwrap();
                 let clear = Scene::new(&robot, &sphere).unwrap().clearance(session.q()).unwrap();
                 assert!(clear >= 1e-3, "x {x}, tick {tick}: {clear}");
@@ -296,9 +296,9 @@ fn velocities_of_obstacles_are_checked() {
     let robot = panda();
     let mut session = Session::new(&robot, &START, 0.01, &TrackOptions::default()).unwrap();
     let sphere = vec![Shape::sphere([0.5, 0.5, 0.5], 0.1).unwrap()];
-    let error = session.set_obstacles(Some(sphere.clone()), vec![[0.0; 3]; 2]).unwrap_err().to_string();
+    let error = session.set_obstacles(Some(sphere.clone().into()), vec![[0.0; 3]; 2]).unwrap_err().to_string();
     assert!(error.contains("velocities") && error.contains('2'), "{error}");
-    let error = session.set_obstacles(Some(sphere), vec![[f64::NAN, 0.0, 0.0]]).unwrap_err().to_string();
+    let error = session.set_obstacles(Some(sphere.into()), vec![[f64::NAN, 0.0, 0.0]]).unwrap_err().to_string();
     assert!(error.contains("velocities"), "{error}");
     assert!(session.space().is_none());
 }

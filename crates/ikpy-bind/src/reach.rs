@@ -14,7 +14,7 @@ use crate::convert::{
 };
 use crate::error::{invalid, raise};
 use crate::monitor::{long_call, watched};
-use crate::obstacle::Obstacles;
+use crate::obstacle::GivenObstacles;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::task::read_task;
@@ -189,7 +189,7 @@ fn surroundings(
     margin: Option<f64>,
     self_collision: Option<bool>,
 ) -> PyResult<Surroundings> {
-    let obstacles = obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?;
+    let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
     Ok(Surroundings { obstacles, margin, self_collision })
 }
 

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::convert::count;
 use crate::error::raise;
 use crate::goal::read_goals;
-use crate::obstacle::Obstacles;
+use crate::obstacle::GivenObstacles;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
 use crate::tips::{Asked, TaskArguments, ToleranceArgument};
@@ -45,7 +45,7 @@ impl SolveArguments<'_, '_> {
             start,
             limits,
             surroundings: Surroundings {
-                obstacles: self.obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?,
+                obstacles: self.obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?,
                 margin: self.margin,
                 self_collision: self.self_collision,
             },

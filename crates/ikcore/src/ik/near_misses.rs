@@ -70,7 +70,9 @@ pub(super) fn from_near_misses(
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
     for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
         for miss in look.at(value) {
-            if miss.outside < AT_A_SOLUTION && let Some(solution) = descended(attempt, &miss) {
+            if miss.outside < AT_A_SOLUTION
+                && let Some(solution) = descended(attempt, &miss)
+            {
                 return Ok(solution);
             }
             if miss.outside == 0.0 {

@@ -1,8 +1,8 @@
 //! Which bodies may touch which obstacles.
 
+use super::obstacles::Obstacles;
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::{Carried, Robot};
-use crate::shape::Shape;
 use crate::wording::listed;
 
 /// Pairs of an obstacle and a body that are not compared, such as a floor and the base that stands on it.
@@ -17,9 +17,10 @@ impl AllowedContacts {
     ///
     /// # Errors
     /// [`Error::InvalidObstacle`] for the name of no link, or of a link without a body.
-    pub fn new(robot: &Robot, bodies: &[Carried], obstacles: &[Shape]) -> Result<Self> {
+    pub fn new(robot: &Robot, bodies: &[Carried], obstacles: &Obstacles) -> Result<Self> {
         let mut pairs = vec![];
-        for (obstacle, shape) in obstacles.iter().enumerate() {
+        for &obstacle in obstacles.touched() {
+            let shape = &obstacles[obstacle];
             for link in shape.touch() {
                 let before = pairs.len();
                 let of_link = (0..bodies.len()).filter(|body| bodies[*body].link == *link);

@@ -3,17 +3,16 @@
 //! Bodies of one moving element form a group with a ball around it. Most balls are clear of most obstacles; only bodies of
 //! the others are tested one by one.
 
-use std::borrow::Cow;
-
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::allowed_contacts::AllowedContacts;
+use super::obstacles::Obstacles;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
 use crate::robot::Carried;
-use crate::shape::{BodyBlock, BoundingBall, PlacedBody, Shape, ShapeIndex, clear_of_each_other};
+use crate::shape::{BodyBlock, PlacedBody, Shape, clear_of_each_other};
 
 /// The bodies of a robot by moving element, and the pairs of them that must not touch.
 #[derive(Debug, Clone)]
@@ -28,63 +27,13 @@ pub(super) struct BodyGroups {
 
 /// What the bodies are to keep clear of.
 #[derive(Debug, Clone)]
-pub(super) struct Others<'a> {
-    pub obstacles: Cow<'a, [Shape]>,
+pub(super) struct Others {
+    pub obstacles: Obstacles,
     /// Bodies that may touch some of them.
     pub allowed: AllowedContacts,
-    /// Balls around them: centre and radius, infinite for a half-space.
-    balls: Vec<(Vector3<f64>, f64)>,
-    /// Finds the obstacles near a ball, if there are many.
-    index: Option<ShapeIndex>,
     /// The bodies of the robot itself, in the pairs that must not touch.
     pub itself: bool,
 }
-
-impl<'a> Others<'a> {
-    /// `obstacles` but for the contacts that are `allowed`, and the robot itself.
-    pub fn new(obstacles: &'a [Shape], allowed: AllowedContacts) -> Self {
-        let ball = |shape: &Shape| {
-            let BoundingBall { center, radius } = shape.bounding_ball();
-            (center.into(), radius)
-        };
-        let balls = obstacles.iter().map(ball).collect();
-        let index = ShapeIndex::of_many(obstacles);
-        Self { obstacles: Cow::Borrowed(obstacles), allowed, balls, index, itself: true }
-    }
-
-    /// The same with obstacles of its own.
-    pub fn into_owned(self) -> Others<'static> {
-        let Self { obstacles, allowed, balls, index, itself } = self;
-        Others { obstacles: Cow::Owned(obstacles.into_owned()), allowed, balls, index, itself }
-    }
-
-    /// Calls `visit` with each obstacle that may be within `radius` (m) of `center`.
-    pub fn each_near(&self, center: &Vector3<f64>, radius: f64, mut visit: impl FnMut(usize)) {
-        match &self.index {
-            Some(index) => index.near_ball(center, radius, visit),
-            None => {
-                for (obstacle, (middle, own)) in self.balls.iter().enumerate() {
-                    if (middle - center).norm() <= radius + own + ROUNDING {
-                        visit(obstacle);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Centre and radius (m) of a ball around an obstacle.
-    pub fn ball(&self, obstacle: usize) -> (Vector3<f64>, f64) {
-        self.balls[obstacle]
-    }
-
-    /// Whether one configuration at a time is faster: obstacles are then found by a tree.
-    pub fn has_index(&self) -> bool {
-        self.index.is_some()
-    }
-}
-
-/// What the distance of two balls may lose to rounding (m).
-const ROUNDING: f64 = 1e-9;
 
 /// All bodies of one moving element, in its frame.
 #[derive(Debug, Clone)]
@@ -166,7 +115,7 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], others: &Others<'_>, margin: f64) -> bool {
+    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], others: &Others, margin: f64) -> bool {
         are_clear(self, carried, frames, others, margin)
     }
 
@@ -176,7 +125,7 @@ impl BodyGroups {
     }
 
     /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
-    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], others: &Others<'_>, margin: f64) -> F64x4 {
+    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], others: &Others, margin: f64) -> F64x4 {
         four_are_clear(self, frames, others, margin)
     }
 
@@ -229,7 +178,7 @@ impl BodyGroups {
     }
 
     /// The pairs of groups that must keep clear.
-    fn pairs_of(&self, others: &Others<'_>) -> &[GroupPair] {
+    fn pairs_of(&self, others: &Others) -> &[GroupPair] {
         if others.itself { &self.pairs } else { &[] }
     }
 
@@ -242,7 +191,7 @@ impl BodyGroups {
         clear: &F64x4,
         carried: &[Carried],
         frames: &[Frame],
-        (others, margin): (&Others<'_>, f64),
+        (others, margin): (&Others, f64),
     ) -> bool {
         let may_touch = |lane: usize| others.allowed.allow(self.groups[group].body(block, lane), obstacle);
         let near = (0..4).filter(|lane| clear.0[*lane] == 0.0 && !may_touch(*lane));
@@ -377,10 +326,10 @@ by_instructions! {
         all: &BodyGroups,
         carried: &[Carried],
         frames: &[Frame],
-        others: &Others<'_>,
+        others: &Others,
         margin: f64,
     ) -> bool {
-        let obstacles = &*others.obstacles;
+        let obstacles = &others.obstacles;
         let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -390,7 +339,7 @@ by_instructions! {
         // For each group the obstacles that its ball is near to.
         let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
         let moving = |group: usize| all.groups[group].stages > 0;
-        match &others.index {
+        match obstacles.index() {
             Some(index) => {
                 for group in (0..all.groups.len()).filter(|group| moving(*group)) {
                     let (center, radius) = ball(group);
@@ -474,8 +423,8 @@ by_instructions! {
 }
 
 by_instructions! {
-    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], others: &Others<'_>, margin: f64) -> F64x4 {
-        let obstacles = &*others.obstacles;
+    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], others: &Others, margin: f64) -> F64x4 {
+        let obstacles = &others.obstacles;
         let mut clear = F64x4::splat(1.0);
         let at = |group: &Group| frames[group.stages];
         // Lanes that are not clear no longer matter.

@@ -160,7 +160,7 @@ impl ChordCheck {
             let reach = radius + beside;
             let bodies = groups.bodies_of(group);
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from).norm());
-            scene.others.each_near(&middle, half + reach + most, |obstacle| {
+            scene.others.obstacles.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
                 if scene.others.obstacles[obstacle].distance_to_segment(&[from, to], needed + reach) < needed + reach {
                     let tested = bodies.iter().filter(|body| !scene.others.allowed.allow(**body, obstacle));

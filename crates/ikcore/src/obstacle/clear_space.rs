@@ -9,7 +9,6 @@ use super::kept_distance::KeptDistance;
 use super::near_rows::NearRows;
 use super::scene::Scene;
 use crate::robot::Robot;
-use crate::shape::Shape;
 
 /// A contact that no motion of the arm alone ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +58,7 @@ impl<'a> ClearSpace<'a> {
 
     /// The first obstacle that is a mesh which is not closed.
     pub fn first_open_mesh(&self) -> Option<usize> {
-        self.scene.others.obstacles.iter().position(Shape::is_open_mesh)
+        self.scene.others.obstacles.first_open_mesh()
     }
 
     /// The nearest two bodies at `q` (n,); `None` if nothing can touch.

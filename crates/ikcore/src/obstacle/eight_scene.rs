@@ -79,7 +79,7 @@ impl<'a> EightScene<'a> {
         let pairs = pairs.collect();
         let levers = groups.iter().map(|(_, levers)| levers.sum()).fold(0.0, f64::max);
         let obstacles = (0..scene.others.obstacles.len()).map(|obstacle| {
-            let (center, radius) = scene.others.ball(obstacle);
+            let (center, radius) = scene.others.obstacles.ball(obstacle);
             if radius.is_finite() { center.norm() + radius } else { 0.0 }
         });
         Self {

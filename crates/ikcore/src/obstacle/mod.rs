@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `obstacles` | what to keep clear of, prepared once |
 //! | `placement` | where the bodies of a robot are at a configuration |
 //! | `allowed_contacts` | which bodies may touch which obstacles |
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
@@ -33,6 +34,7 @@ mod line_check;
 mod link_displacement;
 mod near_pairs;
 mod near_rows;
+mod obstacles;
 mod placement;
 mod scene;
 mod surroundings;
@@ -46,6 +48,7 @@ pub use joint_motion::{Edge, JointMotion};
 pub(crate) use kept_distance::KeptDistance;
 pub use line_check::LineCheck;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
+pub use obstacles::Obstacles;
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;

@@ -11,6 +11,9 @@ use super::scene::Scene;
 /// Distances that differ by less (m) are equal but for rounding.
 const EQUALLY_NEAR: f64 = 1e-9;
 
+/// Distances (m) within which the obstacle nearest to bodies at rest is looked for, one after the other.
+const LOOKED_WITHIN: [f64; 3] = [0.1, 1.0, f64::INFINITY];
+
 /// A ball around a group, or an obstacle.
 type Ball = (Vector3<f64>, f64);
 
@@ -23,7 +26,7 @@ struct GroupBalls {
 impl Scene<'_> {
     /// The nearest pair, and its distance (m); of those that are equally near the first.
     pub(super) fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
-        let mut least = self.fixed.map_or(f64::INFINITY, |(distance, _)| distance);
+        let mut least = self.fixed().map_or(f64::INFINITY, |(distance, _)| distance);
         let mut nearest: SmallVec<[(f64, BodyPair); 8]> = SmallVec::new();
         self.for_each_near(least + EQUALLY_NEAR, placement, |pair| {
             let distance = self.distance(pair, placement, least + EQUALLY_NEAR);
@@ -34,9 +37,39 @@ impl Scene<'_> {
             least + EQUALLY_NEAR
         });
         let equal = |distance: f64| distance < least + EQUALLY_NEAR;
-        let fixed = self.fixed.filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
+        let fixed = self.fixed().filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
         let moving = nearest.into_iter().filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
         fixed.or_else(|| moving.min_by_key(BodyPair::order)).map(|pair| (least, pair))
+    }
+
+    /// The nearest pair of an obstacle and a body that no joint moves.
+    pub(super) fn nearest_fixed(&self) -> Option<(f64, BodyPair)> {
+        // What is found within a reach is the nearest of all if it is no farther than that.
+        let found =
+            LOOKED_WITHIN.iter().map(|reach| self.nearest_fixed_within(*reach).filter(|(least, _)| least <= reach));
+        found.flatten().next()
+    }
+
+    /// The same where it is nearer than `reach` (m); otherwise any, or none.
+    fn nearest_fixed_within(&self, reach: f64) -> Option<(f64, BodyPair)> {
+        let (rest, obstacles) = (&self.bodies.rest, &self.others.obstacles);
+        let mut nearest = (f64::INFINITY, None);
+        for (body, carried) in self.bodies.carried.iter().enumerate().filter(|(_, carried)| carried.stages == 0) {
+            let [from, to] = rest.segments[body];
+            let (center, radius) = (0.5 * (from + to), 0.5 * (to - from).norm() + carried.reach);
+            obstacles.each_near(&center, radius + reach, |obstacle| {
+                let is_beyond = unless_inside(gap((center, radius), obstacles.ball(obstacle))) > nearest.0;
+                if is_beyond || self.others.allowed.allow(body, obstacle) {
+                    return;
+                }
+                let pair = BodyPair::Obstacle { body, obstacle };
+                let distance = self.distance(pair, rest, nearest.0);
+                if distance < nearest.0 {
+                    nearest = (distance, Some(pair));
+                }
+            });
+        }
+        nearest.1.map(|pair| (nearest.0, pair))
     }
 
     /// Calls `visit` with each pair that is nearer than `up_to` (m), and its distance; not with bodies that no joint moves.
@@ -87,7 +120,8 @@ impl Scene<'_> {
         visit: &mut impl FnMut(BodyPair) -> f64,
     ) {
         let groups = &self.bodies.groups;
-        for (obstacle, shape) in self.others.obstacles.iter().enumerate() {
+        for obstacle in self.obstacles_near(balls, up_to) {
+            let shape = &self.others.obstacles[obstacle];
             let mut visit = |body: usize, up_to: f64| {
                 let may_touch = self.others.allowed.allow(body, obstacle);
                 if may_touch { up_to } else { visit(BodyPair::Obstacle { body, obstacle }) }
@@ -109,9 +143,26 @@ impl Scene<'_> {
         }
     }
 
+    /// Those obstacles that may be nearer than `up_to` (m) to a group that moves, and some others, in order.
+    fn obstacles_near(&self, balls: &GroupBalls, up_to: f64) -> impl Iterator<Item = usize> + use<> {
+        let obstacles = &self.others.obstacles;
+        let mut near: SmallVec<[usize; 64]> = SmallVec::new();
+        if obstacles.index().is_some() {
+            for (group, (center, radius)) in balls.each.iter().enumerate() {
+                if self.bodies.groups.is_moving(group) {
+                    obstacles.each_near(center, radius + up_to.max(0.0), |obstacle| near.push(obstacle));
+                }
+            }
+            near.sort_unstable();
+            near.dedup();
+        }
+        let all = if obstacles.index().is_some() { 0..0 } else { 0..obstacles.len() };
+        all.chain(near)
+    }
+
     /// Whether one of `count` bodies in a ball may be nearer than `up_to` (m) to an obstacle.
     fn may_be_near(&self, (center, radius): Ball, count: usize, obstacle: usize, up_to: f64) -> bool {
-        if unless_inside(gap((center, radius), self.others.ball(obstacle))) > up_to {
+        if unless_inside(gap((center, radius), self.others.obstacles.ball(obstacle))) > up_to {
             return false;
         }
         // The obstacle itself is farther away than the ball around it.

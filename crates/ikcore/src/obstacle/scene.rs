@@ -1,7 +1,7 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
 use std::ops::Deref;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
 
@@ -10,12 +10,13 @@ use super::body_groups::Others;
 use super::body_model::{BodyModel, BodyPair};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
+use super::obstacles::Obstacles;
 use super::placement::Placement;
 use crate::error::{Error, Result};
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame};
 use crate::robot::{Carried, Joint, Robot};
-use crate::shape::{LineSegment, PlacedBody, Shape};
+use crate::shape::{LineSegment, PlacedBody};
 use crate::wording::listed;
 
 /// A joint motion longer than any (rad, m).
@@ -27,15 +28,15 @@ const AT_REST: f64 = 1e-6;
 /// The bodies of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
 /// All bodies are tested against the obstacles, those of the base and of held links too, unless an obstacle names their link
-/// ([`Shape::touch`]). Links are tested against each other in
+/// ([`Shape::touch`](crate::shape::Shape::touch)). Links are tested against each other in
 /// pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: SceneRobot<'a>,
     pub(super) bodies: Arc<BodyModel>,
-    pub(super) others: Others<'a>,
-    /// Of the bodies that no joint moves the nearest to an obstacle, at this distance (m).
-    pub(super) fixed: Option<(f64, BodyPair)>,
+    pub(super) others: Others,
+    /// What [`Self::fixed`] returns, once it was asked for.
+    fixed: OnceLock<Option<(f64, BodyPair)>>,
 }
 
 /// The robot of a scene.
@@ -61,11 +62,12 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, or one that may touch a link without a body.
-    pub fn new(robot: &'a Robot, obstacles: &'a [Shape]) -> Result<Self> {
+    pub fn new(robot: &'a Robot, obstacles: impl Into<Obstacles>) -> Result<Self> {
+        let obstacles = obstacles.into();
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
             return Err(no_capsules(robot));
         }
-        if let Some(i) = obstacles.iter().position(Shape::is_flat)
+        if let Some(i) = obstacles.first_flat()
             && !moves_in_plane(robot)
         {
             let problem = format!(
@@ -76,17 +78,15 @@ impl<'a> Scene<'a> {
             return Err(Error::InvalidObstacle { problem });
         }
         let bodies = BodyModel::of(robot);
-        let allowed = AllowedContacts::new(robot, &bodies.carried, obstacles)?;
-        let others = Others::new(obstacles, allowed);
-        let mut scene = Self { robot: SceneRobot::Borrowed(robot), bodies, others, fixed: None };
-        scene.fixed = scene.nearest_fixed();
-        Ok(scene)
+        let allowed = AllowedContacts::new(robot, &bodies.carried, &obstacles)?;
+        let others = Others { obstacles, allowed, itself: true };
+        Ok(Self { robot: SceneRobot::Borrowed(robot), bodies, others, fixed: OnceLock::new() })
     }
 
-    /// The nearest pair of an obstacle and a body that no joint moves, which is in the same place at any configuration.
-    fn nearest_fixed(&self) -> Option<(f64, BodyPair)> {
-        let pairs = self.with_obstacles(|body| body.stages == 0);
-        self.nearest_of(pairs, &self.bodies.rest)
+    /// Of the bodies that no joint moves, which are in the same place at any configuration, the nearest to an obstacle, at this
+    /// distance (m).
+    pub(super) fn fixed(&self) -> Option<(f64, BodyPair)> {
+        *self.fixed.get_or_init(|| self.nearest_fixed())
     }
 
     /// Each of the bodies that are `wanted` with each obstacle that it must not touch.
@@ -116,10 +116,10 @@ impl<'a> Scene<'a> {
         &self.robot
     }
 
-    /// The same scene with obstacles of its own, and `robot`, an equal one.
+    /// The same scene with `robot`, an equal one.
     pub(super) fn with_shared(self, robot: &Arc<Robot>) -> Scene<'static> {
         let Self { bodies, others, fixed, .. } = self;
-        Scene { robot: SceneRobot::Shared(Arc::clone(robot)), bodies, others: others.into_owned(), fixed }
+        Scene { robot: SceneRobot::Shared(Arc::clone(robot)), bodies, others, fixed }
     }
 
     /// The nearest pair at `q` (n,), or the deepest one if pairs overlap; `None` if nothing can touch.
@@ -129,12 +129,6 @@ impl<'a> Scene<'a> {
     pub fn nearest(&self, q: &[f64]) -> Result<Option<Contact>> {
         self.robot.check("joint angles", q)?;
         Ok(self.nearest_pair(&self.place(q)).map(|(distance, pair)| self.contact(pair, distance)))
-    }
-
-    /// The nearest of `pairs`.
-    fn nearest_of(&self, pairs: impl Iterator<Item = BodyPair>, placement: &Placement) -> Option<(f64, BodyPair)> {
-        let distances = pairs.map(|pair| (self.distance(pair, placement, f64::INFINITY), pair));
-        distances.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
     /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
@@ -197,7 +191,7 @@ impl<'a> Scene<'a> {
     /// than `margin` (m); `q` (n,) is any configuration.
     pub(crate) fn contact_at_rest(&self, q: &[f64], margin: f64) -> Option<Contact> {
         let (placement, anywhere) = (self.place(q), vec![ANY_MOTION; self.robot.dof()]);
-        let mut nearest = self.fixed;
+        let mut nearest = self.fixed();
         self.for_each_within(margin - AT_REST, &placement, |pair, distance| {
             let is_nearest = nearest.is_none_or(|(least, _)| distance < least);
             let is_of_obstacle = matches!(pair, BodyPair::Obstacle { .. });
@@ -251,7 +245,7 @@ impl<'a> Scene<'a> {
         if !self.fixed_are_clear(margin) {
             return Ok(vec![false; qs.len() / n]);
         }
-        if self.others.has_index() || self.bodies.groups.has_solids() {
+        if self.others.obstacles.index().is_some() || self.bodies.groups.has_solids() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
         let mut clear = Vec::with_capacity(qs.len() / n);
@@ -271,7 +265,7 @@ impl<'a> Scene<'a> {
 
     /// Whether the bodies that no joint moves are at least `margin` (m) from the obstacles.
     fn fixed_are_clear(&self, margin: f64) -> bool {
-        self.fixed.is_none_or(|(distance, _)| distance >= margin)
+        self.fixed().is_none_or(|(distance, _)| distance >= margin)
     }
 
     /// The contact of a pair that is `distance` apart (m).

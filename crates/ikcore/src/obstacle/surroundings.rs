@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::clear_space::ClearSpace;
+use super::obstacles::Obstacles;
 use super::scene::Scene;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
-use crate::shape::Shape;
 
 /// Distance kept where none is given (m).
 const DEFAULT_MARGIN: f64 = 1e-3;
@@ -15,7 +15,7 @@ const DEFAULT_MARGIN: f64 = 1e-3;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Surroundings {
     /// The obstacles; an empty list checks the links against each other alone. `None`: no obstacles.
-    pub obstacles: Option<Vec<Shape>>,
+    pub obstacles: Option<Obstacles>,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
     /// Whether links must not touch each other. `None`: where obstacles are given.
@@ -30,7 +30,7 @@ impl Surroundings {
 
     /// The first obstacle that is a mesh which is not closed.
     pub(crate) fn first_open_mesh(&self) -> Option<usize> {
-        self.obstacles.as_ref()?.iter().position(Shape::is_open_mesh)
+        self.obstacles.as_ref()?.first_open_mesh()
     }
 
     /// The space that they leave to `robot`; `None` if nothing is to be checked.
@@ -44,7 +44,7 @@ impl Surroundings {
             let problem = "margin= needs obstacles= (a list, which may be empty) or self_collision=True".into();
             return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
         }
-        let scene = Scene::new(robot, self.obstacles.as_deref().unwrap_or_default())?;
+        let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;
         let scene = if self.self_collision == Some(false) { scene.without_self_collision() } else { scene };
         Ok(Some(ClearSpace::new(scene, margin)))
     }

@@ -103,7 +103,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// [`TooNear`]: the first such place.
     pub fn check(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
-        if let Some((distance, pair)) = self.scene.fixed
+        if let Some((distance, pair)) = self.scene.fixed()
             && distance < margin
         {
             return Err(Box::new(TooNear { at: from, contact: self.scene.contact(pair, distance) }));
@@ -163,7 +163,7 @@ impl<'a> Sweep<'a> {
     pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
         self.pending.clear();
         self.pending.extend(self.scene.pairs());
-        let mut best = match (self.scene.fixed, self.pending.first()) {
+        let mut best = match (self.scene.fixed(), self.pending.first()) {
             (Some((distance, pair)), _) => Best { seen: distance, proven: distance, at: from, pair },
             (None, Some(first)) => Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: *first },
             (None, None) => return None,

@@ -8,9 +8,8 @@ use super::motion_limits::MotionLimits;
 use super::tpbso::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::Surroundings;
+use crate::obstacle::{Obstacles, Surroundings};
 use crate::robot::Robot;
-use crate::shape::Shape;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 use crate::task::Task;
 
@@ -90,7 +89,7 @@ pub struct PointToPointOptions {
     /// Quantity to minimise.
     pub objective: Cost,
     /// Obstacles to avoid.
-    pub obstacles: Vec<Shape>,
+    pub obstacles: Obstacles,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
     /// Whether links must not touch each other. `None`: where the robot has bodies.

@@ -19,11 +19,10 @@ use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::vector::between;
 use crate::objective::{Bounds, Point, Score};
-use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
+use crate::obstacle::{ClearSpace, NearestContact, Obstacles, Surroundings};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
-use crate::shape::Shape;
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, TargetRow, Task, TipAims, TipError, TipTask};
 
@@ -492,8 +491,8 @@ impl Session {
     ///
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
-    pub fn set_obstacles(&mut self, obstacles: Option<Vec<Shape>>, velocities: Vec<[f64; 3]>) -> Result<()> {
-        let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, Vec::len))?;
+    pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
+        let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
         let space = if surroundings.is_given() { clear_space(&surroundings, &self.robot)? } else { None };

@@ -1,9 +1,11 @@
 //! Reading of obstacle arguments.
 
+use ikcore::obstacle::Obstacles;
 use ikcore::shape::Shape;
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyList, PyTuple};
 
 use super::body::{PyObstacle, not_made_here};
 use super::from_core::wrapped;
@@ -12,51 +14,85 @@ use crate::convert::summary;
 use crate::error::invalid;
 
 /// The obstacles of a call.
-pub struct Obstacles {
+pub struct GivenObstacles {
     /// For the core.
-    pub core: Vec<Shape>,
+    pub core: Obstacles,
     /// For results, which store them.
     pub tuple: Py<PyTuple>,
 }
 
-impl Obstacles {
+impl GivenObstacles {
     /// Reads any sequence of obstacles; None means no obstacles.
     pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        if let Some(prepared) = value.and_then(prepared) {
+            let PyPreparedObstacles { core, tuple } = prepared.get();
+            return Ok(Self { core: core.clone(), tuple: tuple.clone_ref(py) });
+        }
         let items = value.map_or_else(|| Ok(vec![]), items)?;
         Ok(Self { core: shapes(&items)?, tuple: PyTuple::new(py, items)?.unbind() })
     }
 
-    /// Reads the shapes of a sequence of obstacles.
-    pub fn read_shapes(value: &Bound<'_, PyAny>) -> PyResult<Vec<Shape>> {
-        shapes(&items(value)?)
+    /// Reads what the core needs of a sequence of obstacles.
+    pub fn read_core(value: &Bound<'_, PyAny>) -> PyResult<Obstacles> {
+        match prepared(value) {
+            Some(prepared) => Ok(prepared.get().core.clone()),
+            None => shapes(&items(value)?),
+        }
     }
 }
 
+/// The obstacles of a `Scene`, read and prepared once.
+#[pyclass(name = "PreparedObstacles", module = "beetle_ik._core", frozen)]
+pub struct PyPreparedObstacles {
+    core: Obstacles,
+    tuple: Py<PyTuple>,
+}
+
+#[pymethods]
+impl PyPreparedObstacles {
+    #[new]
+    fn new(py: Python<'_>, obstacles: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let GivenObstacles { core, tuple } = GivenObstacles::read(py, Some(obstacles))?;
+        Ok(Self { core, tuple })
+    }
+}
+
+/// What a `Scene` has prepared; None for other sequences.
+fn prepared<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyPreparedObstacles>> {
+    if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
+        return None;
+    }
+    value.getattr(intern!(value.py(), "_prepared")).ok()?.cast_into().ok()
+}
+
 /// Obstacles of which some may move: shapes, and the velocity of each; no velocities if all are at rest.
-#[derive(Default)]
 pub struct MovingObstacles {
-    pub shapes: Vec<Shape>,
+    pub shapes: Obstacles,
     pub velocities: Vec<[f64; 3]>,
 }
 
 impl MovingObstacles {
     /// Reads any sequence of obstacles.
     pub fn read(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let all_at_rest = |shapes| Self { shapes, velocities: vec![] };
+        if let Some(prepared) = prepared(value) {
+            return Ok(all_at_rest(prepared.get().core.clone()));
+        }
         let given = items(value)?;
         if given.iter().all(|item| item.cast::<PyMoving>().is_err()) {
-            return Ok(Self { shapes: Obstacles::read_shapes(value)?, velocities: vec![] });
+            return Ok(all_at_rest(shapes(&given)?));
         }
-        let mut all = Self::default();
+        let (mut shapes, mut velocities) = (vec![], vec![]);
         for (i, item) in given.iter().enumerate() {
             let (shape, velocity) = match (item.cast::<PyMoving>(), item.cast::<PyObstacle>()) {
                 (Ok(moving), _) => (moving.get().shape.clone(), moving.get().velocity),
                 (_, Ok(obstacle)) => (obstacle.get().core.clone(), [0.0; 3]),
                 _ => return Err(not_made_here(&format!("obstacle {i}"), item)),
             };
-            all.shapes.push(shape);
-            all.velocities.push(velocity);
+            shapes.push(shape);
+            velocities.push(velocity);
         }
-        Ok(all)
+        Ok(Self { shapes: shapes.into(), velocities })
     }
 
     /// The obstacles as Python objects: those that move are `Moving`.
@@ -82,7 +118,7 @@ fn items<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
     value.try_iter().map_err(wrong)?.collect()
 }
 
-fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Vec<Shape>> {
+fn shapes(items: &[Bound<'_, PyAny>]) -> PyResult<Obstacles> {
     let shape = |(i, item): (usize, &Bound<'_, PyAny>)| match item.cast::<PyObstacle>() {
         Ok(obstacle) => Ok(obstacle.get().core.clone()),
         Err(_) if item.cast::<PyMoving>().is_ok() => {

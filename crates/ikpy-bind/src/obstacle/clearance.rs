@@ -3,7 +3,7 @@
 use ikcore::obstacle::Scene;
 use pyo3::prelude::*;
 
-use super::Obstacles;
+use super::GivenObstacles;
 use crate::convert::{Rows, row, rows};
 use crate::error::raise;
 use crate::monitor::in_pieces;
@@ -37,7 +37,7 @@ pub fn clearance<'py>(
     q: &Bound<'py, PyAny>,
     obstacles: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let obstacles = Obstacles::read(py, obstacles)?.core;
+    let obstacles = GivenObstacles::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),

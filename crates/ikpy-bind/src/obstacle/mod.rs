@@ -13,7 +13,8 @@ mod touch;
 
 use pyo3::prelude::*;
 
-pub use argument::{MovingObstacles, Obstacles};
+use argument::PyPreparedObstacles;
+pub use argument::{GivenObstacles, MovingObstacles};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};
@@ -36,6 +37,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPointCloud>()?;
     module.add_class::<PyGrid>()?;
     module.add_class::<PyMoving>()?;
+    module.add_class::<PyPreparedObstacles>()?;
     module.add_class::<PyNearest>()?;
     module.add_function(wrap_pyfunction!(nearest::nearest, module)?)?;
     module.add_function(wrap_pyfunction!(clearance::clearance, module)?)

@@ -5,7 +5,7 @@ use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use super::Obstacles;
+use super::GivenObstacles;
 use crate::convert::{copied, vector};
 use crate::error::raise;
 use crate::hash::content_hash;
@@ -110,7 +110,7 @@ pub fn nearest(
     q: &Bound<'_, PyAny>,
     obstacles: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Option<PyNearest>> {
-    let obstacles = Obstacles::read(py, obstacles)?.core;
+    let obstacles = GivenObstacles::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
     let found = scene.nearest_contact(&vector("joint angles", q)?).map_err(raise)?;
     Ok(found.map(PyNearest::from))

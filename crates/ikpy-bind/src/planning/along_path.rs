@@ -12,7 +12,7 @@ use crate::convert::{array, count, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::Obstacles;
+use crate::obstacle::GivenObstacles;
 use crate::path::PyPath;
 use crate::python_calls;
 use crate::robot::PyRobot;
@@ -83,7 +83,7 @@ pub fn plan_along_path(
     robot.get().core.require_one_tip("plan_along_path").map_err(raise)?;
     let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    let given = Obstacles::read(py, obstacles)?;
+    let given = GivenObstacles::read(py, obstacles)?;
     let options = AlongPathOptions {
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,

@@ -14,7 +14,7 @@ use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::obstacle::Obstacles;
+use crate::obstacle::GivenObstacles;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
 use crate::task::read_task;
@@ -74,7 +74,7 @@ pub struct ReadOptions {
 impl PlanArguments<'_> {
     /// Converts the arguments to options of the core.
     pub fn read(&self, py: Python<'_>, robot: &PyRobot) -> PyResult<ReadOptions> {
-        self.read_among(py, robot, Obstacles::read(py, self.obstacles.as_ref())?)
+        self.read_among(py, robot, GivenObstacles::read(py, self.obstacles.as_ref())?)
     }
 
     /// The same for a problem that may override some of the arguments of `all`. Obstacles of all are not read again.
@@ -87,14 +87,14 @@ impl PlanArguments<'_> {
     ) -> PyResult<ReadOptions> {
         let obstacles = match (&self.obstacles, &all.obstacles) {
             (Some(own), Some(common)) if own.is(common) => {
-                Obstacles { core: of_all.core.obstacles.clone(), tuple: of_all.obstacles.clone_ref(py) }
+                GivenObstacles { core: of_all.core.obstacles.clone(), tuple: of_all.obstacles.clone_ref(py) }
             }
-            (own, _) => Obstacles::read(py, own.as_ref())?,
+            (own, _) => GivenObstacles::read(py, own.as_ref())?,
         };
         self.read_among(py, robot, obstacles)
     }
 
-    fn read_among(&self, py: Python<'_>, robot: &PyRobot, obstacles: Obstacles) -> PyResult<ReadOptions> {
+    fn read_among(&self, py: Python<'_>, robot: &PyRobot, obstacles: GivenObstacles) -> PyResult<ReadOptions> {
         let given = self.limits.as_ref().map(|limits| cast::<PyLimits>("limits", limits)).transpose()?;
         let (in_force, limits) = limits_of_call(py, given.as_ref().map(|given| given.get()), robot, &Sampling::once())?;
         let objective = self.objective.as_ref().map(|name| text(name)).transpose();

@@ -18,7 +18,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::Obstacles;
+use crate::obstacle::GivenObstacles;
 use crate::outcome::outcome;
 use crate::path::{PyPath, path_argument};
 use crate::pickling::{self, Reduced};
@@ -264,7 +264,7 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let obstacles = obstacles.map(|given| Obstacles::read_shapes(given)).transpose()?;
+    let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
     let surroundings = Surroundings { obstacles, margin, self_collision };
     let mut tasks = SolveOptions::default();
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);

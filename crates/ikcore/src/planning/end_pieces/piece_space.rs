@@ -1,11 +1,10 @@
 //! What the pieces at the ends of a motion keep clear of.
 
 use crate::error::Result;
-use crate::obstacle::{ClearSpace, Surroundings, kept_margin};
+use crate::obstacle::{ClearSpace, Obstacles, Surroundings, kept_margin};
 use crate::planning::PointToPointOptions;
 use crate::planning::collision_checks::{RESERVE, as_lines, can_collide};
 use crate::robot::Robot;
-use crate::shape::Shape;
 
 /// A robot and its surroundings, as the planner of the motion in between sees them.
 #[derive(Clone)]
@@ -35,7 +34,7 @@ impl PieceSpace {
     }
 
     /// The same among other obstacles.
-    pub(super) fn among(&self, obstacles: Vec<Shape>) -> Self {
+    pub(super) fn among(&self, obstacles: Obstacles) -> Self {
         let surroundings = Surroundings { obstacles: Some(obstacles), ..self.surroundings.clone() };
         Self { robot: self.robot.clone(), surroundings }
     }

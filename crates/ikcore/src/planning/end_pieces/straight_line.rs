@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Frame;
 use crate::math::so3::norm;
+use crate::obstacle::Obstacles;
 use crate::shape::Shape;
 use crate::wording::words;
 
@@ -82,7 +83,7 @@ impl StraightLine {
     }
 
     /// The obstacles with the contacts that are allowed on the line.
-    pub(super) fn obstacles(&self, obstacles: &[Shape]) -> Vec<Shape> {
+    pub(super) fn obstacles(&self, obstacles: &[Shape]) -> Obstacles {
         let allowed = |i: usize| {
             let of_this =
                 self.touch.iter().filter(move |contact| contact.obstacle.is_none_or(|obstacle| obstacle == i));
