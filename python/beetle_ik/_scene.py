@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
@@ -19,7 +18,7 @@ class Scene(Sequence[Obstacle]):
     """Obstacles in the frame of the robot's base, in order. Every `obstacles=` takes a scene or a list.
 
     A scene does not change; `scene + [obstacle]` and `scene[1:]` are new scenes. Scenes compare and hash by content.
-    What calls need of the obstacles is prepared once, at the first call: for a list, it is at each.
+    What calls need of the obstacles is prepared here, once: of a list, it is at each call.
 
     Args:
         obstacles: obstacles of `bik.obstacles`.
@@ -40,11 +39,7 @@ class Scene(Sequence[Obstacle]):
                 made = "must be made by bik.obstacles, such as Sphere or Box"
                 raise InvalidInputError(f"obstacle {i} {made}, got {obstacle!r:.60}")
         self._obstacles = given
-
-    @functools.cached_property
-    def _prepared(self) -> PreparedObstacles:
-        """What the calls of the core read."""
-        return PreparedObstacles(self._obstacles)
+        self._prepared = PreparedObstacles(given)  # what calls of the core read
 
     def __reduce__(self) -> tuple[type[Scene], tuple[tuple[Obstacle, ...]]]:
         return type(self), (self._obstacles,)

@@ -259,13 +259,13 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
             let (mut clear, mut near) = (0, 0);
             let qs = robot.random_configurations(203, &mut rng).unwrap();
             let margin = rng.uniform_in(0.0, 0.03);
-            let four_at_a_time = scene.which_are_clear(&qs, margin).unwrap();
-            for (q, as_four) in qs.chunks(robot.dof()).zip(four_at_a_time) {
+            let at_once = scene.which_are_clear(&qs, margin).unwrap();
+            for (q, one_of_many) in qs.chunks(robot.dof()).zip(at_once) {
                 let distance = scene.clearance(q).unwrap();
                 let found = scene.is_clear(q, margin);
                 // Within rounding of the decision both answers are right.
                 assert!((distance - margin).abs() < 3e-9 || found == (distance >= margin), "{distance} {margin}");
-                assert_eq!(found, as_four);
+                assert_eq!(found, one_of_many);
                 *(if found { &mut clear } else { &mut near }) += 1;
             }
             assert!(clear > 5 && (near > 5 || count == 0), "{count}: {clear} {near}");
@@ -514,9 +514,8 @@ fn of_many_obstacles_the_nearest_is_found_and_each_counts() {
         let q = robot.random_configurations(1, &mut rng).unwrap();
         // Far fewer are near than there are; in some cases none is.
         let (count, spread) = (24 + 10 * case, if case % 4 == 0 { 6.0 } else { 2.0 });
-        let balls: Vec<Shape> = (0..count)
-            .map(|_| Shape::sphere(point(&mut rng, spread), rng.uniform_in(0.01, 0.1)).unwrap())
-            .collect();
+        let balls: Vec<Shape> =
+            (0..count).map(|_| Shape::sphere(point(&mut rng, spread), rng.uniform_in(0.01, 0.1)).unwrap()).collect();
         let scene = Scene::new(&robot, &balls).unwrap().without_self_collision();
         let alone = |ball: &Shape| Scene::new(&robot, std::slice::from_ref(ball)).unwrap().without_self_collision();
         let found = scene.nearest(&q).unwrap().unwrap();

@@ -119,16 +119,6 @@ impl BodyGroups {
         are_clear(self, carried, frames, others, margin)
     }
 
-    /// Whether some bodies are no capsules: [`four_are_clear`](Self::four_are_clear) would see the capsules around them.
-    pub fn has_solids(&self) -> bool {
-        self.solids
-    }
-
-    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
-    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], others: &Others, margin: f64) -> F64x4 {
-        four_are_clear(self, frames, others, margin)
-    }
-
     /// How many groups there are.
     pub fn count(&self) -> usize {
         self.groups.len()
@@ -291,15 +281,30 @@ impl Group {
     fn body(&self, block: usize, lane: usize) -> usize {
         self.bodies.get(4 * block + lane).copied().unwrap_or(self.bodies[4 * block])
     }
+}
 
-    /// Its blocks with the moving element at `frame`.
+/// The blocks of a group where the moving elements are, kept while the same group is asked for.
+struct PlacedGroup {
+    group: usize,
+    blocks: Placed,
+}
+
+impl PlacedGroup {
+    fn none() -> Self {
+        Self { group: usize::MAX, blocks: Placed::new() }
+    }
+
     #[inline(always)]
-    fn placed<A: Arithmetic>(&self, frame: &Frame) -> Placed {
-        let mut placed = Placed::new();
-        for block in &self.blocks {
-            placed.push(block.placed::<A>(frame));
+    fn of<A: Arithmetic>(&mut self, all: &BodyGroups, group: usize, frames: &[Frame]) -> &Placed {
+        if self.group != group {
+            self.group = group;
+            self.blocks.clear();
+            let Group { blocks, stages, .. } = &all.groups[group];
+            for block in blocks {
+                self.blocks.push(block.placed::<A>(&frames[*stages]));
+            }
         }
-        placed
+        &self.blocks
     }
 }
 
@@ -307,12 +312,6 @@ impl Group {
 #[inline(always)]
 fn all_clear(lanes: &F64x4) -> bool {
     lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 4.0
-}
-
-/// Whether all lanes are 0; each is 1 or 0.
-#[inline(always)]
-fn none_clear(lanes: &F64x4) -> bool {
-    lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 0.0
 }
 
 /// The larger of each two lanes.
@@ -364,12 +363,9 @@ by_instructions! {
                 near.sort_unstable();
             }
         }
-        let mut placed = (usize::MAX, Placed::new());
+        let (mut one, mut other) = (PlacedGroup::none(), PlacedGroup::none());
         for (group, obstacle) in near {
-            if placed.0 != group {
-                placed = (group, all.groups[group].placed::<A>(&frames[all.groups[group].stages]));
-            }
-            for (block, capsules) in placed.1.iter().enumerate() {
+            for (block, capsules) in one.of::<A>(all, group, frames).iter().enumerate() {
                 let clear = obstacles[obstacle].clear_lanes::<A>(capsules, margin);
                 let part = (group, block, obstacle);
                 if !all_clear(&clear) && !all.others_are_clear(part, &clear, carried, frames, (others, margin)) {
@@ -383,8 +379,7 @@ by_instructions! {
             if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
                 continue;
             }
-            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
-            let (near, far) = (near.placed::<A>(&frames[near.stages]), far.placed::<A>(&frames[far.stages]));
+            let (near, far) = (one.of::<A>(all, pair.near, frames), other.of::<A>(all, pair.far, frames));
             for test in &pair.tests {
                 let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
                 let clear = larger_lanes::<A>(clear, test.ignored);
@@ -419,57 +414,5 @@ by_instructions! {
             }
         }
         near
-    }
-}
-
-by_instructions! {
-    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], others: &Others, margin: f64) -> F64x4 {
-        let obstacles = &others.obstacles;
-        let mut clear = F64x4::splat(1.0);
-        let at = |group: &Group| frames[group.stages];
-        // Lanes that are not clear no longer matter.
-        let settled = |balls: F64x4, clear: &F64x4| {
-            let open = A::sub_x4(*clear, A::mul_x4(*clear, balls)).0;
-            open[0] + open[1] + open[2] + open[3] == 0.0
-        };
-        for group in all.groups.iter().filter(|group| group.stages > 0) {
-            let at = at(group);
-            let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
-            for (obstacle, shape) in obstacles.iter().enumerate() {
-                if settled(shape.clear_lanes::<A>(&ball, margin), &clear) {
-                    continue;
-                }
-                for (i, number) in group.bodies.iter().enumerate() {
-                    if others.allowed.allow(*number, obstacle) {
-                        continue;
-                    }
-                    let body = group.blocks[i / 4].body_at::<A>(i % 4, &at);
-                    clear = A::mul_x4(clear, shape.clear_lanes::<A>(&body, margin));
-                }
-                if none_clear(&clear) {
-                    return clear;
-                }
-            }
-        }
-        for pair in all.pairs_of(others) {
-            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
-            let (near_at, far_at) = (at(near), at(far));
-            let one = BodyBlock::ball_at::<A>(&near_at, &near.center, near.radius);
-            let other = BodyBlock::ball_at::<A>(&far_at, &far.center, far.radius);
-            if settled(clear_of_each_other::<A>(&one, &other, margin), &clear) {
-                continue;
-            }
-            for test in &pair.tests {
-                let body = near.blocks[test.block].body_at::<A>(test.lane, &near_at);
-                for lane in (0..4).filter(|lane| test.ignored.0[*lane] == 0.0) {
-                    let other = far.blocks[test.far_block].body_at::<A>(lane, &far_at);
-                    clear = A::mul_x4(clear, clear_of_each_other::<A>(&body, &other, margin));
-                }
-            }
-            if none_clear(&clear) {
-                return clear;
-            }
-        }
-        clear
     }
 }

@@ -115,9 +115,13 @@ impl<'a> EightScene<'a> {
     #[inline(always)]
     pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], shares: [f32; 8]) {
         let shares = Eight::<A>::of(F32x8(shares));
-        for (q, (from, to)) in self.qs.iter_mut().zip(from.iter().zip(to)) {
-            *q = shares.mul_add(Eight::splat(to - from), Eight::splat(*from)).stored();
-        }
+        self.place_at::<A>(|j| shares.mul_add(Eight::splat(to[j] - from[j]), Eight::splat(from[j])).stored());
+    }
+
+    /// Places everything at configurations of which `values` returns the values of a joint.
+    #[inline(always)]
+    pub fn place_at<A: Arithmetic>(&mut self, values: impl Fn(usize) -> F32x8) {
+        self.qs.iter_mut().enumerate().for_each(|(joint, q)| *q = values(joint));
         self.scene.bodies.eight.place::<A>(&self.qs, &mut self.placement);
     }
 

@@ -9,6 +9,7 @@
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
 //! | `eight_scene`, `eight_bodies`, `levers` | which pairs are near each other at eight configurations? |
+//! | `which_clear` | which of many configurations are clear? |
 //! | `line_check` | is a straight line in joint space clear, for searches? |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
@@ -39,6 +40,7 @@ mod placement;
 mod scene;
 mod surroundings;
 mod sweep;
+mod which_clear;
 
 pub(crate) use chord_check::ChordCheck;
 pub(crate) use clear_space::Blocked;

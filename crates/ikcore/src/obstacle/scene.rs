@@ -12,8 +12,8 @@ use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
 use super::obstacles::Obstacles;
 use super::placement::Placement;
+use super::which_clear::which_are_clear;
 use crate::error::{Error, Result};
-use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame};
 use crate::robot::{Carried, Joint, Robot};
 use crate::shape::{LineSegment, PlacedBody};
@@ -232,7 +232,7 @@ impl<'a> Scene<'a> {
         self.bodies.groups.are_clear(&self.bodies.carried, &frames, &self.others, margin)
     }
 
-    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
+    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, eight at a time.
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest), or [`Error::OutOfRange`] for a negative margin.
@@ -245,22 +245,10 @@ impl<'a> Scene<'a> {
         if !self.fixed_are_clear(margin) {
             return Ok(vec![false; qs.len() / n]);
         }
-        if self.others.obstacles.index().is_some() || self.bodies.groups.has_solids() {
+        if self.others.obstacles.index().is_some() {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
-        let mut clear = Vec::with_capacity(qs.len() / n);
-        let (mut lanes, mut frames) = (vec![F64x4::ZERO; n], self.robot.frame_buffer_four());
-        for four in qs.chunks(4 * n) {
-            let count = four.len() / n;
-            for (joint, values) in lanes.iter_mut().enumerate() {
-                // Lanes without a configuration repeat the last one.
-                *values = F64x4(std::array::from_fn(|lane| four[lane.min(count - 1) * n + joint]));
-            }
-            self.robot.write_frames_four(&lanes, &mut frames);
-            let lanes = self.bodies.groups.four_are_clear(&frames, &self.others, margin).0;
-            clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
-        }
-        Ok(clear)
+        Ok(which_are_clear(self, qs, margin))
     }
 
     /// Whether the bodies that no joint moves are at least `margin` (m) from the obstacles.

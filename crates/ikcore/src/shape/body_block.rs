@@ -34,27 +34,11 @@ impl BodyBlock {
     /// The same capsules, given in `frame`.
     #[inline(always)]
     pub fn placed<A: Arithmetic>(&self, frame: &Frame) -> Self {
-        let Frame { axes: [x, y, z], origin } = frame;
-        let axes = [Vec3::<Four<A>>::splat(x), Vec3::splat(y), Vec3::splat(z)];
-        Self::moved(axes, Vec3::splat(origin), Vec3::of(&self.start), Vec3::of(&self.along), self.radius, self.spheres)
-    }
-
-    /// The body in lane `lane` at four places, one per lane.
-    #[inline(always)]
-    pub fn body_at<A: Arithmetic>(&self, lane: usize, frames: &Frame<F64x4>) -> Self {
-        let [x, y, z] = &frames.axes;
-        let axes = [Vec3::<Four<A>>::of(x), Vec3::of(y), Vec3::of(z)];
-        let in_lane = |v: &[F64x4; 3]| Vec3::<Four<A>>::splat(&[v[0].0[lane], v[1].0[lane], v[2].0[lane]]);
-        let (start, along) = (in_lane(&self.start), in_lane(&self.along));
-        let radius = F64x4::splat(self.radius.0[lane]);
-        Self::moved(axes, Vec3::of(&frames.origin), start, along, radius, self.spheres)
-    }
-
-    /// A ball at four places, one per lane.
-    #[inline(always)]
-    pub fn ball_at<A: Arithmetic>(frames: &Frame<F64x4>, center: &[f64; 3], radius: f64) -> Self {
-        let start = [F64x4::splat(center[0]), F64x4::splat(center[1]), F64x4::splat(center[2])];
-        Self { start, radius: F64x4::splat(radius), ..Self::SPHERES }.body_at::<A>(0, frames)
+        let [x, y, z] = [0, 1, 2].map(|k| Vec3::<Four<A>>::splat(&frame.axes[k]));
+        let (start, along) = (Vec3::of(&self.start), Vec3::of(&self.along));
+        let start = x.mul_add(start.x, y.mul_add(start.y, z.mul_add(start.z, Vec3::splat(&frame.origin))));
+        let along = if self.spheres { along } else { x.mul_add(along.x, y.mul_add(along.y, z * along.z)) };
+        Self { start: start.stored(), along: along.stored(), radius: self.radius, spheres: self.spheres }
     }
 
     /// The body in lane `lane` in all lanes.
@@ -64,20 +48,6 @@ impl BodyBlock {
         let start = [F64x4::splat(x.0[lane]), F64x4::splat(y.0[lane]), F64x4::splat(z.0[lane])];
         let along = [F64x4::splat(u.0[lane]), F64x4::splat(v.0[lane]), F64x4::splat(w.0[lane])];
         Self { start, along, radius: F64x4::splat(self.radius.0[lane]), spheres: self.spheres }
-    }
-
-    #[inline(always)]
-    fn moved<A: Arithmetic>(
-        [x, y, z]: [Vec3<Four<A>>; 3],
-        origin: Vec3<Four<A>>,
-        start: Vec3<Four<A>>,
-        along: Vec3<Four<A>>,
-        radius: F64x4,
-        spheres: bool,
-    ) -> Self {
-        let start = x.mul_add(start.x, y.mul_add(start.y, z.mul_add(start.z, origin)));
-        let along = if spheres { along } else { x.mul_add(along.x, y.mul_add(along.y, z * along.z)) };
-        Self { start: start.stored(), along: along.stored(), radius, spheres }
     }
 
     /// Whether two lanes hold the same capsule, as do those that fill a block up.

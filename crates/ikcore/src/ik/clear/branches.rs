@@ -1,9 +1,10 @@
 //! Clear solutions by the closed form: branches, and samples of the self-motion.
 
 use super::clear_search::{ClearSearch, Exhausted};
-use crate::closed_form::{ArmBranches, ArmConfigurations, PoseFamily};
+use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
 use crate::ik::first_branch::LEAST_BUDGET;
 use crate::ik::preference::Preference;
+use crate::math::Frame;
 use crate::objective::Point;
 use crate::task::Target;
 
@@ -30,15 +31,27 @@ impl ClearSearch<'_, '_, '_> {
         let robot = context.robot();
         match (robot.solves_at_once(), robot.family(pose)) {
             (Some(true), Some(family)) => self.of_family(&family, preference),
-            (Some(_), None) => self.of_branches(&robot.branches(pose)?, preference),
+            (Some(_), None) => self.of_branches(pose, preference),
             _ => None,
         }
     }
 
     /// Of an arm that is not redundant.
-    fn of_branches(&mut self, branches: &ArmBranches, preference: &Preference) -> BranchOutcome {
+    fn of_branches(&mut self, pose: &Frame, preference: &Preference) -> BranchOutcome {
+        let robot = self.attempt.context.robot();
+        let mut likely = ArmConfigurations::none();
+        robot.likely_branches(pose, &mut likely);
+        if let Some(q) = self.first_clear(preference, &mut likely, VERIFIED) {
+            return Some(Ok(q));
+        }
+        if self.has_candidates() && likely.is_all {
+            return Some(Err(Exhausted::All));
+        }
+        // Beside singular poses, what is near a branch is still to be polished.
+        self.forget_candidates();
+        let branches = robot.branches(pose)?;
         self.attempt.budget.evaluations += branches.evaluations;
-        match self.first_clear(preference, &mut branches.configurations()) {
+        match self.first_clear(preference, &mut branches.configurations(), f64::INFINITY) {
             Some(q) => Some(Ok(q)),
             None if self.has_candidates() && branches.complete && !branches.singular => Some(Err(Exhausted::All)),
             None => self.clear_by_pushing(),
@@ -52,7 +65,7 @@ impl ClearSearch<'_, '_, '_> {
         let half_the_budget = self.attempt.budget.left() / 2;
         for (k, value) in family.arcs(&limits).scattered(SCANNED).enumerate() {
             family.likely_at(value, &limits, &mut likely);
-            if let Some(q) = self.first_clear(preference, &mut likely) {
+            if let Some(q) = self.first_clear(preference, &mut likely, f64::INFINITY) {
                 return Some(Ok(q));
             }
             let is_hopeless = k >= VALUES_BEFORE_DOUBT && self.is_hopeless();
@@ -75,12 +88,17 @@ impl ClearSearch<'_, '_, '_> {
         }
     }
 
-    /// The preferred one of those `configurations` that are inside the limits, solve the target and are clear.
-    fn first_clear(&mut self, preference: &Preference, configurations: &mut ArmConfigurations) -> Option<Point> {
+    /// The preferred one of those `configurations` that are inside the limits, solve the target with no more than an error (m, rad) and
+    /// are clear.
+    fn first_clear(
+        &mut self,
+        preference: &Preference,
+        configurations: &mut ArmConfigurations,
+        most: f64,
+    ) -> Option<Point> {
         preference.ordered(configurations).into_iter().find(|q| {
-            self.attempt.budget.evaluations += 1;
-            let is_solved = self.attempt.problem.assess(q).score.solved;
-            is_solved && self.is_clear(q)
+            let error = self.attempt.error_if_solved(q);
+            error.is_some_and(|error| error.position.max(error.rotation) <= most) && self.is_clear(q)
         })
     }
 }

@@ -102,6 +102,11 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         (is_solved && self.space.holds(&q)).then_some(q)
     }
 
+    /// Forgets what was tried.
+    pub fn forget_candidates(&mut self) {
+        (self.blocked, self.hopeless) = (BlockedSolutions::new(), OnceCell::new());
+    }
+
     /// Whether anything reached the target.
     pub fn has_candidates(&self) -> bool {
         self.blocked.count > 0

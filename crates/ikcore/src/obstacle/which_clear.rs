@@ -1,0 +1,48 @@
+//! Which of many configurations are clear? Most are seen to be in single precision, eight in the registers; the others are judged one by
+//! one.
+
+use super::body_model::BodyPair;
+use super::eight_scene::{EightScene, Near, Visitor};
+use super::scene::Scene;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::f32x8::F32x8;
+
+/// All eight lanes.
+const ALL: u32 = 0xff;
+
+/// Whether everything is at least `margin` >= 0 (m) apart at each of the configurations stored one after another, which are valid.
+pub(super) fn which_are_clear(scene: &Scene<'_>, qs: &[f64], margin: f64) -> Vec<bool> {
+    let n = scene.robot().dof();
+    let mut eight = EightScene::new(scene);
+    let mut clear = Vec::with_capacity(qs.len() / n);
+    for some in qs.chunks(8 * n) {
+        let near = near_lanes(&mut eight, some, margin);
+        let is_clear = |(lane, q): (usize, &[f64])| near & (1 << lane) == 0 || scene.is_clear(q, margin);
+        clear.extend(some.chunks(n).enumerate().map(is_clear));
+    }
+    clear
+}
+
+/// The configurations in which something may be too near, one bit each.
+struct NearLanes(u32);
+
+impl Visitor for NearLanes {
+    #[inline(always)]
+    fn goes_on<A: Arithmetic>(&mut self, _: &mut Near<'_, '_>, _: BodyPair, lanes: u32) -> bool {
+        self.0 |= lanes;
+        self.0 != ALL
+    }
+}
+
+by_instructions! {
+    fn near_lanes(eight: &mut EightScene<'_>, qs: &[f64], margin: f64) -> u32 {
+        let n = eight.scene.robot().dof();
+        let last = qs.len() / n - 1;
+        // Lanes without a configuration repeat the last one.
+        eight.place_at::<A>(|joint| F32x8(std::array::from_fn(|lane| qs[lane.min(last) * n + joint] as f32)));
+        let enough = margin + eight.rounding(qs.iter().fold(0.0, |most, q| q.abs().max(most)));
+        let mut near = NearLanes(0);
+        eight.each_near::<A>(enough, &[], &mut near);
+        near.0
+    }
+}
