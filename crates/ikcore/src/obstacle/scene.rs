@@ -12,7 +12,6 @@ use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
 use super::obstacles::Obstacles;
 use super::placement::Placement;
-use super::which_clear::which_are_clear;
 use crate::error::{Error, Result};
 use crate::math::{Columns, Frame};
 use crate::robot::{Carried, Joint, Robot};
@@ -232,27 +231,8 @@ impl<'a> Scene<'a> {
         self.bodies.groups.are_clear(&self.bodies.carried, &frames, &self.others, margin)
     }
 
-    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, eight at a time.
-    ///
-    /// # Errors
-    /// As [`nearest`](Self::nearest), or [`Error::OutOfRange`] for a negative margin.
-    pub fn which_are_clear(&self, qs: &[f64], margin: f64) -> Result<Vec<bool>> {
-        if !(margin >= 0.0 && margin.is_finite()) {
-            return Err(Error::out_of_range("margin", "zero or more and finite", margin));
-        }
-        let n = self.robot.dof();
-        qs.chunks(n).try_for_each(|q| self.robot.check("joint angles", q))?;
-        if !self.fixed_are_clear(margin) {
-            return Ok(vec![false; qs.len() / n]);
-        }
-        if self.others.obstacles.index().is_some() {
-            return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
-        }
-        Ok(which_are_clear(self, qs, margin))
-    }
-
     /// Whether the bodies that no joint moves are at least `margin` (m) from the obstacles.
-    fn fixed_are_clear(&self, margin: f64) -> bool {
+    pub(super) fn fixed_are_clear(&self, margin: f64) -> bool {
         self.fixed().is_none_or(|(distance, _)| distance >= margin)
     }
 

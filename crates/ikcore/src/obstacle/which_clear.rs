@@ -4,23 +4,39 @@
 use super::body_model::BodyPair;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::scene::Scene;
+use crate::error::{Error, Result};
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f32x8::F32x8;
 
 /// All eight lanes.
 const ALL: u32 = 0xff;
 
-/// Whether everything is at least `margin` >= 0 (m) apart at each of the configurations stored one after another, which are valid.
-pub(super) fn which_are_clear(scene: &Scene<'_>, qs: &[f64], margin: f64) -> Vec<bool> {
-    let n = scene.robot().dof();
-    let mut eight = EightScene::new(scene);
-    let mut clear = Vec::with_capacity(qs.len() / n);
-    for some in qs.chunks(8 * n) {
-        let near = near_lanes(&mut eight, some, margin);
-        let is_clear = |(lane, q): (usize, &[f64])| near & (1 << lane) == 0 || scene.is_clear(q, margin);
-        clear.extend(some.chunks(n).enumerate().map(is_clear));
+impl Scene<'_> {
+    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, eight at a time.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest), or [`Error::OutOfRange`] for a negative margin.
+    pub fn which_are_clear(&self, qs: &[f64], margin: f64) -> Result<Vec<bool>> {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return Err(Error::out_of_range("margin", "zero or more and finite", margin));
+        }
+        let n = self.robot().dof();
+        qs.chunks(n).try_for_each(|q| self.robot().check("joint angles", q))?;
+        if !self.fixed_are_clear(margin) {
+            return Ok(vec![false; qs.len() / n]);
+        }
+        if self.others.obstacles.index().is_some() {
+            return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
+        }
+        let mut eight = EightScene::new(self);
+        let mut clear = Vec::with_capacity(qs.len() / n);
+        for some in qs.chunks(8 * n) {
+            let near = near_lanes(&mut eight, some, margin);
+            let is_clear = |(lane, q): (usize, &[f64])| near & (1 << lane) == 0 || self.is_clear(q, margin);
+            clear.extend(some.chunks(n).enumerate().map(is_clear));
+        }
+        Ok(clear)
     }
-    clear
 }
 
 /// The configurations in which something may be too near, one bit each.
