@@ -73,8 +73,7 @@ pub(super) type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
 pub(super) type NearBodies = SmallVec<[usize; 4 * BLOCKS]>;
 
 impl BodyGroups {
-    /// Groups of `carried`, of which these pairs must not touch. Bodies that no joint moves are not compared with obstacles: the
-    /// scene has done so.
+    /// Groups of `carried`, of which these pairs must not touch. Bodies that no joint moves are not compared with obstacles each time.
     pub fn new(carried: &[Carried], pairs: &[[usize; 2]]) -> Self {
         let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
         stages.sort_unstable_by(|one, other| other.cmp(one));
@@ -114,9 +113,14 @@ impl BodyGroups {
         tests[index].ignored.0[far_lane] = 0.0;
     }
 
-    /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, carried: &[Carried], frames: &[Frame], others: &Others, margin: f64) -> bool {
-        are_clear(self, carried, frames, others, margin)
+    /// Whether everything keeps the distance, but for bodies that no joint moves and obstacles.
+    pub fn are_clear(&self, posed: &Posed<'_>) -> bool {
+        are_clear(self, posed)
+    }
+
+    /// Whether the bodies that no joint moves keep the distance from the obstacles.
+    pub fn are_clear_at_rest(&self, posed: &Posed<'_>) -> bool {
+        are_clear_at_rest(self, posed)
     }
 
     /// How many groups there are.
@@ -320,76 +324,109 @@ fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
     A::choose_below_x4(one, other, other, one)
 }
 
+/// A robot among others, and the distance to keep (m).
+#[derive(Clone, Copy)]
+pub(super) struct Posed<'a> {
+    pub carried: &'a [Carried],
+    /// The moving elements.
+    pub frames: &'a [Frame],
+    pub others: &'a Others,
+    /// Zero or more.
+    pub margin: f64,
+}
+
 by_instructions! {
-    fn are_clear(
-        all: &BodyGroups,
-        carried: &[Carried],
-        frames: &[Frame],
-        others: &Others,
-        margin: f64,
-    ) -> bool {
-        let obstacles = &others.obstacles;
-        let balls = all.balls(frames);
-        let ball = |i: usize| {
-            let block = &balls[i / 4];
-            let [x, y, z] = &block.start;
-            (Vector3::new(x.0[i % 4], y.0[i % 4], z.0[i % 4]), block.radius.0[i % 4])
-        };
-        // For each group the obstacles that its ball is near to.
-        let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
-        let moving = |group: usize| all.groups[group].stages > 0;
-        match obstacles.index() {
-            Some(index) => {
-                for group in (0..all.groups.len()).filter(|group| moving(*group)) {
-                    let (center, radius) = ball(group);
-                    index.near_ball(&center, radius + margin, |obstacle| near.push((group, obstacle)));
-                }
-            }
-            None => {
-                for (obstacle, shape) in obstacles.iter().enumerate() {
-                    for (i, block) in balls.iter().enumerate() {
-                        let clear = shape.clear_lanes::<A>(block, margin);
-                        if all_clear(&clear) {
-                            continue;
-                        }
-                        for lane in 0..4 {
-                            let group = 4 * i + lane;
-                            if clear.0[lane] == 0.0 && group < all.groups.len() && moving(group) {
-                                near.push((group, obstacle));
-                            }
-                        }
-                    }
-                }
-                near.sort_unstable();
-            }
+    fn are_clear(all: &BodyGroups, posed: &Posed<'_>) -> bool {
+        let balls = all.balls(posed.frames);
+        obstacles_are_clear::<A>(all, posed, &balls, true) && pairs_are_clear::<A>(all, posed, &balls)
+    }
+}
+
+by_instructions! {
+    fn are_clear_at_rest(all: &BodyGroups, posed: &Posed<'_>) -> bool {
+        obstacles_are_clear::<A>(all, posed, &all.balls(posed.frames), false)
+    }
+}
+
+/// Centre and radius (m) of the ball around a group.
+#[inline(always)]
+fn ball_in(balls: &Balls, group: usize) -> (Vector3<f64>, f64) {
+    let ([x, y, z], radius) = (&balls[group / 4].start, &balls[group / 4].radius);
+    let lane = group % 4;
+    (Vector3::new(x.0[lane], y.0[lane], z.0[lane]), radius.0[lane])
+}
+
+/// The obstacles that the balls are near to, with their groups: of those groups that a joint moves, or of the others.
+#[inline(always)]
+fn near_obstacles<A: Arithmetic>(
+    all: &BodyGroups,
+    posed: &Posed<'_>,
+    balls: &Balls,
+    moving: bool,
+) -> SmallVec<[(usize, usize); 32]> {
+    let Posed { others: Others { obstacles, .. }, margin, .. } = *posed;
+    let mut near = SmallVec::new();
+    let asked = |group: usize| group < all.groups.len() && all.is_moving(group) == moving;
+    if let Some(index) = obstacles.index() {
+        for group in (0..all.groups.len()).filter(|group| asked(*group)) {
+            let (center, radius) = ball_in(balls, group);
+            index.near_ball(&center, radius + margin, |obstacle| near.push((group, obstacle)));
         }
-        let (mut one, mut other) = (PlacedGroup::none(), PlacedGroup::none());
-        for (group, obstacle) in near {
-            for (block, capsules) in one.of::<A>(all, group, frames).iter().enumerate() {
-                let clear = obstacles[obstacle].clear_lanes::<A>(capsules, margin);
-                let part = (group, block, obstacle);
-                if !all_clear(&clear) && !all.others_are_clear(part, &clear, carried, frames, (others, margin)) {
-                    return false;
-                }
-            }
-        }
-        for pair in all.pairs_of(others) {
-            let ((near, near_radius), (far, far_radius)) = (ball(pair.near), ball(pair.far));
-            let enough = near_radius + far_radius + margin;
-            if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
+        return near;
+    }
+    for (obstacle, shape) in obstacles.iter().enumerate() {
+        for (i, block) in balls.iter().enumerate() {
+            let clear = shape.clear_lanes::<A>(block, margin);
+            if all_clear(&clear) {
                 continue;
             }
-            let (near, far) = (one.of::<A>(all, pair.near, frames), other.of::<A>(all, pair.far, frames));
-            for test in &pair.tests {
-                let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
-                let clear = larger_lanes::<A>(clear, test.ignored);
-                if !all_clear(&clear) && !all.solid_pairs_are_clear((pair, test), &clear, carried, frames, margin) {
-                    return false;
+            for lane in 0..4 {
+                if clear.0[lane] == 0.0 && asked(4 * i + lane) {
+                    near.push((4 * i + lane, obstacle));
                 }
             }
         }
-        true
     }
+    near.sort_unstable();
+    near
+}
+
+#[inline(always)]
+fn obstacles_are_clear<A: Arithmetic>(all: &BodyGroups, posed: &Posed<'_>, balls: &Balls, moving: bool) -> bool {
+    let Posed { carried, frames, others, margin } = *posed;
+    let mut placed = PlacedGroup::none();
+    for (group, obstacle) in near_obstacles::<A>(all, posed, balls, moving) {
+        for (block, capsules) in placed.of::<A>(all, group, frames).iter().enumerate() {
+            let clear = others.obstacles[obstacle].clear_lanes::<A>(capsules, margin);
+            let part = (group, block, obstacle);
+            if !all_clear(&clear) && !all.others_are_clear(part, &clear, carried, frames, (others, margin)) {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+#[inline(always)]
+fn pairs_are_clear<A: Arithmetic>(all: &BodyGroups, posed: &Posed<'_>, balls: &Balls) -> bool {
+    let Posed { carried, frames, others, margin } = *posed;
+    let (mut one, mut other) = (PlacedGroup::none(), PlacedGroup::none());
+    for pair in all.pairs_of(others) {
+        let ((near, near_radius), (far, far_radius)) = (ball_in(balls, pair.near), ball_in(balls, pair.far));
+        let enough = near_radius + far_radius + margin;
+        if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
+            continue;
+        }
+        let (near, far) = (one.of::<A>(all, pair.near, frames), other.of::<A>(all, pair.far, frames));
+        for test in &pair.tests {
+            let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
+            let clear = larger_lanes::<A>(clear, test.ignored);
+            if !all_clear(&clear) && !all.solid_pairs_are_clear((pair, test), &clear, carried, frames, margin) {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 by_instructions! {

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 
 use super::allowed_contacts::AllowedContacts;
-use super::body_groups::Others;
+use super::body_groups::{Others, Posed};
 use super::body_model::{BodyModel, BodyPair};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
@@ -36,6 +36,8 @@ pub struct Scene<'a> {
     pub(super) others: Others,
     /// What [`Self::fixed`] returns, once it was asked for.
     fixed: OnceLock<Option<(f64, BodyPair)>>,
+    /// The margin that [`Self::fixed_are_clear`] was first asked for, and its answer.
+    clear_at_rest: OnceLock<(f64, bool)>,
 }
 
 /// The robot of a scene.
@@ -79,7 +81,13 @@ impl<'a> Scene<'a> {
         let bodies = BodyModel::of(robot);
         let allowed = AllowedContacts::new(robot, &bodies.carried, &obstacles)?;
         let others = Others { obstacles, allowed, itself: true };
-        Ok(Self { robot: SceneRobot::Borrowed(robot), bodies, others, fixed: OnceLock::new() })
+        Ok(Self {
+            robot: SceneRobot::Borrowed(robot),
+            bodies,
+            others,
+            fixed: OnceLock::new(),
+            clear_at_rest: OnceLock::new(),
+        })
     }
 
     /// Of the bodies that no joint moves, which are in the same place at any configuration, the nearest to an obstacle, at this
@@ -117,8 +125,8 @@ impl<'a> Scene<'a> {
 
     /// The same scene with `robot`, an equal one.
     pub(super) fn with_shared(self, robot: &Arc<Robot>) -> Scene<'static> {
-        let Self { bodies, others, fixed, .. } = self;
-        Scene { robot: SceneRobot::Shared(Arc::clone(robot)), bodies, others, fixed }
+        let Self { bodies, others, fixed, clear_at_rest, .. } = self;
+        Scene { robot: SceneRobot::Shared(Arc::clone(robot)), bodies, others, fixed, clear_at_rest }
     }
 
     /// The nearest pair at `q` (n,), or the deepest one if pairs overlap; `None` if nothing can touch.
@@ -228,12 +236,19 @@ impl<'a> Scene<'a> {
         }
         let mut frames = self.robot.frame_buffer();
         self.robot.write_frames(q, &mut frames);
-        self.bodies.groups.are_clear(&self.bodies.carried, &frames, &self.others, margin)
+        self.bodies.groups.are_clear(&self.posed(&frames, margin))
     }
 
     /// Whether the bodies that no joint moves are at least `margin` (m) from the obstacles.
     pub(super) fn fixed_are_clear(&self, margin: f64) -> bool {
-        self.fixed().is_none_or(|(distance, _)| distance >= margin)
+        let rest = self.posed(&self.bodies.rest.frames, margin);
+        let judged = || self.bodies.groups.are_clear_at_rest(&rest);
+        let (first, are_clear) = *self.clear_at_rest.get_or_init(|| (margin, judged()));
+        if margin == first { are_clear } else { judged() }
+    }
+
+    fn posed<'b>(&'b self, frames: &'b [Frame], margin: f64) -> Posed<'b> {
+        Posed { carried: &self.bodies.carried, frames, others: &self.others, margin }
     }
 
     /// The contact of a pair that is `distance` apart (m).
