@@ -85,6 +85,35 @@ fn solutions_are_clear_and_blocked_poses_have_none() {
 }
 
 #[test]
+fn no_obstacle_is_too_large_to_be_kept_clear_of() {
+    let mut rng = rng::stream(8, 0);
+    let panda = arm("panda");
+    let hand = panda.with_capsules(panda.capsules()[panda.capsules().len() - 1..].to_vec()).unwrap();
+    for robot in [arm("ur5e"), panda, hand] {
+        let mut draw = || robot.random_configurations(1, &mut rng).unwrap();
+        let q = std::iter::repeat_with(&mut draw).find(|q| robot.tip_position(q)[0] > 0.5).unwrap();
+        let target = Target::Pose(Frame::from(&robot.fk(&q).unwrap()));
+        for size in [1e3, 1e9, 1e18, 5e19, 1e30, 1e100] {
+            // The tip is inside; the base is not, but for rounding.
+            let center = [0.5 * size + robot.tip_position(&q)[0] - 0.1, 0.0, 0.0];
+            let shapes = [
+                Shape::sphere(center, 0.5 * size),
+                Shape::cuboid(center, [size; 3], None),
+                Shape::cylinder(center, [0.0, 0.0, 1.0], 0.5 * size, size),
+            ];
+            for shape in shapes {
+                let obstacles = [shape.unwrap()];
+                let scene = Scene::new(&robot, &obstacles).unwrap();
+                assert!(!scene.is_clear(&q, 0.0) && scene.clearance(&q).unwrap() < 0.0, "{obstacles:?}");
+                assert_eq!(scene.which_are_clear(&[&q[..], &q].concat(), 0.0).unwrap(), [false; 2], "{obstacles:?}");
+                let found = solved(&robot, &target, &among(&obstacles));
+                assert_eq!(found.status, Status::InCollision, "{obstacles:?}: {}", found.message());
+            }
+        }
+    }
+}
+
+#[test]
 fn positions_and_weak_starts_are_solved_clear() {
     let robot = arm("panda");
     let mut rng = rng::stream(8, 0);

@@ -30,13 +30,13 @@ impl Scene<'_> {
         let mut nearest: SmallVec<[(f64, BodyPair); 8]> = SmallVec::new();
         self.for_each_near(least + EQUALLY_NEAR, placement, |pair| {
             let distance = self.distance(pair, placement, least + EQUALLY_NEAR);
-            if distance < least + EQUALLY_NEAR {
+            if distance <= least + EQUALLY_NEAR {
                 least = least.min(distance);
                 nearest.push((distance, pair));
             }
             least + EQUALLY_NEAR
         });
-        let equal = |distance: f64| distance < least + EQUALLY_NEAR;
+        let equal = |distance: f64| distance <= least + EQUALLY_NEAR;
         let fixed = self.fixed().filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
         let moving = nearest.into_iter().filter(|(distance, _)| equal(*distance)).map(|(_, pair)| pair);
         fixed.or_else(|| moving.min_by_key(BodyPair::order)).map(|pair| (least, pair))

@@ -13,6 +13,9 @@ use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::vec3::Vec3;
 
+/// Shapes with larger coordinates (m) are left to double precision: their squares overflow.
+const LARGEST: f64 = 1e15;
+
 /// A vector, the same in all lanes or one per lane.
 pub(crate) type Vectors = [F32x8; 3];
 
@@ -93,6 +96,10 @@ impl EightShape {
     pub fn new(shape: &Shape) -> Self {
         let number = |x: f64| F32x8::splat(x as f32);
         let ball = shape.bounding_ball();
+        let farthest = ball.center.iter().fold(ball.radius, |most, x| most.max(x.abs()));
+        if farthest.is_finite() && farthest > LARGEST {
+            return Self { center: splat(&[0.0; 3]), radius: number(f64::INFINITY), form: Form::Other(shape.clone()) };
+        }
         let form = match shape.geometry() {
             Geometry::Sphere { .. } => Form::Sphere,
             Geometry::Capsule { a, b, radius } => {

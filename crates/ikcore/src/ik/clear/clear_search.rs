@@ -145,4 +145,12 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
             ..solution
         }))
     }
+
+    /// The same, or `last`, which is not clear either, where no distance is known.
+    pub fn in_collision_or(&self, mut last: Solution, exhausted: Exhausted) -> Box<Solution> {
+        if last.status == Status::Solved {
+            last.status = Status::InCollision;
+        }
+        self.in_collision(exhausted).unwrap_or_else(|| Box::new(last))
+    }
 }

@@ -76,7 +76,7 @@ impl ClearSearch<'_, '_, '_> {
             return Err(Box::new(solution));
         }
         let found = self.cleared(solution.q.clone());
-        found.ok_or_else(|| self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(solution)))
+        found.ok_or_else(|| self.in_collision_or(solution, Exhausted::Tried))
     }
 
     /// A clear solution that one descent from `start` leads to.

@@ -21,7 +21,7 @@ impl ClearSearch<'_, '_, '_> {
                 return Ok(q);
             }
             if !self.attempt.monitor.keep_going() {
-                return Err(self.in_collision(Exhausted::Interrupted).unwrap_or_else(|| Box::new(solution)));
+                return Err(self.in_collision_or(solution, Exhausted::Interrupted));
             }
             if self.is_hopeless() || self.attempt.budget.is_spent() {
                 return Err(self.missed(solution));
@@ -43,7 +43,7 @@ impl ClearSearch<'_, '_, '_> {
     fn missed(&self, last: Solution) -> Box<Solution> {
         match last.status {
             Status::OutOfReach | Status::Interrupted => Box::new(last),
-            _ => self.in_collision(Exhausted::Tried).unwrap_or_else(|| Box::new(last)),
+            _ => self.in_collision_or(last, Exhausted::Tried),
         }
     }
 }
