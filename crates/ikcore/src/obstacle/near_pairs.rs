@@ -147,17 +147,17 @@ impl Scene<'_> {
     fn obstacles_near(&self, balls: &GroupBalls, up_to: f64) -> impl Iterator<Item = usize> + use<> {
         let obstacles = &self.others.obstacles;
         let mut near: SmallVec<[usize; 64]> = SmallVec::new();
-        if obstacles.index().is_some() {
-            for (group, (center, radius)) in balls.each.iter().enumerate() {
-                if self.bodies.groups.is_moving(group) {
-                    obstacles.each_near(center, radius + up_to.max(0.0), |obstacle| near.push(obstacle));
-                }
-            }
-            near.sort_unstable();
-            near.dedup();
+        if obstacles.index().is_none() {
+            return (0..obstacles.len()).chain(near);
         }
-        let all = if obstacles.index().is_some() { 0..0 } else { 0..obstacles.len() };
-        all.chain(near)
+        for (group, (center, radius)) in balls.each.iter().enumerate() {
+            if self.bodies.groups.is_moving(group) {
+                obstacles.each_near(center, radius + up_to.max(0.0), |obstacle| near.push(obstacle));
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        (0..0).chain(near)
     }
 
     /// Whether one of `count` bodies in a ball may be nearer than `up_to` (m) to an obstacle.
