@@ -81,10 +81,9 @@ pub(super) fn from_near_misses(
             misses.push(miss);
         }
     }
-    let mut order: Vec<usize> = (0..misses.len()).collect();
-    order.sort_unstable_by(|a, b| misses[*a].outside.total_cmp(&misses[*b].outside).then(a.cmp(b)));
+    misses.sort_by(|a, b| a.outside.total_cmp(&b.outside));
     let mut tried: SmallVec<[Point; DESCENTS]> = SmallVec::new();
-    for miss in order.iter().map(|place| misses[*place].clone()) {
+    for miss in misses {
         if tried.len() == DESCENTS {
             break;
         }

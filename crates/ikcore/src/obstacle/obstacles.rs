@@ -11,6 +11,9 @@ use crate::shape::{BoundingBall, Shape, ShapeIndex};
 /// What the distance of two balls may lose to rounding (m).
 const ROUNDING: f64 = 1e-9;
 
+/// What it may lose relative to the coordinates and radius of one.
+const RELATIVE_ROUNDING: f64 = 1e-12;
+
 /// Shapes to keep clear of, with a ball around each and, where there are many, a tree to find the near ones. Clones share all of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "Vec<Shape>", into = "Vec<Shape>")]
@@ -73,7 +76,8 @@ impl From<Vec<Shape>> for Obstacles {
     fn from(shapes: Vec<Shape>) -> Self {
         let ball = |shape: &Shape| {
             let BoundingBall { center, radius } = shape.bounding_ball();
-            (center.into(), radius)
+            let center = Vector3::from(center);
+            (center, radius + RELATIVE_ROUNDING * (radius + center.amax()))
         };
         Self(Arc::new(Prepared {
             balls: shapes.iter().map(ball).collect(),

@@ -41,6 +41,12 @@ pub(in crate::ik) enum Exhausted {
     Interrupted,
 }
 
+impl Exhausted {
+    fn status(self) -> Status {
+        if self == Self::Interrupted { Status::Interrupted } else { Status::InCollision }
+    }
+}
+
 impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn new(attempt: &'s mut Attempt<'m, 'p>, space: &'p ClearSpace<'p>) -> Self {
         let away = Goal::Clearance { up_to: space.margin() + BEYOND, weight: 1.0 };
@@ -137,8 +143,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
                 format!("{} at the best of {count} solutions tried, and others may exist", said(&nearest.contact))
             }
         };
-        let status = if exhausted == Exhausted::Interrupted { Status::Interrupted } else { Status::InCollision };
-        let solution = self.attempt.solution(status, q);
+        let solution = self.attempt.solution(exhausted.status(), q);
         Some(Box::new(Solution {
             obstruction,
             nearest: Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() })),
@@ -149,7 +154,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     /// The same, or `last`, which is not clear either, where no distance is known.
     pub fn in_collision_or(&self, mut last: Solution, exhausted: Exhausted) -> Box<Solution> {
         if last.status == Status::Solved {
-            last.status = Status::InCollision;
+            last.status = exhausted.status();
         }
         self.in_collision(exhausted).unwrap_or_else(|| Box::new(last))
     }
