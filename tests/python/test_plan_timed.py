@@ -101,6 +101,27 @@ def test_an_arm_without_redundancy_is_timed() -> None:
     assert plan.evaluations == 1
 
 
+def test_a_tolerance_is_used_and_kept() -> None:
+    robot = bik.Robot.named("ur5e")
+    path = circle(True)
+    task = bik.tasks.Pose(tolerance=[0.003, 0.003, 0.003, 0.2, 0.2, 0.3])
+    exact = bik.plan_along_path(robot, path, limits=ACCELERATION)
+    plan = bik.plan_along_path(robot, path, task=task, limits=ACCELERATION)
+    assert plan.success, plan.message
+    assert plan.cost < 0.9 * exact.cost
+    tips = robot.fk(plan.trajectory.sample(0.01)[1])
+    upright, steps = path[0, :3, :3], np.linspace(0, 40, 4001)
+    points = np.column_stack([np.interp(steps, range(41), path[:, k, 3]) for k in range(3)])
+    apart = np.abs((points - tips[:, None, :3, 3]) @ upright)
+    assert (apart <= 0.003 + 1e-5).all(axis=2).any(axis=1).all()
+    turns = upright.T @ tips[:, :3, :3]
+    sines = 0.5 * np.stack([turns[:, i, k] - turns[:, k, i] for i, k in ((2, 1), (0, 2), (1, 0))], axis=1)
+    size = np.linalg.norm(sines, axis=1, keepdims=True)
+    assert (np.abs(sines * np.arcsin(size) / size) <= np.array([0.2, 0.2, 0.3]) + 1e-5).all()
+    with pytest.raises(bik.InvalidInputError, match=r"^accuracy .* is more than the smallest tolerance of the task"):
+        bik.plan_along_path(robot, path, task=task, limits=ACCELERATION, accuracy=0.01)
+
+
 def test_mistakes_are_named() -> None:
     robot = bik.Robot.named("iiwa14")
     message = (

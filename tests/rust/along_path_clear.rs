@@ -11,7 +11,7 @@ use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::shape::Shape;
 use ikcore::solver::{Monitor, Status, Stop, Unattended};
-use ikcore::task::{Task, TaskKind};
+use ikcore::task::TaskKind;
 use nalgebra::{Rotation3, Vector3};
 
 const MARGIN: f64 = 2e-3;
@@ -273,16 +273,6 @@ fn mistakes_along_a_path_are_named() {
     assert_eq!(
         refused(&robot, &tip_path, &by_swarm),
         "along a path task=, obstacles= and self_collision= need method=\"timed\""
-    );
-    let with =
-        |task: Task| refused(&robot, &tip_path, &AlongPathOptions { task: Some(task), ..options(&robot, vec![]) });
-    assert_eq!(
-        with(Task::new(TaskKind::Pose, None, Some(&[0.1; 6]), None).unwrap()),
-        "along a path the task takes no weights, tolerance or region: accuracy= is its tolerance"
-    );
-    assert_eq!(
-        with(TaskKind::Orientation.into()),
-        "a path is followed with the position: take task Pose, Position or Pointing"
     );
 }
 

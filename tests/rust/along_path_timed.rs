@@ -62,7 +62,7 @@ fn instants(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
 
 /// How far the tip is from the path at the most (m), at many instants.
 fn farthest(robot: &Robot, tip_path: &TipPath, plan: &Plan) -> f64 {
-    instants(plan, 4000).map(|q| tip_path.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
+    instants(plan, 20_000).map(|q| tip_path.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
 }
 
 #[test]

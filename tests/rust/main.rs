@@ -6,6 +6,7 @@ mod common;
 
 mod along_path_clear;
 mod along_path_timed;
+mod along_path_tolerance;
 mod apps_paper;
 mod batch;
 mod best_posture;

@@ -24,6 +24,11 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
+/// The largest difference of two entries.
+pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
 /// Writes q + share * (end - q); rounding cannot take it beyond `end`.
 pub fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
     for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {

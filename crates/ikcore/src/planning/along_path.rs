@@ -27,7 +27,9 @@ pub fn plan_along_path(
     if options.objective == Cost::TipTravel {
         return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
     }
-    let tip_path = options.task.map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task).map(Cow::Owned))?;
+    let tip_path = options
+        .task
+        .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
     let space = options.surroundings.clear_space(robot)?;

@@ -42,7 +42,7 @@ impl Largest {
     }
 }
 
-/// The largest deviations of the tip from its path.
+/// The largest deviations of the tip from its path, beyond the leeway that it has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LargestDeviation {
     /// Distance from the path (m).
@@ -55,7 +55,8 @@ impl LargestDeviation {
     /// Returns the violations for a tip that must stay within `accuracy` (m, rad).
     pub(super) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
         let of = |quantity: &str, largest: Largest, unit: &'static str| {
-            let what = format!("{quantity} of the tip from {}", tip_path.place(largest.share));
+            let leeway = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+            let what = format!("{quantity} of the tip{leeway} from {}", tip_path.place(largest.share));
             let broken = largest.value > accuracy;
             broken.then(|| Violation { what, value: largest.value, bound: accuracy, unit: unit.into() })
         };
@@ -71,9 +72,15 @@ impl<C: Configurations> TipDeviation<'_, C> {
         LargestDeviation { distance: largest_over(knots, distance), angle: largest_over(knots, angle) }
     }
 
-    /// The larger of distance (m) and angle (rad) at a path parameter.
+    /// The distance (m) and the angle (rad) at a path parameter.
+    pub(super) fn parts_at(&self, share: f64) -> [f64; 2] {
+        [self.distance(share, share, share), self.angle(share)]
+    }
+
+    /// The larger of the two.
     pub(super) fn at(&self, share: f64) -> f64 {
-        self.distance(share, share, share).max(self.angle(share))
+        let [distance, angle] = self.parts_at(share);
+        distance.max(angle)
     }
 
     /// An upper bound of [`at`](Self::at) that is quicker to compute: the distance (m) from the path point at the same
@@ -82,10 +89,13 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(share, q);
-        let target = self.tip_path.target(share);
-        let (tip, due) = (self.robot.tip_position(q), target.position().unwrap_or_default());
-        let distance = norm(&std::array::from_fn(|k| tip[k] - due[k]));
-        distance.max(angle_between(&target, || self.robot.tip(q)))
+        let due = self.tip_path.path_target(share);
+        if let Some([distance, angle]) = due.excess(|| self.robot.tip(q)) {
+            return distance.max(angle);
+        }
+        let (tip, wanted) = (self.robot.tip_position(q), due.target.position().unwrap_or_default());
+        let distance = norm(&std::array::from_fn(|k| tip[k] - wanted[k]));
+        distance.max(angle_between(&due.target, || self.robot.tip(q)))
     }
 
     /// The largest [`at`](Self::at) at `samples` parameters between two path parameters.
@@ -96,8 +106,11 @@ impl<C: Configurations> TipDeviation<'_, C> {
     }
 
     /// The distance from the part of the path around `share` that extends one interval before `from` and after `to`:
-    /// only the position of the tip matters, not its time.
+    /// only the position of the tip matters, not its time. With leeway, that from the point at `share`.
     fn distance(&self, share: f64, from: f64, to: f64) -> f64 {
+        if let Some([distance, _]) = self.tip_path.path_target(share).excess(|| self.tip(share)) {
+            return distance;
+        }
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(share, q);
@@ -106,12 +119,18 @@ impl<C: Configurations> TipDeviation<'_, C> {
     }
 
     fn angle(&self, share: f64) -> f64 {
+        let due = self.tip_path.path_target(share);
+        match due.excess(|| self.tip(share)) {
+            Some([_, angle]) => angle,
+            None => angle_between(&due.target, || self.tip(share)),
+        }
+    }
+
+    fn tip(&self, share: f64) -> Frame {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        angle_between(&self.tip_path.target(share), || {
-            (self.configurations)(share, q);
-            self.robot.tip(q)
-        })
+        (self.configurations)(share, q);
+        self.robot.tip(q)
     }
 }
 

@@ -16,9 +16,12 @@ pub(super) struct Search {
     pub stop: Stop,
     /// Seed of the random draws.
     pub seed: u64,
+    /// Where it begins; `None`: at random.
+    pub start: Option<Point>,
 }
 
 /// Result of a search.
+#[derive(Clone)]
 pub(super) struct SearchResult {
     /// The best decision vector.
     pub x: Point,
@@ -51,7 +54,7 @@ impl Search {
         bounds: &Bounds,
         monitor: &mut dyn Monitor,
     ) -> Result<SearchResult> {
-        let Self { solver, stop, seed } = self;
+        let Self { solver, stop, seed, start } = self;
         solver.validate()?;
         stop.validate()?;
         let done = Cell::new(0);
@@ -60,7 +63,10 @@ impl Search {
         // Streams from 0 on belong to the inverse kinematics of the ends.
         let mut rng = rng::stream(*seed, u64::MAX);
         let mut x0 = Point::from_elem(0.0, recorded.dimension());
-        bounds.sample(&mut rng, &mut x0);
+        match start {
+            Some(start) => x0.copy_from_slice(start),
+            None => bounds.sample(&mut rng, &mut x0),
+        }
         let objective: &mut dyn Objective = &mut recorded;
         let mut evaluator = Evaluator::new(objective, bounds, *stop, &mut rng, &mut reporting);
         let status = solver.run(&mut evaluator, &x0);

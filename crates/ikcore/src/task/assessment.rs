@@ -67,6 +67,13 @@ impl Components {
     }
 }
 
+impl Target {
+    /// The residual of `tip`, unweighted: one entry for each component.
+    pub(crate) fn residual_by_component(&self, tip: &Frame) -> [f64; ROWS] {
+        turned_into_frame(self, &self.residual(tip))
+    }
+}
+
 /// Rotates both halves of a vector from base coordinates into the target frame. The difference of two axes is not
 /// rotated, because only its length counts.
 fn turned_into_frame(target: &Target, vector: &[f64; ROWS]) -> [f64; ROWS] {

@@ -75,7 +75,8 @@ impl Target {
         }
     }
 
-    fn residual(&self, tip: &Frame) -> [f64; ROWS] {
+    /// The residual of `tip`, unweighted and in base coordinates.
+    pub(super) fn residual(&self, tip: &Frame) -> [f64; ROWS] {
         let mut out = TaskBlock::default();
         self.linearize_unweighted(tip, 0, &mut out);
         out.residual

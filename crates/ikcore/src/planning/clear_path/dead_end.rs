@@ -5,7 +5,6 @@ use super::postures::are_all;
 use super::sequence::Unreached;
 use crate::objective::Point;
 use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact};
-use crate::task::Target;
 
 /// Postures at the points of a path, clear or not.
 pub(super) struct Layers<'a> {
@@ -41,8 +40,7 @@ impl Layers<'_> {
         let said = |contact: &Contact| {
             format!("link '{}' is {} {}", contact.link, contact.depth(space.margin()), contact.other)
         };
-        let fixes_pose = matches!(tip_path.target(share), Target::Pose(_));
-        let hands = if fixes_pose { vec![passage.problem.robot.frame_of_tip(0)] } else { vec![] };
+        let hands = if tip_path.fixes_pose() { vec![passage.problem.robot.frame_of_tip(0)] } else { vec![] };
         let hopeless = postures.first().and_then(|q| space.blocked_at(q, &hands));
         let what = match hopeless {
             Some(Blocked::Hand(contact)) => {

@@ -1,5 +1,6 @@
 //! Whether a posture on the path is clear, and whether the arm gets from one to the next.
 
+use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::obstacle::ClearSpace;
 use crate::planning::timed::{PathProblem, project};
@@ -114,7 +115,7 @@ impl<'a> Passage<'a> {
         let mut q = Point::from_slice(guess);
         self.bounds.clip(&mut q);
         let PathProblem { robot, tip_path, .. } = self.problem;
-        let missed = project(robot, &tip_path.target(share), &self.bounds, &mut q, &mut self.scratch);
+        let missed = project(robot, &tip_path.path_target(share), &self.bounds, &mut q, &mut self.scratch);
         (missed == 0.0).then_some(q)
     }
 
@@ -146,8 +147,4 @@ impl<'a> Passage<'a> {
             || halvings == 0
             || (self.leads_by(from, between, halvings - 1) && self.leads_by(between, to, halvings - 1))
     }
-}
-
-fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }

@@ -32,11 +32,13 @@ pub(super) fn postures(
     price: &Price,
     sampling: &LayerSampling<'_>,
 ) -> Result<Vec<Vec<Point>>> {
-    let mut layers = if has_closed_form(passage) {
-        by_branches(passage, sampling)?
-    } else {
-        by_following(passage, price, sampling)?
-    };
+    let mut layers = vec![vec![]; sampling.shares.len()];
+    if has_closed_form(passage) {
+        layers = by_branches(passage, sampling)?;
+    }
+    if !(has_closed_form(passage) && passage.problem.tip_path.fixes_pose()) {
+        by_following(passage, price, sampling, &mut layers)?;
+    }
     if let Some(start) = &passage.problem.options.start {
         layers[0] = vec![Point::from_slice(start)];
     }
@@ -47,7 +49,7 @@ pub(super) fn postures(
 pub(super) fn are_all(passage: &Passage<'_>, share: f64) -> bool {
     let PathProblem { robot, tip_path, .. } = passage.problem;
     let found = || solve_all(robot, &tip_path.target(share), &AllOptions::default(), &mut Unattended);
-    has_closed_form(passage) && found().is_ok_and(|found| found.complete)
+    tip_path.fixes_pose() && has_closed_form(passage) && found().is_ok_and(|found| found.complete)
 }
 
 fn has_closed_form(passage: &Passage<'_>) -> bool {
@@ -69,9 +71,13 @@ fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Ve
 }
 
 /// Motions along the path from random starts, to both sides of random places, as far as they lead.
-fn by_following(passage: &mut Passage<'_>, price: &Price, sampling: &LayerSampling<'_>) -> Result<Vec<Vec<Point>>> {
+fn by_following(
+    passage: &mut Passage<'_>,
+    price: &Price,
+    sampling: &LayerSampling<'_>,
+    layers: &mut [Vec<Point>],
+) -> Result<()> {
     let shares = sampling.shares;
-    let mut layers = vec![vec![]; shares.len()];
     let motions = 4 * sampling.density;
     for motion in 0..motions {
         checkpoint()?;
@@ -81,10 +87,10 @@ fn by_following(passage: &mut Passage<'_>, price: &Price, sampling: &LayerSampli
         let starts = starts.chunks_exact(passage.problem.robot.dof());
         let Some(first) = starts.into_iter().find_map(|start| passage.on_path(shares[begin], start)) else { continue };
         layers[begin].push(first.clone());
-        follow(passage, price, shares, (begin + 1..shares.len()).zip(begin..), &first, &mut layers);
-        follow(passage, price, shares, (0..begin).rev().zip((0..=begin).rev()), &first, &mut layers);
+        follow(passage, price, shares, (begin + 1..shares.len()).zip(begin..), &first, layers);
+        follow(passage, price, shares, (0..begin).rev().zip((0..=begin).rev()), &first, layers);
     }
-    Ok(layers)
+    Ok(())
 }
 
 /// Follows the path from the posture `q` through `steps`, pairs of a layer and the one before, until that takes a jump.

@@ -146,7 +146,7 @@ impl Interpolation<'_> {
             let q = &mut q[..n];
             path.position(middle, q);
             bounds.clip(q);
-            if project(self.robot, &self.tip_path.target(middle), &bounds, q, &mut scratch) == 0.0 {
+            if project(self.robot, &self.tip_path.path_target(middle), &bounds, q, &mut scratch) == 0.0 {
                 finer.knots.push(middle);
                 finer.rows.extend_from_slice(q);
             }

@@ -9,12 +9,14 @@
 //! | `timed_planner` | the planner |
 //! | `path_problem` | the path, what the motion has to keep, and the motion through given configurations |
 //! | `redundant_motion` | configurations along the path, and their free offsets |
+//! | `elastic_band` | the shortest motion around one |
 //! | `null_space` | joint motions that leave the tip in place |
 //! | `projection` | the nearest configuration that reaches a target |
 //! | `interpolation` | splines through configurations, dense enough to stay on the path |
 //! | `timed_cost` | the duration as a function of the offsets |
 //! | `unreachable` | the points that no configuration reaches, for the error |
 
+mod elastic_band;
 mod interpolation;
 mod null_space;
 mod path_problem;

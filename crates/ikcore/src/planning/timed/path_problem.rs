@@ -3,6 +3,7 @@
 use super::interpolation::{Corners, Interpolation, JointWaypoints};
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
+use crate::planning::deviation::TipDeviation;
 use crate::planning::time_optimal::{coarse_duration, time_all};
 use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, JointPath, MotionLimits, TimingLimits};
@@ -11,9 +12,6 @@ use crate::trajectory::Trajectory;
 use crate::wording::number;
 
 const METHOD: &str = "method=\"timed\"";
-
-/// Allowed distance of the tip from the path, relative to the extent of the path.
-const ACCURACY: f64 = 1e-3;
 
 /// Segments of the timing per piece of the spline when the alternatives at corners are compared.
 const SEGMENTS_A_PIECE: usize = 4;
@@ -56,8 +54,7 @@ impl<'a> PathProblem<'a> {
     ) -> Result<Self> {
         let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
         let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
-        // The accuracy of a sampled curve is limited by the distance of its points.
-        let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent() + tip_path.coarseness());
+        let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
         require_positive("accuracy", accuracy)?;
         if let Some(q) = options.start_within(robot, &limits)? {
             require_on_path(robot, q, tip_path, accuracy)?;
@@ -109,14 +106,21 @@ impl<'a> PathProblem<'a> {
     }
 }
 
-/// Checks that at `q` the tip is at the start of the path, within `accuracy`.
+/// Checks that at `q` the tip is at the start of the path, within its tolerance and `accuracy`.
 fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) -> Result<()> {
-    let distance = tip_path.distance(robot.tip_position(q), 0.0, 0.0);
-    if distance <= accuracy {
+    let configurations = |_: f64, out: &mut [f64]| out.copy_from_slice(q);
+    let [distance, angle] = TipDeviation { robot, tip_path, configurations }.parts_at(0.0);
+    let (what, value, unit) = if distance > accuracy {
+        ("has the tip", distance, "m")
+    } else if angle > accuracy {
+        ("turns the tip", angle, "rad")
+    } else {
         return Ok(());
-    }
-    let (distance, accuracy) = (number(distance), number(accuracy));
-    let problem = format!("start_q has the tip {distance} m from the path's first point, allowed {accuracy} m");
+    };
+    let leeway = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+    let (value, accuracy) = (number(value), number(accuracy));
+    let problem =
+        format!("start_q {what} {value} {unit}{leeway} from the path's first point, allowed {accuracy} {unit}");
     Err(Error::Infeasible { problem })
 }
 

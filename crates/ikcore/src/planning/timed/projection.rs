@@ -1,10 +1,9 @@
 //! The nearest configuration that reaches a target.
 
 use crate::math::MAX_DOF;
-use crate::objective::{Bounds, LeastSquares, Linearization};
-use crate::problem::Problem;
+use crate::objective::{Bounds, Linearization};
+use crate::planning::tip_path::{Borders, PathTarget};
 use crate::robot::Robot;
-use crate::task::{Target, Tolerance};
 
 /// Maximum number of steps; the projection converges quadratically.
 const STEPS: usize = 12;
@@ -18,16 +17,16 @@ const DAMPING: f64 = 0.05;
 /// Moves `q` onto the target, to a nearby solution. Returns the remaining error (m, rad); 0 if the target is met.
 pub(in crate::planning) fn project(
     robot: &Robot,
-    target: &Target,
+    target: &PathTarget,
     bounds: &Bounds,
     q: &mut [f64],
     scratch: &mut Linearization,
 ) -> f64 {
-    let mut problem = Problem::new(robot, target, Tolerance::default());
     let mut next = [0.0; MAX_DOF];
     let mut value = f64::INFINITY;
+    let mut borders = Borders::default();
     for _ in 0..STEPS {
-        value = problem.linearize(q, scratch).value;
+        value = target.linearize(robot, q, &mut borders, scratch);
         if value <= MET {
             return 0.0;
         }

@@ -2,10 +2,12 @@
 //!
 //! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets
 //! in the null space of the task Jacobian are free; natural splines interpolate them. The nominal configurations plus
-//! offsets are then projected back onto the points by damped least squares.
+//! offsets are then projected back onto the points by damped least squares. Where the tip has leeway, the nominal motion uses it,
+//! and offsets leave the tip where that motion has it.
 
 use nalgebra::DMatrix;
 
+use super::elastic_band::ElasticBand;
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
 use super::projection::project;
@@ -14,12 +16,11 @@ use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
-use crate::objective::{Bounds, LeastSquares, Linearization};
-use crate::planning::tip_path::TipPath;
-use crate::problem::Problem;
+use crate::objective::{Bounds, Linearization};
+use crate::planning::tip_path::{Borders, PathTarget, TipPath};
 use crate::rng;
 use crate::robot::Robot;
-use crate::task::{Target, Tolerance};
+use crate::task::Target;
 use crate::wording::number;
 
 /// Nodes of the offsets along the path: as many as the published planner has knots.
@@ -41,8 +42,10 @@ pub(in crate::planning) struct RedundantMotion<'a> {
     tip_path: &'a TipPath,
     bounds: Bounds,
     /// Targets of the tip at the nominal motion's knots.
-    targets: Vec<Target>,
+    targets: Vec<PathTarget>,
     nominal: JointWaypoints,
+    /// The same targets, with the tip where in their leeway the nominal motion has it.
+    held: Vec<PathTarget>,
     /// Directions of the self-motion at each node, one per column.
     bases: Vec<DMatrix<f64>>,
     /// Weight of each node's offset at each point: by point, then by node.
@@ -62,13 +65,14 @@ impl<'a> RedundantMotion<'a> {
         let knots = tip_path.knots(INTERVALS);
         let mut motion = Self::unplaced(robot, tip_path, JointWaypoints { knots, rows: vec![] }, start.is_some());
         motion.nominal.rows = match start {
-            Some(q) => match motion.follow(q) {
+            Some(q) => match motion.begun_at(q) {
                 Ok(nominal) => nominal,
                 Err(lost) => return Err(motion.error(&lost, seed)?),
             },
             None => motion.shortest(seed)?,
         };
-        motion.bases = motion.self_motions();
+        motion.tighten()?;
+        motion.place_nodes();
         Ok(motion)
     }
 
@@ -80,7 +84,7 @@ impl<'a> RedundantMotion<'a> {
         starts_as_given: bool,
     ) -> Self {
         let mut motion = Self::unplaced(robot, tip_path, nominal, starts_as_given);
-        motion.bases = motion.self_motions();
+        motion.place_nodes();
         motion
     }
 
@@ -89,9 +93,10 @@ impl<'a> RedundantMotion<'a> {
             robot,
             tip_path,
             bounds: Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))),
-            targets: nominal.knots.iter().map(|knot| tip_path.target(*knot)).collect(),
+            targets: nominal.knots.iter().map(|knot| tip_path.path_target(*knot)).collect(),
             weights: node_weights(&nominal.knots),
             nominal,
+            held: vec![],
             bases: vec![],
             starts_as_given,
             linearization: Linearization::default(),
@@ -105,9 +110,26 @@ impl<'a> RedundantMotion<'a> {
 
     /// Replaces the nominal motion by another one on the same path.
     pub(super) fn take(&mut self, nominal: JointWaypoints) {
-        self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
+        self.targets = nominal.knots.iter().map(|knot| self.tip_path.path_target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
         self.nominal = nominal;
+        self.place_nodes();
+    }
+
+    /// Shortens the nominal motion.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    fn tighten(&mut self) -> Result<()> {
+        let Self { robot, bounds, targets, starts_as_given, .. } = self;
+        ElasticBand { robot, bounds, targets, starts_as_given: *starts_as_given }.tighten(&mut self.nominal)
+    }
+
+    /// Finds what is free around the nominal motion.
+    fn place_nodes(&mut self) {
+        let rows = self.nominal.rows.chunks_exact(self.robot.dof());
+        let held = |(due, q): (&PathTarget, &[f64])| due.held_at(|| self.robot.tip(q));
+        self.held = self.targets.iter().zip(rows).map(held).collect();
         self.bases = self.self_motions();
     }
 
@@ -153,7 +175,7 @@ impl<'a> RedundantMotion<'a> {
             q.iter_mut().zip(&correction).for_each(|(q, c)| *q += c);
             self.bounds.clip(q);
             if point > 0 || !self.starts_as_given {
-                missed += project(self.robot, &self.targets[point], &self.bounds, q, &mut self.linearization);
+                missed += project(self.robot, &self.held[point], &self.bounds, q, &mut self.linearization);
             }
             for j in 0..n {
                 correction[j] = q[j] - from[j];
@@ -162,33 +184,51 @@ impl<'a> RedundantMotion<'a> {
         missed
     }
 
-    /// The nominal motion of least joint travel, over several starts.
+    /// The nominal motion of least joint travel, over several starts: one on the path itself, or else within the leeway.
     fn shortest(&mut self, seed: u64) -> Result<Vec<f64>> {
         let mut rng = rng::stream(seed, 0);
         let starts = self.robot.random_configurations(STARTS, &mut rng)?;
-        let mut best: Option<(f64, Vec<f64>)> = None;
         let mut farthest: Option<DeadEnd> = None;
-        for start in starts.chunks_exact(self.dof()) {
-            checkpoint()?;
-            match self.follow(start) {
-                Ok(nominal) => {
-                    let travel = travel(&nominal, self.dof());
-                    if best.as_ref().is_none_or(|(least, _)| travel < *least) {
-                        best = Some((travel, nominal));
+        for leading in [Leading::OnPath, Leading::WithinLeeway] {
+            let mut best: Option<(f64, Vec<f64>)> = None;
+            for start in starts.chunks_exact(self.dof()) {
+                checkpoint()?;
+                match self.follow(start, leading) {
+                    Ok(nominal) => {
+                        let travel = travel(&nominal, self.dof());
+                        if best.as_ref().is_none_or(|(least, _)| travel < *least) {
+                            best = Some((travel, nominal));
+                        }
                     }
-                }
-                Err(lost) => {
-                    if farthest.as_ref().is_none_or(|other| lost.is_farther_than(other)) {
-                        farthest = Some(lost);
+                    Err(lost) => {
+                        if farthest.as_ref().is_none_or(|other| lost.is_farther_than(other)) {
+                            farthest = Some(lost);
+                        }
                     }
                 }
             }
+            if let Some((_, nominal)) = best {
+                return Ok(nominal);
+            }
+            if !self.tip_path.has_leeway() {
+                break;
+            }
         }
-        match (best, farthest) {
-            (Some((_, nominal)), _) => Ok(nominal),
-            (None, Some(lost)) => Err(self.error(&lost, seed)?),
-            (None, None) => Err(Error::InvalidPath { problem: "no start was tried".into() }),
+        match farthest {
+            Some(lost) => Err(self.error(&lost, seed)?),
+            None => Err(Error::InvalidPath { problem: "no start was tried".into() }),
         }
+    }
+
+    /// The nominal motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
+    fn begun_at(&mut self, q: &[f64]) -> Result<Vec<f64>, DeadEnd> {
+        let excess = self.targets[0].excess(|| self.robot.tip(q));
+        if excess.is_none_or(|excess| excess == [0.0; 2])
+            && let Ok(nominal) = self.follow(q, Leading::InParallel)
+        {
+            return Ok(nominal);
+        }
+        self.follow(q, Leading::WithinLeeway)
     }
 
     /// Names the points that cannot be reached at all; where there are none, the place where the best motion ended.
@@ -197,7 +237,7 @@ impl<'a> RedundantMotion<'a> {
             return Ok(error);
         }
         let problem = if lost.missed > 0.0 {
-            let unit = match self.targets[lost.point] {
+            let unit = match self.targets[lost.point].target {
                 Target::Position(_) => "m",
                 _ => "(m and rad)",
             };
@@ -209,16 +249,22 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// Follows all points from `start`, each from the previous one.
-    fn follow(&mut self, start: &[f64]) -> Result<Vec<f64>, DeadEnd> {
+    fn follow(&mut self, start: &[f64], leading: Leading) -> Result<Vec<f64>, DeadEnd> {
         let n = self.dof();
+        let place = match leading {
+            Leading::OnPath => self.targets[0].on_path().place,
+            Leading::InParallel => self.targets[0].held_at(|| self.robot.tip(start)).place,
+            Leading::WithinLeeway => None,
+        };
         let mut nominal = vec![0.0; self.points() * n];
         let mut q = [0.0; MAX_DOF];
         q[..n].copy_from_slice(start);
         for (point, target) in self.targets.iter().enumerate() {
             let before = q;
+            let target = PathTarget { place, ..*target };
             let missed = match point {
                 0 if self.starts_as_given => 0.0,
-                _ => project(self.robot, target, &self.bounds, &mut q[..n], &mut self.linearization),
+                _ => project(self.robot, &target, &self.bounds, &mut q[..n], &mut self.linearization),
             };
             let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
             if missed > 0.0 || (point > 0 && jump > JUMP) {
@@ -237,8 +283,7 @@ impl<'a> RedundantMotion<'a> {
             let point = self.nominal.knots.partition_point(|knot| *knot < node as f64 / (NODES - 1) as f64);
             let point = point.min(self.points() - 1);
             let q = &self.nominal.rows[point * n..(point + 1) * n];
-            let mut problem = Problem::new(self.robot, &self.targets[point], Tolerance::default());
-            problem.linearize(q, &mut self.linearization);
+            self.held[point].linearize(self.robot, q, &mut Borders::default(), &mut self.linearization);
             let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.first.columns[joint][row]);
             let null = null_space(&jacobian);
             bases.push(match bases.first() {
@@ -248,6 +293,16 @@ impl<'a> RedundantMotion<'a> {
         }
         bases
     }
+}
+
+/// What a nominal motion follows.
+#[derive(Debug, Clone, Copy)]
+enum Leading {
+    OnPath,
+    /// The path, displaced as the start is.
+    InParallel,
+    /// The nearest pose within the leeway.
+    WithinLeeway,
 }
 
 /// Knot at which a nominal motion ended, and its distance to the point (m, rad).

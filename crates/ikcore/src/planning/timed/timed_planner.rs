@@ -4,6 +4,7 @@ use super::path_problem::{PathMotion, PathProblem};
 use super::redundant_motion::RedundantMotion;
 use super::timed_cost::TimedCost;
 use crate::error::{Error, Result};
+use crate::objective::{Objective, Point};
 use crate::planning::deviation::TipDeviation;
 use crate::planning::search::{Search, SearchResult};
 use crate::planning::tip_path::TipPath;
@@ -35,10 +36,21 @@ pub(crate) fn along_path(
     motion.take(waypoints);
     let mut cost = TimedCost::new(&problem, motion, interpolation);
     let found = search(&mut cost, options, EVALUATIONS, monitor)?;
-    let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
-    let (waypoints, _) = cost.waypoints(z);
-    let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
-    Ok(problem.plan(motion, found, stopwatch))
+    let mut plan_of = |z: &[f64]| {
+        let (waypoints, _) = cost.waypoints(z);
+        let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
+        Ok(problem.plan(motion, found.clone(), stopwatch))
+    };
+    match &found {
+        None => plan_of(&[]),
+        Some(found) => Ok(better(plan_of(&found.x)?, plan_of(&vec![0.0; found.x.len()])?)),
+    }
+}
+
+/// The plan of the search, or the nominal one where that is quicker after all: the search times a motion only roughly.
+fn better(found: Plan, nominal: Plan) -> Plan {
+    let is_better = nominal.violations.is_empty() && (!found.violations.is_empty() || nominal.cost < found.cost);
+    if is_better { nominal } else { found }
 }
 
 impl PathProblem<'_> {
@@ -109,6 +121,8 @@ pub(in crate::planning) fn search(
         solver: options.solver.clone().unwrap_or_else(evolution),
         stop: options.stop.unwrap_or(Stop { max_evaluations: evaluations, ..Stop::default() }),
         seed: options.seed,
+        // The nominal motion: nothing worse is returned.
+        start: Some(Point::from_elem(0.0, cost.dimension())),
     };
     search.run(cost, &bounds, monitor).map(Some)
 }

@@ -22,13 +22,13 @@ const EVALUATIONS: usize = 5000;
 pub(in crate::planning) fn unreachable_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Result<Option<Error>> {
     let points = tip_path.numbered_points();
     let stop = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
-    let options = SolveOptions { stop, seed, ..SolveOptions::default() };
+    let options = SolveOptions { stop, seed, task: tip_path.task().copied(), ..SolveOptions::default() };
     let mut missed: Vec<[usize; 2]> = vec![];
     let mut farthest: Option<TipError> = None;
     let stride = points.len().div_ceil(MOST_POINTS).max(1);
     for (point, share) in points.iter().enumerate().step_by(stride) {
         checkpoint()?;
-        let solution = solve(robot, &tip_path.target(*share), &options, &mut Unattended)?;
+        let solution = solve(robot, &tip_path.pose(*share), &options, &mut Unattended)?;
         if solution.status == Status::Solved {
             continue;
         }

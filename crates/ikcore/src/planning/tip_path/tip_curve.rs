@@ -2,14 +2,15 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
+use super::leeway::{Leeway, smallest_tolerance};
+use super::path_target::PathTarget;
 use super::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
 use crate::error::{Error, Result};
-use crate::math::so3::norm;
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
 use crate::path::Waypoints;
-use crate::task::{Target, Task, TaskKind};
+use crate::task::{Components, Target, Task, TaskKind};
 use crate::wording::number;
 
 /// The curve that the tip follows: straight segments between positions, with a rotation about a fixed axis on each if
@@ -21,8 +22,10 @@ pub struct TipPath {
     pub(super) shares: Vec<f64>,
     pub(super) positions: Vec<[f64; 3]>,
     rotations: Option<Vec<UnitQuaternion<f64>>>,
-    /// The axis of the tip whose direction matters, of unit length; `None` if the whole orientation does.
-    pointing: Option<[f64; 3]>,
+    /// The part of the poses that matters, without a tool; `None` if all of it does.
+    task: Option<Task>,
+    /// How far the tip may be off; `None`: not at all.
+    leeway: Option<Leeway>,
     /// Length of the curve (m); a radian of rotation counts as a metre.
     length: f64,
     /// Rows at which the direction jumps.
@@ -36,6 +39,9 @@ pub struct TipPath {
 
 /// A path pauses if it advances by less than this fraction of its length.
 pub(super) const PAUSE: f64 = 1e-9;
+
+/// Allowed distance of the tip from the path, relative to the extent of the path.
+const ACCURACY: f64 = 1e-3;
 
 impl TipPath {
     /// Straight segments from point to point.
@@ -80,7 +86,8 @@ impl TipPath {
             shares: kept.iter().map(|i| share(*i)).collect(),
             length: way,
             corners: vec![],
-            pointing: None,
+            task: None,
+            leeway: None,
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
             points: Waypoints::new(place, turned)?,
@@ -90,32 +97,54 @@ impl TipPath {
         Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
     }
 
-    /// The same curve, of whose poses only the part matters that `task` uses.
+    /// The same curve, of whose poses only the part matters that `task` uses, for a motion that strays by `accuracy` (m, rad), or
+    /// by [`default_accuracy`](Self::default_accuracy).
     ///
     /// # Errors
     /// [`Error::WrongTarget`] for a path without orientations and a task that needs them; [`Error::Contradiction`] for a
-    /// task that leaves the position free, or has weights, tolerances or a region.
-    pub(in crate::planning) fn for_task(&self, task: &Task) -> Result<Self> {
+    /// task with a region, or an accuracy above its smallest tolerance.
+    pub(in crate::planning) fn for_task(&self, task: &Task, accuracy: Option<f64>) -> Result<Self> {
         task.validate()?;
-        let refused = |problem: &str| Err(Error::Contradiction { problem: problem.into() });
-        if task.components.is_some() || task.region.is_some() {
-            return refused("along a path the task takes no weights, tolerance or region: accuracy= is its tolerance");
+        if task.region.is_some() {
+            let problem =
+                "along a path the task takes no region: weights= and tolerance= say how far the tip may be off";
+            return Err(Error::Contradiction { problem: problem.into() });
         }
-        task.target(&self.target(0.0))?;
-        match task.kind {
-            TaskKind::Pose => Ok(self.clone()),
+        task.target(&self.pose(0.0))?;
+        let curve = match task.kind {
             TaskKind::Position => {
                 let positions = Waypoints::new(self.positions.clone(), None)?;
-                Self::from_rows(&positions, &(0..self.positions.len()).collect::<Vec<_>>(), self.times.as_deref())
+                Self::from_rows(&positions, &(0..self.positions.len()).collect::<Vec<_>>(), self.times.as_deref())?
             }
-            TaskKind::Pointing { axis } => {
-                let length = norm(&axis);
-                Ok(Self { pointing: Some(axis.map(|entry| entry / length)), ..self.clone() })
-            }
-            TaskKind::Orientation => {
-                refused("a path is followed with the position: take task Pose, Position or Pointing")
-            }
-        }
+            _ => self.clone(),
+        };
+        let task = with_position(task);
+        let curve = Self { task: Some(task), ..curve };
+        let Some(components) = &task.components else { return Ok(curve) };
+        let leeway = Leeway::new(components, accuracy.unwrap_or_else(|| curve.default_accuracy()))?;
+        Ok(Self { leeway: Some(leeway), ..curve })
+    }
+
+    /// The part of the poses that matters, if not all of it does.
+    pub fn task(&self) -> Option<&Task> {
+        self.task.as_ref()
+    }
+
+    /// Whether the tip has to meet whole poses.
+    pub fn fixes_pose(&self) -> bool {
+        matches!(self.target(0.0), Target::Pose(_)) && !self.has_leeway()
+    }
+
+    /// Whether the tip may be off the path.
+    pub fn has_leeway(&self) -> bool {
+        self.leeway.is_some()
+    }
+
+    /// How far the tip may stray (m, rad) where the caller does not say: a thousandth of the extent, and the distance of the
+    /// sampled curve; no more than the smallest tolerance.
+    pub fn default_accuracy(&self) -> f64 {
+        let least = self.task.and_then(|task| task.components).map_or(f64::INFINITY, |it| smallest_tolerance(&it));
+        (ACCURACY * self.extent() + self.coarseness()).min(least)
     }
 
     /// The points that the published planner passes: the given ones, or 51 at equal times.
@@ -197,14 +226,25 @@ impl TipPath {
         knots
     }
 
-    /// Returns the target of the tip at this path parameter.
+    /// The target of the tip at this path parameter: the part of the pose that matters.
     pub fn target(&self, share: f64) -> Target {
+        let pose = self.pose(share);
+        // The task has been checked with the first pose.
+        self.task.and_then(|task| task.target(&pose).ok()).unwrap_or(pose)
+    }
+
+    /// The target, and how far the tip may be off.
+    pub(in crate::planning) fn path_target(&self, share: f64) -> PathTarget {
+        PathTarget { target: self.target(share), leeway: self.leeway, place: None }
+    }
+
+    /// The whole pose at this path parameter, or the position where the path has no orientations.
+    pub fn pose(&self, share: f64) -> Target {
         let (row, part) = self.locate(share);
         let position = self.position(share);
         let Some(rows) = &self.rotations else { return Target::Position(position) };
         let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
-        let frame = Frame::from(&pose::from_parts(position, rotation.to_rotation_matrix().into_inner()));
-        self.pointing.map_or(Target::Pose(frame), |axis| Target::Pointing { frame, axis })
+        Target::Pose(Frame::from(&pose::from_parts(position, rotation.to_rotation_matrix().into_inner())))
     }
 
     pub(super) fn position(&self, share: f64) -> [f64; 3] {
@@ -239,5 +279,16 @@ impl TipPath {
         let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
         let [from, to] = [self.shares[row], self.shares[row + 1]];
         (row, ((share - from) / (to - from)).clamp(0.0, 1.0))
+    }
+}
+
+/// The task without its tool; one of the orientation alone as a task of the pose whose position is free.
+fn with_position(task: &Task) -> Task {
+    let free = Components { weights: [0.0, 0.0, 0.0, 1.0, 1.0, 1.0], tolerance: None };
+    match task.kind {
+        TaskKind::Orientation => {
+            Task { kind: TaskKind::Pose, components: task.components.or(Some(free)), tool: None, region: None }
+        }
+        _ => Task { tool: None, ..*task },
     }
 }

@@ -13,6 +13,7 @@ pub(super) fn search(solver: Option<&AnySolver<DerivativeFree>>, stop: Option<St
         solver: solver.cloned().unwrap_or_else(published_swarm),
         stop: stop.unwrap_or_else(published_budget),
         seed,
+        start: None,
     }
 }
 
