@@ -15,7 +15,7 @@ use ikcore::task::{Target, Task, TaskKind};
 const Q: f64 = FRAC_PI_2;
 
 /// An arm without limits from rows (a, alpha, d).
-fn arm(name: &str, rows: [[f64; 3]; 6]) -> Robot {
+pub fn arm<const N: usize>(name: &str, rows: [[f64; 3]; N]) -> Robot {
     let column = |k: usize| rows.iter().map(|row| row[k]).collect();
     Robot::from_dh(name, &DhTable::new(Dh::Standard, column(0), column(1), column(2))).unwrap()
 }
@@ -24,6 +24,13 @@ pub fn puma560() -> Robot {
     let link = [[0.0, Q, 0.0], [0.4318, 0.0, 0.0], [0.0203, -Q, 0.15005]];
     let wrist = [[0.0, Q, 0.4318], [0.0, -Q, 0.0], [0.0, 0.0, 0.1]];
     arm("Puma 560", [link[0], link[1], link[2], wrist[0], wrist[1], wrist[2]])
+}
+
+/// A UR10 whose axes are off by some `off` (rad).
+pub fn calibrated_ur10(off: f64) -> Robot {
+    let upper = [[0.0, Q, 0.1273], [-0.612, off, 0.0], [-0.5723, -0.7 * off, 0.0]];
+    let wrist = [[0.0, Q, 0.163941], [0.0, -Q + 0.3 * off, 0.1157], [0.0, 0.0, 0.0922]];
+    arm("calibrated", [upper[0], upper[1], upper[2], wrist[0], wrist[1], wrist[2]])
 }
 
 pub fn jaco2() -> Robot {
@@ -327,15 +334,7 @@ fn joints_with_scale_and_offset() {
 #[test]
 fn calibrated_arms_are_only_nearly_decomposable() {
     for (off, nearly) in [(1e-6, true), (1e-12, false)] {
-        let rows = [
-            [0.0, Q, 0.1273],
-            [-0.612, off, 0.0],
-            [-0.5723, -0.7 * off, 0.0],
-            [0.0, Q, 0.163941],
-            [0.0, -Q + 0.3 * off, 0.1157],
-            [0.0, 0.0, 0.0922],
-        ];
-        let robot = arm("calibrated", rows);
+        let robot = calibrated_ur10(off);
         let says = if nearly {
             "axes 2 to 4 nearly parallel; at most 16 solutions"
         } else {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::closed_form::{geared, jaco2, puma560};
+use crate::closed_form::{arm, calibrated_ur10, geared, jaco2, puma560};
 use crate::common::{bits, configurations, pose_at, robot};
 use ikcore::ik::{AllOptions, Solution, SolveOptions, solve, solve_all};
 use ikcore::math::{Frame, pose};
@@ -105,6 +105,31 @@ fn redundant_arms_seldom_need_a_search() {
             searched += usize::from(solution.iterations > 0);
         }
         assert!(searched < 6, "{}: {searched} of 300", robot.name());
+    }
+}
+
+#[test]
+fn arms_with_a_structure_that_holds_only_nearly_need_few_evaluations() {
+    let (quarter, off) = (FRAC_PI_2, 1e-5);
+    let gen3 = [
+        [0.0, quarter, -0.2848],
+        [0.0, quarter, -0.0118],
+        [0.0, quarter, -0.4208],
+        [off, quarter, -0.0128],
+        [off, quarter, -0.3143],
+        [0.0, quarter, off],
+        [0.0, PI, -0.1674],
+    ];
+    for robot in [calibrated_ur10(1e-6), arm("Gen3, calibrated", gen3)] {
+        assert!(robot.closed_form().contains("nearly"), "{}", robot.closed_form());
+        let mut evaluations = 0;
+        for q in configurations(&robot, 300) {
+            let target = pose_at(&robot, &q);
+            let solution = solved(&robot, &target, &SolveOptions::default());
+            assert_reaches(&robot, &target, &solution, 3e-6);
+            evaluations += solution.evaluations;
+        }
+        assert!(evaluations < 8 * 300, "{}: {evaluations} evaluations", robot.name());
     }
 }
 

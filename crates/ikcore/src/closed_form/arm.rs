@@ -150,6 +150,19 @@ impl ClosedFormArm {
         }
     }
 
+    /// Finds configurations that bring the tip of the chain near `target`, off by what a structure that holds only nearly is off. Returns
+    /// false, and finds nothing, for other arms and for redundant ones.
+    #[inline]
+    pub fn approximate(&self, target: &Frame, found: &mut ArmConfigurations) -> bool {
+        match &self.method {
+            Method::Six(method) if method.structure().is_nearly() => {
+                method.likely(target, &self.drives, found);
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
     #[inline]
     pub fn family(&self, target: &Frame) -> Option<PoseFamily<'_>> {

@@ -79,10 +79,22 @@ impl<'a> PoseFamily<'a> {
     /// cost than [`Self::branches_at`]. All that are within the limits are among them.
     #[inline]
     pub fn likely_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
-        if !self.redundant.has_exact_candidates() {
+        if self.redundant.has_exact_candidates() {
+            self.candidates_at(value, limits, found);
+        } else {
             *found = self.branches_at(value).configurations();
-            return;
         }
+    }
+
+    /// Whether the structure of the arm holds only nearly: [`Self::candidates_at`] yields configurations near those that bring the tip to
+    /// the pose.
+    pub fn is_approximate(&self) -> bool {
+        self.redundant.has_approximate_candidates()
+    }
+
+    /// The candidates of the closed form within the limits, with the parameter at `value`; none for the general method.
+    #[inline]
+    pub fn candidates_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
         self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
         let verifier = self.redundant.verifier();

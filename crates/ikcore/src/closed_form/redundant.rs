@@ -101,6 +101,11 @@ impl Redundant {
         }
     }
 
+    /// Whether [`Self::add_candidates`] finds configurations off by what a structure that holds only nearly is off.
+    pub fn has_approximate_candidates(&self) -> bool {
+        self.structure().is_some_and(Structure::is_nearly)
+    }
+
     /// Whether [`Self::arcs`] end where the branches end, and no branch is lost there.
     pub fn is_sure_of_arcs(&self) -> bool {
         self.distance.is_some() && self.has_exact_candidates()

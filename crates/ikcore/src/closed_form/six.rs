@@ -203,7 +203,8 @@ impl ClosedForm {
         }
     }
 
-    /// Finds joint values that bring the tip to `target` unless forward kinematics says otherwise; for exact candidates.
+    /// Finds joint values that bring the tip to `target` unless forward kinematics says otherwise, or where the structure holds only
+    /// nearly, that bring it near; none for the general method.
     #[inline]
     pub fn likely(&self, target: &Frame, drives: &Drives, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();

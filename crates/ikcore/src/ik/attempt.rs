@@ -18,6 +18,9 @@ pub(super) const APPROACHES: usize = 8;
 /// Most evaluations of a descent beyond the tolerances.
 const REFINEMENT: usize = 200;
 
+/// Most evaluations of a descent from where a closed form that holds only nearly puts the arm: four are usual.
+const NEAR_SOLUTION: usize = 8;
+
 /// The state of solving one target.
 pub(super) struct Attempt<'m, 'p> {
     pub context: &'p SolveContext<'p>,
@@ -201,6 +204,17 @@ impl<'m, 'p> Attempt<'m, 'p> {
             Some(error) if error.position.max(error.rotation) <= VERIFIED => Ok(self.result(Status::Solved, q, error)),
             _ => Err(Miss::Near),
         }
+    }
+
+    /// The result of a short descent from the preferred one of `configurations`, which bring the tip only near the pose.
+    pub fn descended_from(
+        &mut self,
+        preference: &Preference,
+        configurations: &mut ArmConfigurations,
+    ) -> Option<Solution> {
+        let q = preference.choose(configurations).ok()?;
+        let (is_solved, q) = self.descend_some(&LevenbergMarquardt::default(), q, NEAR_SOLUTION);
+        is_solved.then(|| self.solution(Status::Solved, q))
     }
 
     /// The errors at `q` if that solves the target.

@@ -44,9 +44,14 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
         return Some(solution);
     }
     let context = attempt.context;
-    let mut likely = ArmConfigurations::none();
-    context.robot().likely_branches(pose, &mut likely);
     let preference = context.preference(start);
+    let mut likely = ArmConfigurations::none();
+    if context.robot().approximate_branches(pose, &mut likely)
+        && let Some(solution) = attempt.descended_from(&preference, &mut likely)
+    {
+        return Some(solution);
+    }
+    context.robot().likely_branches(pose, &mut likely);
     match attempt.preferred(&preference, &mut likely) {
         Ok(solution) => Some(solution),
         Err(Miss::Far) if likely.is_all && !is_wide(attempt) => {

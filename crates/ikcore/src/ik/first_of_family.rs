@@ -61,6 +61,9 @@ impl<'a> FamilySearch<'a> {
                 return Some(attempt.explained(status, q));
             }
         }
+        if let Some(solution) = self.near_the_pose(attempt) {
+            return Some(solution);
+        }
         match self.at_scattered_values(attempt) {
             Ok(solution) => Some(solution),
             Err(Scattered::Unreachable) => self.unreachable(attempt),
@@ -71,6 +74,18 @@ impl<'a> FamilySearch<'a> {
                 Err(Miss::Near) => self.near_the_limits(attempt),
             },
         }
+    }
+
+    /// Of an arm whose structure holds only nearly: by descent from what the closed form finds at a few values.
+    fn near_the_pose(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        if !self.family.is_approximate() {
+            return None;
+        }
+        let mut near = ArmConfigurations::none();
+        self.arcs.scattered(SCANNED).find_map(|value| {
+            self.family.candidates_at(value, &self.limits, &mut near);
+            attempt.descended_from(&self.preference, &mut near)
+        })
     }
 
     /// Tries a few values: most poses have a solution at one of the first.

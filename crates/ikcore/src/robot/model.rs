@@ -271,6 +271,13 @@ impl Robot {
         }
     }
 
+    /// Finds configurations that bring the tip near `pose` where the structure of the closed form holds only nearly; returns false for
+    /// other arms.
+    #[inline]
+    pub(crate) fn approximate_branches(&self, pose: &Frame, found: &mut ArmConfigurations) -> bool {
+        self.closed_form_or_reason().as_ref().is_ok_and(|form| form.approximate(&self.at_flange(pose), found))
+    }
+
     /// All configurations of a redundant arm that bring the tip to `pose`, by one parameter; None without a closed form and for arms
     /// that are not redundant.
     #[inline]
