@@ -3149,8 +3149,8 @@ def plan_along_path(
         robot: the arm.
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
-        task: which part of the poses matters: `tasks.Pose`, `Position` or `Pointing`, each with a tool if need be. The planner
-            uses what is free. None: all of it.
+        task: which part of the poses matters, with a tool if need be, and how far each component may be off: at every instant
+            within its `tolerance`; a component with weight 0 is free. The planner uses what is left free. None: all of it.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
@@ -3160,7 +3160,8 @@ def plan_along_path(
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
             decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
-            the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
+            the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. With a `task` that has
+            tolerances it is a part of them: no more than the smallest.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
             solver of its own.
         stop: budgets; None: the method's own.
