@@ -425,7 +425,7 @@ WANG_QUOTES = [
     tuned_quote("| 4 links | 1.210 | 1.138 | 1.087 | 0.901 |"),
     tuned_quote("| 5 links | 1.282 | 1.183 | 1.194 | 1.038 |"),
     wang_quote("2.7 times (pentagram", "along_path", gain("pentagram")),
-    wang_quote("2.0 times (closed curve", "along_path", gain("closed curve")),
+    wang_quote("2.1 times (closed curve", "along_path", gain("closed curve")),
 ]
 
 QUOTES = CHENG_QUOTES + YUAN_QUOTES + KHAN_QUOTES + PSO_QUOTES + WANG_QUOTES
