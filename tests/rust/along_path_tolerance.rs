@@ -1,5 +1,7 @@
 //! Tolerances and free components along a path: kept at every instant, and used.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::rotation_between;
 use ikcore::math::{Frame, Pose, pose};
@@ -226,9 +228,38 @@ fn what_cannot_be_asked_for_is_named() {
         refused(&robot, &poses, &coarse),
         "accuracy 0.001000 is more than the smallest tolerance of the task, 1.000e-4"
     );
+    let says = refused(&robot, &poses, &options(&robot, TaskKind::Orientation.into()));
+    assert_eq!(
+        says,
+        "path: the task leaves the tip so free that the arm need not move from point 0 of the path to the path between points 0 and \
+         1: ask for more of the pose, or for smaller tolerances"
+    );
     let positions = poses.iter().map(|pose| pose.translation.vector.into()).collect();
     let bare = TipPath::through(&Waypoints::new(positions, None).unwrap()).unwrap();
     let turned = options(&robot, task(TaskKind::Orientation, &[0.1; 3]));
     let says = plan_along_path(&robot, &bare, &turned, &mut Unattended).unwrap_err().to_string();
     assert_eq!(says, "task Orientation needs a target pose (4, 4), got a position (3,)");
+}
+
+#[test]
+fn a_wider_tolerance_is_no_worse() {
+    let robot = Robot::named("ur5e").unwrap();
+    let upright = Rotation3::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2);
+    let on_ring = |i: usize| {
+        let angle = TAU * i as f64 / 40.0;
+        pose::translation(0.6, 0.2 * angle.cos(), 0.5 + 0.2 * angle.sin()) * upright
+    };
+    let ring: Vec<Pose> = (0..=40).map(on_ring).collect();
+    let mut least = planned(&robot, &ring, &options(&robot, TaskKind::Pose.into())).cost;
+    for angle in [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 2.0] {
+        // The last one lets the arm stay where it is.
+        let near = if angle == 2.0 { 1.0 } else { 0.002 };
+        let task = task(TaskKind::Pose, &[near, near, near, angle, angle, angle]);
+        let plan = planned(&robot, &ring, &options(&robot, task));
+        assert_eq!(plan.status, Status::Solved, "{angle}: {}", plan.message());
+        println!("{angle}: {} for {least}", plan.cost);
+        assert!(plan.cost <= 1.05 * least, "{angle} rad: {} s for {least} s", plan.cost);
+        assert!(farthest(&robot, &ring, &task, &plan) <= 1.02);
+        least = least.min(plan.cost);
+    }
 }

@@ -19,6 +19,9 @@ const BEYOND: f64 = 1.5;
 /// A sweep that moves no joint by more (rad, m) is the last.
 const SETTLED: f64 = 1e-4;
 
+/// Neighbours stay this far apart (rad, m): the arm moves on along the path, if slowly, where it could rest.
+const APART: f64 = 1e-4;
+
 /// What holds the band.
 pub(super) struct ElasticBand<'a> {
     pub robot: &'a Robot,
@@ -48,7 +51,10 @@ impl ElasticBand<'_> {
                 self.pull(motion, point, q);
                 let met = project(self.robot, &self.targets[point], self.bounds, q, &mut scratch) == 0.0;
                 let here = &motion.rows[point * n..(point + 1) * n];
-                if met && self.tension(motion, point, q) < self.tension(motion, point, here) {
+                let apart = neighbours(motion, point).into_iter().all(|other| {
+                    other == point || largest_difference(q, &motion.rows[other * n..(other + 1) * n]) > APART
+                });
+                if met && apart && self.tension(motion, point, q) < self.tension(motion, point, here) {
                     moved = moved.max(largest_difference(q, here));
                     motion.rows[point * n..(point + 1) * n].copy_from_slice(q);
                 }

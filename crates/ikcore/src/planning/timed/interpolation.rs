@@ -78,6 +78,7 @@ impl Interpolation<'_> {
     /// As [`path`](Self::path).
     pub(super) fn stretches(&self, waypoints: &JointWaypoints) -> Result<Vec<JointPath>> {
         let n = self.robot.dof();
+        self.refuse_rest(waypoints)?;
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         // Natural ends, i.e. zero curvature, would be less accurate.
         let spline = |from: usize, to: usize| {
@@ -92,6 +93,23 @@ impl Interpolation<'_> {
         ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
         ends.push(last);
         ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
+    }
+
+    /// Refuses a motion that rests at a part of the path: a spline over the path cannot.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] names that part.
+    fn refuse_rest(&self, waypoints: &JointWaypoints) -> Result<()> {
+        let n = self.robot.dof();
+        let JointWaypoints { knots, rows } = waypoints;
+        let rests = |i: &usize| rows[(i - 1) * n..i * n] == rows[i * n..(i + 1) * n];
+        let Some(i) = (1..knots.len()).find(rests) else { return Ok(()) };
+        let [from, to] = [knots[i - 1], knots[i]].map(|share| self.tip_path.place(share));
+        let problem = format!(
+            "the task leaves the tip so free that the arm need not move from {from} to {to}: ask for more of the pose, or for \
+             smaller tolerances"
+        );
+        Err(Error::InvalidPath { problem })
     }
 
     /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more

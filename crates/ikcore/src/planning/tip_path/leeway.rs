@@ -9,8 +9,9 @@ use crate::objective::TaskBlock;
 use crate::task::{Components, Criterion, Target, Tolerance};
 use crate::wording::number;
 
-/// A configuration that is sought from outside the leeway is to be this far inside, so that the search ends.
-const INSIDE: f64 = 0.98;
+/// A configuration that is sought from outside the leeway is to be this far inside (m, rad), so that the search ends. Little, because
+/// configurations that follow one another along the border are not to differ for it.
+const INSIDE: f64 = 1e-6;
 
 /// Where the tip is relative to a target, along its axes: x, y, z (m) and the rotation vector (rad), or the difference of the axes of
 /// a pointing target.
@@ -73,7 +74,7 @@ impl Leeway {
             if borders.0[k] == 0.0 {
                 drop_row(k, dof, block);
             } else {
-                block.residual[k] -= INSIDE * allowed * borders.0[k];
+                block.residual[k] -= (allowed - INSIDE).max(0.0) * borders.0[k];
             }
         }
         if is_pointing(target) { squares + self.reduce_angle(borders, dof, block) } else { squares }
@@ -90,7 +91,7 @@ impl Leeway {
         if allowed > 0.0 {
             let is_drawn = borders.0[3] != 0.0 && chord > 0.0;
             let along = if is_drawn { difference.map(|entry| entry / chord) } else { [0.0; 3] };
-            let missing = if is_drawn { chord - INSIDE * allowed } else { 0.0 };
+            let missing = if is_drawn { chord - (allowed - INSIDE).max(0.0) } else { 0.0 };
             block.residual[3..].copy_from_slice(&[missing, 0.0, 0.0]);
             for column in &mut block.columns[..dof] {
                 let slope = (0..3).map(|k| along[k] * column[3 + k]).sum();
