@@ -161,6 +161,7 @@ impl<'a> FamilySearch<'a> {
             return nearest_of_all_branches(attempt, &self.preference, self.start);
         }
         let obstruction = obstruction(attempt, None);
-        Some(ended(attempt, self.start, Status::OutOfReach, obstruction))
+        let from = attempt.first_start(self.start);
+        Some(ended(attempt, from, obstruction))
     }
 }
