@@ -49,9 +49,9 @@ impl<'a> PoseFamily<'a> {
         self.redundant.arcs(&self.pose, &limits.0)
     }
 
-    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves some values. False says nothing.
-    pub fn is_excluded(&self, limits: &FamilyLimits) -> bool {
-        self.redundant.is_excluded(&self.pose, &limits.0)
+    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
+    pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
+        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
     }
 
     /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are

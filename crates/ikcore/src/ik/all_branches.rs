@@ -119,10 +119,14 @@ impl Taker<'_, '_, '_> {
         let limits = family.limits(lower, upper);
         let arcs = family.arcs(&limits);
         // Outside the arcs there is none: without arcs the pose is out of reach, though not of wide tolerances.
-        self.found.complete = (arcs.is_empty() || family.is_excluded(&limits)) && !self.nearly;
+        self.found.complete = arcs.is_empty() && !self.nearly;
         for finer in [1, FINER, FINER * FINER] {
             self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
             if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
+                return;
+            }
+            if finer == 1 && family.is_excluded(&limits, &arcs) && !self.nearly {
+                self.found.complete = true;
                 return;
             }
         }

@@ -81,7 +81,7 @@ impl<'a> FamilySearch<'a> {
         let mut likely = ArmConfigurations::none();
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
-            if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits) {
+            if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits, &self.arcs) {
                 return Err(Scattered::Unreachable);
             }
             self.family.likely_at(value, &self.limits, &mut likely);

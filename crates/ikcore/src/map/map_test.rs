@@ -149,12 +149,12 @@ impl<'a> MapTest<'a> {
                     }
                 }
                 Way::Family(limits) => {
-                    if let Some(family) = self.robot().family(&pose)
-                        && !family.is_excluded(limits)
-                    {
+                    if let Some(family) = self.robot().family(&pose) {
                         let arcs = family.arcs(limits);
-                        let values = arcs.scattered(self.options.evaluations);
-                        family.visit_within(limits, values, |branches| found.take_branches(branches));
+                        if !family.is_excluded(limits, &arcs) {
+                            let values = arcs.scattered(self.options.evaluations);
+                            family.visit_within(limits, values, |branches| found.take_branches(branches));
+                        }
                     }
                 }
                 Way::Search => {
