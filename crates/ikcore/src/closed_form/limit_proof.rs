@@ -98,15 +98,15 @@ impl LimitProof {
         })
     }
 
-    /// Whether no value of the parameter on `arcs` has a configuration within limits, for certain.
-    pub fn excludes(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7]) -> bool {
+    /// A value of the parameter on `arcs` near which a configuration may be within limits; None if there is none for certain.
+    pub fn open_value(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7]) -> Option<f64> {
         let moving = Moving::new(self, goal, limits);
         let mut left = MOST_INTERVALS;
-        arcs.iter().all(|[first, last]| {
+        arcs.iter().find_map(|[first, last]| {
             let count = ((last - first) / LONGEST).ceil().max(1.0);
             let length = (last - first) / count;
-            let mut parts = (0..count as usize).map(|k| first + length * k as f64);
-            parts.all(|start| moving.is_excluded(&Arc::between([start, start + length]), &mut left))
+            let mut starts = (0..count as usize).map(|k| first + length * k as f64);
+            starts.find_map(|start| moving.open_value(&Arc::between([start, start + length]), &mut left))
         })
     }
 }
@@ -132,13 +132,19 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// Whether no value of the parameter in `part` has a configuration within limits, by looking at no more than `left` intervals.
-    fn is_excluded(&self, part: &Arc, left: &mut usize) -> bool {
+    /// A value in `part` near which a configuration may be within limits, by looking at no more than `left` intervals.
+    fn open_value(&self, part: &Arc, left: &mut usize) -> Option<f64> {
         if *left == 0 {
-            return false;
+            return Some(part.middle);
         }
         *left -= 1;
-        !self.may_hold(part) || part.half > SHORTEST && part.halves().iter().all(|half| self.is_excluded(half, left))
+        if !self.may_hold(part) {
+            return None;
+        }
+        if part.half <= SHORTEST {
+            return Some(part.middle);
+        }
+        part.halves().iter().find_map(|half| self.open_value(half, left))
     }
 
     /// Whether a branch may be within limits with the parameter in `part`.
@@ -260,7 +266,7 @@ mod tests {
                 let part = Arc { middle: value + half * rng.uniform_in(-1.0, 1.0), half };
                 let goal = chain.tip_at(&q);
                 assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
-                assert!(!proof.excludes(&goal, &ParameterArcs::CIRCLE, &limits), "{q:?} {limits:?}");
+                assert!(proof.open_value(&goal, &ParameterArcs::CIRCLE, &limits).is_some(), "{q:?} {limits:?}");
             }
         }
     }
@@ -274,7 +280,7 @@ mod tests {
                 let mut limits = [[-2.9, 2.9]; 7];
                 (limits[1], limits[5]) = ([q[1] + 0.5, q[1] + 1.0], [q[5] - 1.0, q[5] - 0.7]);
                 let goal = chain.tip_at(&q);
-                excluded += usize::from(proof.excludes(&goal, &ParameterArcs::CIRCLE, &limits));
+                excluded += usize::from(proof.open_value(&goal, &ParameterArcs::CIRCLE, &limits).is_none());
                 empty += 1;
             }
             assert!(excluded > 100, "{excluded} of {empty}");

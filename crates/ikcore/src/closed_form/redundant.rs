@@ -170,11 +170,15 @@ impl Redundant {
         &self.verifier
     }
 
-    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`.
-    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
-        match (&self.method, &pose.by_arm_angle) {
-            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
-            _ => self.proof.as_ref().is_some_and(|proof| proof.excludes(&pose.goal, arcs, &limits.axes)),
+    /// A value of the parameter (rad, m) on `arcs`, which [`Self::arcs`] leaves, near which a configuration may be within limits; None if
+    /// there is none for certain.
+    pub fn open_value(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> Option<f64> {
+        match (&self.method, &pose.by_arm_angle, &self.proof) {
+            (Method::ArmAngle(method), Some(pose), _) if method.is_excluded(pose, &limits.axes, &limits.ranges[3]) => {
+                None
+            }
+            (Method::Given(_), _, Some(proof)) => proof.open_value(&pose.goal, arcs, &limits.axes),
+            _ => arcs.middles().next(),
         }
     }
 

@@ -28,8 +28,8 @@ const ROUNDED: f64 = 1e-6;
 enum Scattered {
     /// No solution is within the limits.
     Unreachable,
-    /// None is at these values.
-    Open,
+    /// None is at these values; near this one there may be one.
+    Open(f64),
     /// Branches that failed took half the budget: the rest is for a search.
     TooCostly,
 }
@@ -65,10 +65,10 @@ impl<'a> FamilySearch<'a> {
             Ok(solution) => Some(solution),
             Err(Scattered::Unreachable) => self.unreachable(attempt),
             Err(Scattered::TooCostly) => None,
-            Err(Scattered::Open) => match self.at_decisive_values(attempt) {
+            Err(Scattered::Open(value)) => match self.at_decisive_values(attempt) {
                 Ok(solution) => Some(solution),
                 Err(Miss::Far) => self.unreachable(attempt),
-                Err(Miss::Near) => self.near_the_limits(attempt),
+                Err(Miss::Near) => self.near_the_limits(attempt, value),
             },
         }
     }
@@ -78,11 +78,11 @@ impl<'a> FamilySearch<'a> {
         if self.arcs.is_empty() {
             return Err(Scattered::Unreachable);
         }
-        let mut likely = ArmConfigurations::none();
+        let (mut likely, mut open) = (ArmConfigurations::none(), None);
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
-            if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits, &self.arcs) {
-                return Err(Scattered::Unreachable);
+            if number == VALUES_BEFORE_DOUBT {
+                open = Some(self.open_value()?);
             }
             self.family.likely_at(value, &self.limits, &mut likely);
             if likely.is_empty() {
@@ -105,7 +105,13 @@ impl<'a> FamilySearch<'a> {
                 return Err(Scattered::TooCostly);
             }
         }
-        Err(Scattered::Open)
+        Err(Scattered::Open(open.map_or_else(|| self.open_value(), Ok)?))
+    }
+
+    /// Where a solution may be, if there may be one.
+    #[cold]
+    fn open_value(&self) -> Result<f64, Scattered> {
+        self.family.open_value(&self.limits, &self.arcs).ok_or(Scattered::Unreachable)
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
@@ -125,10 +131,10 @@ impl<'a> FamilySearch<'a> {
         Err(miss)
     }
 
-    /// A solution near branches that are little outside the limits.
+    /// A solution near branches that are little outside the limits, `value` of the parameter first.
     #[cold]
-    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
-        match from_near_misses(attempt, self.family, &self.arcs, &self.preference) {
+    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>, value: f64) -> Option<Solution> {
+        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, value) {
             Ok(solution) => Some(solution),
             Err(Miss::Far) if self.family.is_sure_of_arcs() => self.searched_in_short(attempt),
             Err(_) => None,
