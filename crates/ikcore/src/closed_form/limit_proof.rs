@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 
+use crate::closed_form::arm_angle_limits::Values;
 use crate::closed_form::axis_chain::AxisChain;
 use crate::closed_form::enclosure::{Arc, Ball, Swing, distance};
 use crate::closed_form::orbit::Orbit;
@@ -24,11 +25,14 @@ const SLACK: f64 = 1e-4;
 /// Longest interval of the parameter (rad) that is looked at.
 const LONGEST: f64 = 0.4;
 
-/// Half an interval of the parameter (rad) that is too short to be halved: if it may have a solution, the proof ends.
+/// Half an interval of the parameter (rad) that is too short to be halved.
 const SHORTEST: f64 = 0.002;
 
-/// Most intervals that are looked at.
+/// Most intervals that are halved.
 const MOST_INTERVALS: usize = 300;
+
+/// Descents from a value lead to configurations at values as near as this (rad).
+const APART: f64 = 0.02;
 
 /// An arm, prepared. Joints are in the order parameter, A, B, C, D, E, F.
 #[derive(Debug, Clone, Copy)]
@@ -98,16 +102,35 @@ impl LimitProof {
         })
     }
 
-    /// A value of the parameter on `arcs` near which a configuration may be within limits; None if there is none for certain.
-    pub fn open_value(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7]) -> Option<f64> {
+    /// Values of the parameter on `arcs` near which a configuration may be within limits, the first `most` of them; none if there is
+    /// none for certain.
+    pub fn open_values(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7], most: usize) -> Values {
         let moving = Moving::new(self, goal, limits);
-        let mut left = MOST_INTERVALS;
-        arcs.iter().find_map(|[first, last]| {
+        let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS };
+        for [first, last] in arcs.iter() {
             let count = ((last - first) / LONGEST).ceil().max(1.0);
             let length = (last - first) / count;
-            let mut starts = (0..count as usize).map(|k| first + length * k as f64);
-            starts.find_map(|start| moving.open_value(&Arc::between([start, start + length]), &mut left))
-        })
+            for start in (0..count as usize).map(|k| first + length * k as f64) {
+                moving.add_open(&Arc::between([start, start + length]), &mut open);
+            }
+        }
+        open.values
+    }
+}
+
+/// What branch and bound has found.
+struct Open {
+    values: Values,
+    /// Values wanted, and intervals that may still be looked at.
+    most: usize,
+    left: usize,
+}
+
+impl Open {
+    /// Whether there are enough values, or a configuration in `part` would be near one of them.
+    fn covers(&self, part: &Arc) -> bool {
+        let near = |value: &f64| (part.middle - value).abs() + part.half < APART;
+        self.values.len() >= self.most || self.values.last().is_some_and(near)
     }
 }
 
@@ -132,19 +155,22 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// A value in `part` near which a configuration may be within limits, by looking at no more than `left` intervals.
-    fn open_value(&self, part: &Arc, left: &mut usize) -> Option<f64> {
-        if *left == 0 {
-            return Some(part.middle);
+    /// Adds values in `part` near which a configuration may be within limits. Where too many intervals are looked at, all that is left
+    /// may hold one.
+    fn add_open(&self, part: &Arc, open: &mut Open) {
+        if open.covers(part) {
+            return;
         }
-        *left -= 1;
+        let is_last = part.half <= SHORTEST || open.left == 0;
+        open.left = open.left.saturating_sub(1);
         if !self.may_hold(part) {
-            return None;
+            return;
         }
-        if part.half <= SHORTEST {
-            return Some(part.middle);
+        if is_last {
+            open.values.push(part.middle);
+        } else {
+            part.halves().iter().for_each(|half| self.add_open(half, open));
         }
-        part.halves().iter().find_map(|half| self.open_value(half, left))
     }
 
     /// Whether a branch may be within limits with the parameter in `part`.
@@ -266,7 +292,7 @@ mod tests {
                 let part = Arc { middle: value + half * rng.uniform_in(-1.0, 1.0), half };
                 let goal = chain.tip_at(&q);
                 assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
-                assert!(proof.open_value(&goal, &ParameterArcs::CIRCLE, &limits).is_some(), "{q:?} {limits:?}");
+                assert!(!proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty(), "{q:?} {limits:?}");
             }
         }
     }
@@ -280,7 +306,7 @@ mod tests {
                 let mut limits = [[-2.9, 2.9]; 7];
                 (limits[1], limits[5]) = ([q[1] + 0.5, q[1] + 1.0], [q[5] - 1.0, q[5] - 0.7]);
                 let goal = chain.tip_at(&q);
-                excluded += usize::from(proof.open_value(&goal, &ParameterArcs::CIRCLE, &limits).is_none());
+                excluded += usize::from(proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty());
                 empty += 1;
             }
             assert!(excluded > 100, "{excluded} of {empty}");

@@ -150,20 +150,16 @@ impl ParameterArcs {
         })
     }
 
-    /// The middle of each.
-    pub fn middles(&self) -> impl Iterator<Item = f64> {
-        self.iter().map(|[start, end]| 0.5 * (start + end))
-    }
-
     /// `count` values, each far from those before: the middles of the arcs, then van der Corput's sequence along them.
     pub fn scattered(&self, count: usize) -> impl Iterator<Item = f64> {
         let length = self.length();
+        let middles = self.iter().map(|[start, end]| 0.5 * (start + end));
         let along = move |number: usize| {
             let reversed = (number as u64).reverse_bits() as f64 / 2.0_f64.powi(64);
             self.at(reversed * length)
         };
         let further = if length > 0.0 { 2..count } else { 2..2 };
-        self.middles().chain(further.map(along))
+        middles.chain(further.map(along))
     }
 
     /// The value at a distance along the arcs.

@@ -49,15 +49,15 @@ impl<'a> PoseFamily<'a> {
         self.redundant.arcs(&self.pose, &limits.0)
     }
 
-    /// A value of the parameter (rad, m) on `arcs`, which [`Self::arcs`] leaves, near which a configuration may be within limits; None if
-    /// there is none for certain.
-    pub fn open_value(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> Option<f64> {
-        self.redundant.open_value(&self.pose, &limits.0, arcs)
-    }
-
     /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
-        self.open_value(limits, arcs).is_none()
+        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
+    }
+
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
+    /// can be known.
+    pub fn open_values(&self, limits: &FamilyLimits, arcs: &ParameterArcs, most: usize) -> Values {
+        self.redundant.open_values(&self.pose, &limits.0, arcs, most)
     }
 
     /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are

@@ -170,16 +170,19 @@ impl Redundant {
         &self.verifier
     }
 
-    /// A value of the parameter (rad, m) on `arcs`, which [`Self::arcs`] leaves, near which a configuration may be within limits; None if
-    /// there is none for certain.
-    pub fn open_value(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> Option<f64> {
-        match (&self.method, &pose.by_arm_angle, &self.proof) {
-            (Method::ArmAngle(method), Some(pose), _) if method.is_excluded(pose, &limits.axes, &limits.ranges[3]) => {
-                None
-            }
-            (Method::Given(_), _, Some(proof)) => proof.open_value(&pose.goal, arcs, &limits.axes),
-            _ => arcs.middles().next(),
+    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`.
+    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
+            _ => self.proof.is_some() && self.open_values(pose, limits, arcs, 1).is_empty(),
         }
+    }
+
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
+    /// can be known.
+    pub fn open_values(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs, most: usize) -> Values {
+        let by_proof = |proof: &LimitProof| proof.open_values(&pose.goal, arcs, &limits.axes, most);
+        self.proof.as_deref().map(by_proof).unwrap_or_default()
     }
 
     /// Values of the parameter of which one at least has a configuration within limits, if there is any; None where these are not

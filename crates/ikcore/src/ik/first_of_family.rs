@@ -18,6 +18,9 @@ const SCANNED: usize = 8;
 /// Values after which it is asked whether any can have a solution: most poses have one before.
 const VALUES_BEFORE_DOUBT: usize = 4;
 
+/// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
+const OPEN: usize = 8;
+
 /// The search after both takes one of so many evaluations that the budget leaves.
 const SEARCHED_SHARE: usize = 400;
 
@@ -28,8 +31,8 @@ const ROUNDED: f64 = 1e-6;
 enum Scattered {
     /// No solution is within the limits.
     Unreachable,
-    /// None is at these values; near this one there may be one.
-    Open(f64),
+    /// None is at these values.
+    Open,
     /// Branches that failed took half the budget: the rest is for a search.
     TooCostly,
 }
@@ -65,10 +68,10 @@ impl<'a> FamilySearch<'a> {
             Ok(solution) => Some(solution),
             Err(Scattered::Unreachable) => self.unreachable(attempt),
             Err(Scattered::TooCostly) => None,
-            Err(Scattered::Open(value)) => match self.at_decisive_values(attempt) {
+            Err(Scattered::Open) => match self.at_decisive_values(attempt) {
                 Ok(solution) => Some(solution),
                 Err(Miss::Far) => self.unreachable(attempt),
-                Err(Miss::Near) => self.near_the_limits(attempt, value),
+                Err(Miss::Near) => self.near_the_limits(attempt),
             },
         }
     }
@@ -78,11 +81,13 @@ impl<'a> FamilySearch<'a> {
         if self.arcs.is_empty() {
             return Err(Scattered::Unreachable);
         }
-        let (mut likely, mut open) = (ArmConfigurations::none(), None);
+        let mut likely = ArmConfigurations::none();
+        let mut doubted = false;
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
             if number == VALUES_BEFORE_DOUBT {
-                open = Some(self.open_value()?);
+                self.doubt()?;
+                doubted = true;
             }
             self.family.likely_at(value, &self.limits, &mut likely);
             if likely.is_empty() {
@@ -105,13 +110,16 @@ impl<'a> FamilySearch<'a> {
                 return Err(Scattered::TooCostly);
             }
         }
-        Err(Scattered::Open(open.map_or_else(|| self.open_value(), Ok)?))
+        if !doubted {
+            self.doubt()?;
+        }
+        Err(Scattered::Open)
     }
 
-    /// Where a solution may be, if there may be one.
+    /// Ends where there is no solution for certain.
     #[cold]
-    fn open_value(&self) -> Result<f64, Scattered> {
-        self.family.open_value(&self.limits, &self.arcs).ok_or(Scattered::Unreachable)
+    fn doubt(&self) -> Result<(), Scattered> {
+        if self.family.is_excluded(&self.limits, &self.arcs) { Err(Scattered::Unreachable) } else { Ok(()) }
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
@@ -131,10 +139,11 @@ impl<'a> FamilySearch<'a> {
         Err(miss)
     }
 
-    /// A solution near branches that are little outside the limits, `value` of the parameter first.
+    /// A solution near branches that are little outside the limits.
     #[cold]
-    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>, value: f64) -> Option<Solution> {
-        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, value) {
+    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        let open = self.family.open_values(&self.limits, &self.arcs, OPEN);
+        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, &open) {
             Ok(solution) => Some(solution),
             Err(Miss::Far) if self.family.is_sure_of_arcs() => self.searched_in_short(attempt),
             Err(_) => None,

@@ -36,9 +36,6 @@ const DESCENTS: usize = 6;
 /// Most evaluations of a descent.
 const STEPS: usize = 15;
 
-/// Most evaluations of one from the value at which bounds leave a solution possible.
-const MOST_STEPS: usize = 100;
-
 /// Near misses in which all joints differ by less (rad, m) lead to the same place.
 const APART: f64 = 0.3;
 
@@ -59,24 +56,24 @@ impl NearMiss {
     }
 }
 
-/// A solution that a descent from a near miss leads to, looked for at the value `first` of the parameter and then at others; a near miss
+/// A solution that a descent from a near miss leads to, looked for at the values `open` of the parameter and then at others; a near miss
 /// if a branch is inside the limits that does not reach the pose: the tolerances are tighter than rounding allows the closed form.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
     (family, preference): (&PoseFamily<'_>, &Preference),
     arcs: &ParameterArcs,
-    first: f64,
+    open: &[f64],
 ) -> Result<Solution, Miss> {
     let mut look = Look::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
-    let values = std::iter::once(first).chain(arcs.iter().flatten().copied()).chain(arcs.spread(LOOKED));
-    for (number, value) in values.enumerate() {
-        let (near, steps) = if number == 0 { (TOUCHING, MOST_STEPS) } else { (AT_A_SOLUTION, STEPS) };
+    let others = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
+    for (number, value) in open.iter().copied().chain(others).enumerate() {
+        let near = if number < open.len() { TOUCHING } else { AT_A_SOLUTION };
         for miss in look.at(value) {
             if miss.outside < near
-                && let Some(solution) = descended(attempt, &miss, steps)
+                && let Some(solution) = descended(attempt, &miss)
             {
                 return Ok(solution);
             }
@@ -105,7 +102,7 @@ pub(super) fn from_near_misses(
         } else {
             miss
         };
-        if let Some(solution) = descended(attempt, &miss, STEPS) {
+        if let Some(solution) = descended(attempt, &miss) {
             return Ok(solution);
         }
     }
@@ -113,8 +110,8 @@ pub(super) fn from_near_misses(
 }
 
 /// The solution that a descent from a near miss leads to.
-fn descended(attempt: &mut Attempt<'_, '_>, miss: &NearMiss, steps: usize) -> Option<Solution> {
-    let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q.clone(), steps);
+fn descended(attempt: &mut Attempt<'_, '_>, miss: &NearMiss) -> Option<Solution> {
+    let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q.clone(), STEPS);
     is_solved.then(|| attempt.solution(Status::Solved, q))
 }
 
