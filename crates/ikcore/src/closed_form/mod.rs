@@ -3,8 +3,8 @@
 //!
 //! Read `six` first: it decides the structure of a chain of six joints (`structure`) and its method (`spherical_wrist`,
 //! `sliding_arm`, `three_parallel`, `general`) once, and solves poses. Seven joints (`redundant`) become six by giving one of them
-//! (`given_joint`), or are solved for a given arm angle (`arm_angle`); `pose_family` asks them for many values at once. Five (`five_joints`) become six
-//! by adding one; `planar` serves planar arms and SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of
+//! (`given_joint`), or are solved for a given arm angle (`arm_angle`); `pose_family` asks them for many values at once, and
+//! what limits leave of the values is known from `parameter_arcs`, `arm_angle_limits` and `limit_proof`. Five (`five_joints`) become six by adding one; `planar` serves planar arms and SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of
 //! trigonometric polynomials (`trigonometric`), and yield candidates as cosines and sines; `verify` keeps those that forward
 //! kinematics confirms. `arm` takes the axes from a robot's chain and converts joint values.
 //!
@@ -20,10 +20,12 @@ mod axis_chain;
 mod branches;
 mod configurations;
 mod elbow_distance;
+mod enclosure;
 mod five_joints;
 mod four_angles;
 mod general;
 mod given_joint;
+mod limit_proof;
 mod orbit;
 mod parameter_arcs;
 mod planar;

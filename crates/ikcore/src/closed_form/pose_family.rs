@@ -49,9 +49,15 @@ impl<'a> PoseFamily<'a> {
         self.redundant.arcs(&self.pose, &limits.0)
     }
 
-    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves some values. False says nothing.
-    pub fn is_excluded(&self, limits: &FamilyLimits) -> bool {
-        self.redundant.is_excluded(&self.pose, &limits.0)
+    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
+    pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
+        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
+    }
+
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
+    /// can be known.
+    pub fn open_values(&self, limits: &FamilyLimits, arcs: &ParameterArcs, most: usize) -> Values {
+        self.redundant.open_values(&self.pose, &limits.0, arcs, most)
     }
 
     /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are

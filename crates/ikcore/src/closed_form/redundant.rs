@@ -12,6 +12,7 @@ use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
 use crate::closed_form::given_joint::GivenJoint;
+use crate::closed_form::limit_proof::LimitProof;
 use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::six::Structure;
 use crate::closed_form::verify::{Verifier, verified_seven};
@@ -34,6 +35,8 @@ pub struct Redundant {
     back: Frame,
     method: Method,
     distance: Option<ElbowDistance>,
+    /// For a joint as parameter.
+    proof: Option<Box<LimitProof>>,
     verifier: Verifier<7>,
 }
 
@@ -64,17 +67,18 @@ pub struct AxisLimits {
 impl Redundant {
     /// Chooses the parameter; `None` where joints slide and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
-        let (method, distance) = match ArmAngle::new(chain) {
-            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain)),
+        let (method, distance, proof) = match ArmAngle::new(chain) {
+            Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain), None),
             None => {
                 let given = GivenJoint::new(chain)?;
-                let distance =
-                    if given.axis() == 6 { ElbowDistance::by_last(chain) } else { ElbowDistance::by_first(chain) };
-                (Method::Given(Box::new(given)), distance)
+                let by_first = given.axis() == 0;
+                let distance = if by_first { ElbowDistance::by_first(chain) } else { ElbowDistance::by_last(chain) };
+                let proof = distance.and_then(|_| LimitProof::new(chain, by_first)).map(Box::new);
+                (Method::Given(Box::new(given)), distance, proof)
             }
         };
         let verifier = Verifier::new(&AxisChain { tip: Frame::IDENTITY, ..*chain }, 1e-3);
-        Some(Self { chain: *chain, back: chain.tip.inverse(), method, distance, verifier })
+        Some(Self { chain: *chain, back: chain.tip.inverse(), method, distance, proof, verifier })
     }
 
     /// What the value in [`Self::solve`] means.
@@ -171,12 +175,19 @@ impl Redundant {
         &self.verifier
     }
 
-    /// Whether limits exclude every value of the parameter although [`Self::arcs`] leaves some; never true but for arm angles.
-    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits) -> bool {
+    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`.
+    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
         match (&self.method, &pose.by_arm_angle) {
             (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
-            _ => false,
+            _ => self.proof.is_some() && self.open_values(pose, limits, arcs, 1).is_empty(),
         }
+    }
+
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
+    /// can be known.
+    pub fn open_values(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs, most: usize) -> Values {
+        let by_proof = |proof: &LimitProof| proof.open_values(&pose.goal, arcs, &limits.axes, most);
+        self.proof.as_deref().map(by_proof).unwrap_or_default()
     }
 
     /// Values of the parameter of which one at least has a configuration within limits, if there is any; None where these are not

@@ -9,7 +9,7 @@ use super::whole_turns::NearestTurns;
 use crate::closed_form::{ArmBranches, BranchError, FamilyLimits, MOST_JOINTS, PoseFamily, VERIFIED};
 use crate::math::Frame;
 use crate::objective::Point;
-use crate::solver::{LevenbergMarquardt, MultiStart, Status};
+use crate::solver::{LevenbergMarquardt, MultiStart};
 use crate::task::{Target, TipError};
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
@@ -95,7 +95,9 @@ pub(super) fn nearest_of_all_branches(
     if let Some(q) = preference.nearest(all.solutions.iter().map(|solution| solution.q)) {
         return attempt.solved_at(Point::from_slice(q));
     }
-    Some(ended(attempt, start, Status::OutOfReach, all.obstruction?))
+    let obstruction = all.obstruction?;
+    let from = attempt.first_start(start);
+    Some(ended(attempt, from, obstruction))
 }
 
 /// Takes the branches that are inside the limits.
@@ -117,10 +119,14 @@ impl Taker<'_, '_, '_> {
         let limits = family.limits(lower, upper);
         let arcs = family.arcs(&limits);
         // Outside the arcs there is none: without arcs the pose is out of reach, though not of wide tolerances.
-        self.found.complete = (arcs.is_empty() || family.is_excluded(&limits)) && !self.nearly;
+        self.found.complete = arcs.is_empty() && !self.nearly;
         for finer in [1, FINER, FINER * FINER] {
             self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
             if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
+                return;
+            }
+            if finer == 1 && family.is_excluded(&limits, &arcs) && !self.nearly {
+                self.found.complete = true;
                 return;
             }
         }

@@ -56,7 +56,12 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
         Ok(solution) => Some(solution),
         Err(Miss::Far) if likely.is_all && !is_wide(attempt) => {
             let obstruction = obstruction(attempt, Some(likely.len()));
-            Some(ended(attempt, start, Status::OutOfReach, obstruction))
+            let from = match start {
+                None => preference.nearest_miss(&mut likely),
+                Some(start) => Some(Point::from_slice(start)),
+            };
+            let from = from.unwrap_or_else(|| attempt.first_start(None));
+            Some(ended(attempt, from, obstruction))
         }
         // The pose is nearly singular, or the tolerances are tighter than rounding allows the closed form.
         Err(_) => nearest_of_all_branches(attempt, &preference, start),

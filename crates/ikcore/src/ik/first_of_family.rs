@@ -18,6 +18,9 @@ const SCANNED: usize = 8;
 /// Values after which it is asked whether any can have a solution: most poses have one before.
 const VALUES_BEFORE_DOUBT: usize = 4;
 
+/// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
+const OPEN: usize = 8;
+
 /// The search after both takes one of so many evaluations that the budget leaves.
 const SEARCHED_SHARE: usize = 400;
 
@@ -94,10 +97,12 @@ impl<'a> FamilySearch<'a> {
             return Err(Scattered::Unreachable);
         }
         let mut likely = ArmConfigurations::none();
+        let mut doubted = false;
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
-            if number == VALUES_BEFORE_DOUBT && self.family.is_excluded(&self.limits) {
-                return Err(Scattered::Unreachable);
+            if number == VALUES_BEFORE_DOUBT {
+                self.doubt()?;
+                doubted = true;
             }
             self.family.likely_at(value, &self.limits, &mut likely);
             if likely.is_empty() {
@@ -120,7 +125,16 @@ impl<'a> FamilySearch<'a> {
                 return Err(Scattered::TooCostly);
             }
         }
+        if !doubted {
+            self.doubt()?;
+        }
         Err(Scattered::Open)
+    }
+
+    /// Ends where there is no solution for certain.
+    #[cold]
+    fn doubt(&self) -> Result<(), Scattered> {
+        if self.family.is_excluded(&self.limits, &self.arcs) { Err(Scattered::Unreachable) } else { Ok(()) }
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
@@ -143,7 +157,8 @@ impl<'a> FamilySearch<'a> {
     /// A solution near branches that are little outside the limits.
     #[cold]
     fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
-        match from_near_misses(attempt, self.family, &self.arcs, &self.preference) {
+        let open = self.family.open_values(&self.limits, &self.arcs, OPEN);
+        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, &open) {
             Ok(solution) => Some(solution),
             Err(Miss::Far) if self.family.is_sure_of_arcs() => self.searched_in_short(attempt),
             Err(_) => None,
@@ -176,6 +191,7 @@ impl<'a> FamilySearch<'a> {
             return nearest_of_all_branches(attempt, &self.preference, self.start);
         }
         let obstruction = obstruction(attempt, None);
-        Some(ended(attempt, self.start, Status::OutOfReach, obstruction))
+        let from = attempt.first_start(self.start);
+        Some(ended(attempt, from, obstruction))
     }
 }

@@ -56,21 +56,23 @@ impl NearMiss {
     }
 }
 
-/// A solution that a descent from a near miss leads to; a near miss if a branch is inside the limits that does not reach the pose: the
-/// tolerances are tighter than rounding allows the closed form.
+/// A solution that a descent from a near miss leads to, looked for at the values `open` of the parameter and then at others; a near miss
+/// if a branch is inside the limits that does not reach the pose: the tolerances are tighter than rounding allows the closed form.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
-    family: &PoseFamily<'_>,
+    (family, preference): (&PoseFamily<'_>, &Preference),
     arcs: &ParameterArcs,
-    preference: &Preference,
+    open: &[f64],
 ) -> Result<Solution, Miss> {
     let mut look = Look::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
     // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
-    for value in arcs.iter().flatten().copied().chain(arcs.spread(LOOKED)) {
+    let others = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
+    for (number, value) in open.iter().copied().chain(others).enumerate() {
+        let near = if number < open.len() { TOUCHING } else { AT_A_SOLUTION };
         for miss in look.at(value) {
-            if miss.outside < AT_A_SOLUTION
+            if miss.outside < near
                 && let Some(solution) = descended(attempt, &miss)
             {
                 return Ok(solution);

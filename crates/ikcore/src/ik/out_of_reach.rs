@@ -2,10 +2,18 @@
 
 use super::attempt::Attempt;
 use super::solution::Solution;
-use crate::solver::{LevenbergMarquardt, Status};
+use crate::objective::{LeastSquares, Linearization, Point};
+use crate::solver::Status;
+use crate::task::Assessment;
 
-/// Evaluations of the descent towards the target: it ends within 3 to 8 % of what a whole descent reaches (measured on four arms).
-const STEPS: usize = 4;
+/// Steps towards the target: they end within 3 % of what a whole descent reaches, on the average (measured on five arms).
+const STEPS: usize = 2;
+
+/// Damping of the first step, relative to the squared error.
+const DAMPING: f64 = 0.3;
+
+/// Factor on the damping after each step: most of the error is to stay, and what would remove it goes too far.
+const INCREASE: f64 = 2.0;
 
 /// Tolerances (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
 const WIDE: f64 = 1e-5;
@@ -31,15 +39,35 @@ pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> St
     }
 }
 
-/// The result where there is no solution, or none was found, with a configuration a few steps nearer to the target than the start.
+/// The result where there is no solution, with a configuration a few steps nearer to the target than `from`.
 #[cold]
-pub(super) fn ended(
-    attempt: &mut Attempt<'_, '_>,
-    start: Option<&[f64]>,
-    status: Status,
-    obstruction: String,
-) -> Solution {
-    let x0 = attempt.first_start(start);
-    let (_, q) = attempt.descend_some(&LevenbergMarquardt::default(), x0, STEPS);
-    Solution { obstruction, ..attempt.solution(status, q) }
+pub(super) fn ended(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
+    let (q, Assessment { error, .. }) = approached(attempt, from);
+    Solution { obstruction, ..attempt.result(Status::OutOfReach, q, error.into()) }
+}
+
+/// Where a few steps of damped least squares lead from `q`, or the last point before they went too far.
+fn approached(attempt: &mut Attempt<'_, '_>, mut q: Point) -> (Point, Assessment) {
+    let Attempt { context, problem, budget, .. } = attempt;
+    let limits = [context.bounds().lower(), context.bounds().upper()];
+    let (mut linearization, mut damping) = (Linearization::default(), DAMPING);
+    let (mut next, mut least) = (Point::from_slice(&q), f64::INFINITY);
+    for _ in 0..STEPS.min(budget.left()) {
+        let value = problem.linearize(&next, &mut linearization).value;
+        budget.evaluations += 1;
+        if !(value < least) {
+            break;
+        }
+        least = value;
+        q.copy_from_slice(&next);
+        linearization.write_step(damping * value, &q, limits, &mut next);
+        budget.iterations += 1;
+        damping *= INCREASE;
+    }
+    let there = problem.assess(&next);
+    if there.score.value < least {
+        return (next, there);
+    }
+    let here = problem.assess(&q);
+    (q, here)
 }

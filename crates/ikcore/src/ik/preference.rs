@@ -129,10 +129,21 @@ impl Preference {
     /// inside. All are brought to whole turns near the limits.
     pub fn misses(&self, configurations: &mut ArmConfigurations, most: f64) -> impl Iterator<Item = (f64, Point)> {
         let outside = turn_near(&self.joints, configurations);
-        (0..configurations.len()).filter(move |place| outside[*place] < most).map(move |place| {
-            let joints = self.joints.iter().zip(configurations.columns());
-            (outside[place], joints.map(|(joint, values)| joint.moved_inside(values[place])).collect())
-        })
+        let places = (0..configurations.len()).filter(move |place| outside[*place] < most);
+        places.map(move |place| (outside[place], self.moved_inside(configurations, place)))
+    }
+
+    /// That of `configurations` least outside the limits, moved inside. All are brought to whole turns near the limits.
+    pub fn nearest_miss(&self, configurations: &mut ArmConfigurations) -> Option<Point> {
+        let outside = turn_near(&self.joints, configurations);
+        let least = (0..configurations.len()).min_by(|a, b| outside[*a].total_cmp(&outside[*b]))?;
+        Some(self.moved_inside(configurations, least)).filter(|q| q.iter().all(|q| q.is_finite()))
+    }
+
+    /// The configuration inside the limits nearest to one of `configurations`, which are at whole turns near the limits.
+    fn moved_inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+        let joints = self.joints.iter().zip(configurations.columns());
+        joints.map(|(joint, values)| joint.moved_inside(values[place])).collect()
     }
 
     /// The preferred one of `configurations` inside the limits, which are at their whole turns nearest to the reference already.

@@ -4,7 +4,7 @@ use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
 use super::rings::Ring;
-use crate::closed_form::{ArmBranches, FamilyLimits};
+use crate::closed_form::{ArmBranches, FamilyLimits, PoseFamily};
 use crate::error::{Error, Result};
 use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
 use crate::kinematics::Reach;
@@ -16,6 +16,9 @@ use crate::task::{Target, Tolerance};
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
 const AT_LIMIT: f64 = 1e-9;
+
+/// Values of the parameter of a redundant arm after which it is asked whether the limits exclude all: most poses have a solution before.
+const VALUES_BEFORE_DOUBT: usize = 4;
 
 /// Decides which poses of a map are reached. Shared by all threads.
 pub(crate) struct MapTest<'a> {
@@ -149,12 +152,8 @@ impl<'a> MapTest<'a> {
                     }
                 }
                 Way::Family(limits) => {
-                    if let Some(family) = self.robot().family(&pose)
-                        && !family.is_excluded(limits)
-                    {
-                        let arcs = family.arcs(limits);
-                        let values = arcs.scattered(self.options.evaluations);
-                        family.visit_within(limits, values, |branches| found.take_branches(branches));
+                    if let Some(family) = self.robot().family(&pose) {
+                        found.take_family(&family, limits, self.options.evaluations);
                     }
                 }
                 Way::Search => {
@@ -206,6 +205,31 @@ impl Found<'_, '_> {
             }
         }
         !self.is_everywhere()
+    }
+
+    /// Takes those at `count` values of the parameter of a redundant arm, or at fewer where none can be found.
+    fn take_family(&mut self, family: &PoseFamily<'_>, limits: &FamilyLimits, count: usize) {
+        let arcs = family.arcs(limits);
+        let mut values = arcs.scattered(count);
+        let wants_more = self.take_values(family, limits, values.by_ref().take(VALUES_BEFORE_DOUBT));
+        if wants_more && !arcs.is_empty() && (self.reached > 0 || !family.is_excluded(limits, &arcs)) {
+            self.take_values(family, limits, values);
+        }
+    }
+
+    /// Takes those at these values; false if no more matter.
+    fn take_values(
+        &mut self,
+        family: &PoseFamily<'_>,
+        limits: &FamilyLimits,
+        values: impl Iterator<Item = f64>,
+    ) -> bool {
+        let mut wants_more = true;
+        family.visit_within(limits, values, |branches| {
+            wants_more = self.take_branches(branches);
+            wants_more
+        });
+        wants_more
     }
 
     /// Takes a configuration that has the pose, at the azimuths at which it is a solution.

@@ -1,0 +1,200 @@
+//! Enclosures of what moves: vectors in balls, numbers between bounds, angles on arcs.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::orbit::Orbit;
+use crate::closed_form::vector::{Vector, cross, dot};
+
+/// A vector that is within `radius` of `middle`.
+#[derive(Debug, Clone, Copy)]
+pub struct Ball {
+    /// Where it is at most so far from.
+    pub middle: Vector,
+    /// How far.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// Turned about the unit vector `axis` by `turn`, or by up to `half` (rad) more or less.
+    pub fn turned(&self, axis: &Vector, turn: Angle, half: f64) -> Self {
+        Self { middle: turn.about(axis, &self.middle), radius: self.radius + half * distance(axis, &self.middle) }
+    }
+
+    /// Its smallest distance from the line along the unit vector `axis`.
+    pub fn least_distance(&self, axis: &Vector) -> f64 {
+        (distance(axis, &self.middle) - self.radius).max(0.0)
+    }
+
+    /// By how much its direction about `axis` may differ from that of its middle (rad).
+    pub fn swerve(&self, axis: &Vector) -> f64 {
+        let distance = distance(axis, &self.middle);
+        // The tangent of the angle whose sine is radius / distance: larger, and no arcsine.
+        if self.radius < distance { self.radius / (distance * distance - self.radius * self.radius).sqrt() } else { PI }
+    }
+}
+
+/// The distance of `v` from the line along the unit vector `axis`.
+pub fn distance(axis: &Vector, v: &Vector) -> f64 {
+    let across = cross(axis, v);
+    dot(&across, &across).sqrt()
+}
+
+/// base + east cos q + north sin q.
+#[derive(Debug, Clone, Copy)]
+pub struct Swing {
+    /// The middle value.
+    pub base: f64,
+    /// What is added at q = 0.
+    pub east: f64,
+    /// What is added a quarter of a turn on.
+    pub north: f64,
+}
+
+impl Swing {
+    /// The component along `axis` of a point on a circle.
+    pub fn along(axis: &Vector, circle: &Orbit) -> Self {
+        Self { base: dot(axis, &circle.centre), east: dot(axis, &circle.cosine), north: dot(axis, &circle.sine) }
+    }
+
+    /// The squared distance of a point on a circle from `other`.
+    pub fn squared_distance(circle: &Orbit, other: &Vector) -> Self {
+        let way = std::array::from_fn(|k| 2.0 * (circle.centre[k] - other[k]));
+        let constant = 0.25 * dot(&way, &way) + dot(&circle.sine, &circle.sine);
+        Self { base: constant, ..Self::along(&way, circle) }
+    }
+
+    fn size(&self) -> f64 {
+        (self.east * self.east + self.north * self.north).sqrt()
+    }
+
+    /// Bounds on the values within `half` (rad) of an angle, and `slack` beyond.
+    pub fn near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
+        let value = self.base + self.east * turn.cos + self.north * turn.sin;
+        let slope = (self.north * turn.cos - self.east * turn.sin).abs();
+        let spread = half * slope + 0.5 * half * half * self.size() + slack;
+        [value - spread, value + spread]
+    }
+
+    /// The arcs on which the value is within `range`, or may be where its amplitude is by a factor of 1 - `doubt` to 1 + `doubt`
+    /// another one; on either side of the peak. None where there are none.
+    pub fn arcs(&self, range: [f64; 2], doubt: f64) -> Option<[Arc; 2]> {
+        let [low, high] = range.map(|value| value - self.base);
+        let (least, most) = ((1.0 - doubt) * self.size(), (1.0 + doubt) * self.size());
+        // Cosines of the distance from the peak; infinite, or NaN, where nothing is known.
+        let from = if doubt < 1.0 { low / if low > 0.0 { most } else { least } } else { -1.0 };
+        let to = if doubt < 1.0 { high / if high > 0.0 { least } else { most } } else { 1.0 };
+        if from > 1.0 || to < -1.0 {
+            return None;
+        }
+        let near = if to < 1.0 { to.acos() } else { 0.0 };
+        let far = if from > -1.0 { from.acos() } else { PI };
+        let (peak, middle, half) = (self.north.atan2(self.east), 0.5 * (near + far), 0.5 * (far - near));
+        Some([Arc { middle: peak + middle, half }, Arc { middle: peak - middle, half }])
+    }
+}
+
+/// The angles within `half` of `middle` (rad).
+#[derive(Debug, Clone, Copy)]
+pub struct Arc {
+    /// The middle one.
+    pub middle: f64,
+    /// Half the length.
+    pub half: f64,
+}
+
+impl Arc {
+    /// Between two angles.
+    pub fn between([first, last]: [f64; 2]) -> Self {
+        Self { middle: 0.5 * (first + last), half: 0.5 * (last - first) }
+    }
+
+    /// The same, longer at both ends.
+    pub fn wider(self, by: f64) -> Self {
+        Self { half: self.half + by, ..self }
+    }
+
+    /// Whether it is the whole circle.
+    pub fn is_all(&self) -> bool {
+        !(self.half < PI)
+    }
+
+    /// Both halves.
+    pub fn halves(&self) -> [Self; 2] {
+        let half = 0.5 * self.half;
+        [self.middle - half, self.middle + half].map(|middle| Self { middle, half })
+    }
+
+    /// The part on an arc of `limits`, whole turns aside; all of it where that may be two parts.
+    pub fn within(self, limits: &Self) -> Option<Self> {
+        if !(self.half + limits.half < PI) {
+            return Some(self);
+        }
+        let off = self.middle - limits.middle;
+        let off = off - TAU * (off / TAU).round();
+        let (first, last) = ((off - self.half).max(-limits.half), (off + self.half).min(limits.half));
+        let Self { middle, half } = Self::between([first, last]);
+        (first <= last).then_some(Self { middle: limits.middle + middle, half })
+    }
+
+    /// The middle angle.
+    pub fn turn(&self) -> Angle {
+        Angle::by(self.middle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::rng;
+
+    #[test]
+    fn arcs_hold_every_angle_at_which_a_value_is_within_a_range() {
+        let mut rng = rng::stream(3, 0);
+        for _ in 0..20_000 {
+            let mut draw = |most: f64| rng.uniform_in(-most, most);
+            let swing = Swing { base: draw(1.0), east: draw(1.0), north: draw(1.0) };
+            let (q, doubt) = (draw(PI), draw(1.1).abs());
+            let factor = 1.0 + doubt * draw(1.0);
+            let value = swing.base + factor * (swing.east * q.cos() + swing.north * q.sin());
+            let range = [value - draw(0.5).abs() - 1e-12, value + draw(0.5).abs() + 1e-12];
+            let arcs = swing.arcs(range, doubt).expect("it is within");
+            let angle = Arc { middle: q + TAU, half: 0.0 };
+            assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{swing:?} {q} {range:?}");
+            let half = draw(1.0).abs();
+            let near = swing.near(Angle::by(q + half * draw(1.0)), half, 1e-12);
+            let value = swing.base + swing.east * q.cos() + swing.north * q.sin();
+            assert!(near[0] <= value && value <= near[1]);
+        }
+        assert!(Swing { base: 0.0, east: 0.6, north: 0.8 }.arcs([1.2, 2.0], 0.1).is_none());
+    }
+
+    #[test]
+    fn a_ball_holds_what_is_turned_and_its_direction() {
+        let (axis, mut rng) = (unit(&[0.3, -0.5, 0.8]), rng::stream(3, 1));
+        for _ in 0..2000 {
+            let mut draw = |most: f64| rng.uniform_in(-most, most);
+            let ball = Ball { middle: [draw(1.0), draw(1.0), draw(1.0)], radius: draw(0.5).abs() };
+            let (q, half) = (draw(3.0), draw(0.5).abs());
+            let off = unit(&[draw(1.0), draw(1.0), draw(1.0)]);
+            let point: Vector = std::array::from_fn(|k| ball.middle[k] + ball.radius * off[k]);
+            let turned = ball.turned(&axis, Angle::by(q), half);
+            let there = Angle::by(q + half * draw(1.0)).about(&axis, &point);
+            assert!(norm(&sub(&there, &turned.middle)) <= turned.radius + 1e-12);
+            let [a, b] = [cross(&axis, &ball.middle), cross(&axis, &point)];
+            let apart = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
+            assert!(apart.min(1.0).acos() <= ball.swerve(&axis) + 1e-7);
+        }
+    }
+
+    #[test]
+    fn what_is_left_of_an_arc_within_limits() {
+        let limits = Arc::between([-1.0, 2.0]);
+        let left = Arc::between([TAU + 1.5, TAU + 2.5]).within(&limits).expect("a part");
+        assert!((left.middle - 1.75).abs() < 1e-12 && (left.half - 0.25).abs() < 1e-12);
+        assert!(Arc::between([2.1, 3.0]).within(&limits).is_none());
+        assert!(Arc { middle: f64::NAN, half: 0.0 }.within(&limits).is_some());
+        assert!(Arc::between([-4.0, 4.0]).is_all() && !limits.is_all());
+    }
+}

@@ -1,0 +1,315 @@
+//! Proof that limits exclude every value of the first or the last joint of an arm with seven joints, by branch and bound.
+//!
+//! Of the other six joints A, B and C carry a point to where the pose has it, and the axes of D, E and F meet there. On an interval of
+//! the parameter each joint stays on arcs: what decides its angle moves no farther than known levers turned by known angles. Where
+//! every branch has a joint whose arc is outside its limits the interval has no solution; elsewhere it is halved.
+
+use std::f64::consts::PI;
+
+use crate::closed_form::arm_angle_limits::Values;
+use crate::closed_form::axis_chain::AxisChain;
+use crate::closed_form::enclosure::{Arc, Ball, Swing, distance};
+use crate::closed_form::orbit::Orbit;
+use crate::closed_form::parameter_arcs::ParameterArcs;
+use crate::closed_form::structure::{EXACT, Pair, three_meet};
+use crate::closed_form::vector::{Vector, across, add, cross, dot, norm, scaled, sub};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// A pose off by as much (m, rad) is excluded too: more than the tolerances of a caller, and than rounding.
+const OFF: f64 = 2e-5;
+
+/// A joint outside its limits by less (rad) may be inside.
+const SLACK: f64 = 1e-4;
+
+/// Longest interval of the parameter (rad) that is looked at.
+const LONGEST: f64 = 0.4;
+
+/// Half an interval of the parameter (rad) that is too short to be halved.
+const SHORTEST: f64 = 0.002;
+
+/// Most intervals that are halved.
+const MOST_INTERVALS: usize = 300;
+
+/// Descents from a value lead to configurations at values as near as this (rad).
+const APART: f64 = 0.02;
+
+/// An arm, prepared. Joints are in the order parameter, A, B, C, D, E, F.
+#[derive(Debug, Clone, Copy)]
+pub struct LimitProof {
+    axes: [Vector; 7],
+    /// A point on the axis of the parameter.
+    parameter: Vector,
+    /// Where the axes of A and B meet.
+    root: Vector,
+    /// Where the axes of D, E and F meet.
+    centre: Vector,
+    /// From the root to a point on the axis of C, and from there to the centre.
+    links: [Vector; 2],
+    /// Squared distance from root to centre, by C.
+    distance: Swing,
+    /// Cosine of the angle between the axes of D and F, by E.
+    bend: Swing,
+    /// Unit vectors across the axes of D and F.
+    across: [[Vector; 2]; 2],
+    /// The parameter is the last joint: the chain is taken from tip to base.
+    reversed: bool,
+    /// A pose off by [`OFF`] puts the centre off by as much (m).
+    off: f64,
+}
+
+/// A pose and limits: what moves as the parameter does.
+struct Moving<'a> {
+    arm: &'a LimitProof,
+    limits: [Arc; 7],
+    /// From the root to the centre.
+    centre: Orbit,
+    /// Its squared length, and its component along the axis of A.
+    distance: Swing,
+    height: Swing,
+    /// The axis of F.
+    end: Orbit,
+    /// Where the pose has the axis of F and what is across it.
+    end_axis: Vector,
+    end_across: [Vector; 2],
+}
+
+impl LimitProof {
+    /// For the first joint as parameter, or the last; None unless three axes meet at the other end, and two next to the parameter's.
+    pub fn new(chain: &AxisChain<7>, by_first: bool) -> Option<Self> {
+        let size = chain.size();
+        let joints: [_; 7] = std::array::from_fn(|k| {
+            let mut joint = chain.joints[if by_first { k } else { 6 - k }];
+            joint.axis = if by_first { joint.axis } else { scaled(&joint.axis, -1.0) };
+            joint
+        });
+        let centre = three_meet(&joints[4..], size, EXACT)?;
+        let Pair::Meet(root) = Pair::of(&joints[1], &joints[2], size, EXACT) else { return None };
+        let axes = joints.map(|joint| joint.axis);
+        let [.., c, d, e, f] = &axes;
+        let links = [sub(&joints[3].point, &root), sub(&centre, &joints[3].point)];
+        Some(Self {
+            parameter: joints[0].point,
+            root,
+            centre,
+            distance: Swing::squared_distance(&Orbit::of(c, &links[1]), &scaled(&links[0], -1.0)),
+            bend: Swing::along(d, &Orbit::of(e, f)),
+            across: [d, f].map(|axis| [across(axis)[0], across(axis)[1]]),
+            reversed: !by_first,
+            off: OFF * (1.0 + size + norm(&chain.tip.origin)),
+            links,
+            axes,
+        })
+    }
+
+    /// Values of the parameter on `arcs` near which a configuration may be within limits, the first `most` of them; none if there is
+    /// none for certain.
+    pub fn open_values(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7], most: usize) -> Values {
+        let moving = Moving::new(self, goal, limits);
+        let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS };
+        for [first, last] in arcs.iter() {
+            let count = ((last - first) / LONGEST).ceil().max(1.0);
+            let length = (last - first) / count;
+            for start in (0..count as usize).map(|k| first + length * k as f64) {
+                moving.add_open(&Arc::between([start, start + length]), &mut open);
+            }
+        }
+        open.values
+    }
+}
+
+/// What branch and bound has found.
+struct Open {
+    values: Values,
+    /// Values wanted, and intervals that may still be looked at.
+    most: usize,
+    left: usize,
+}
+
+impl Open {
+    /// Whether there are enough values, or a configuration in `part` would be near one of them.
+    fn covers(&self, part: &Arc) -> bool {
+        let near = |value: &f64| (part.middle - value).abs() + part.half < APART;
+        self.values.len() >= self.most || self.values.last().is_some_and(near)
+    }
+}
+
+impl<'a> Moving<'a> {
+    fn new(arm: &'a LimitProof, goal: &Frame, limits: &[[f64; 2]; 7]) -> Self {
+        let goal = if arm.reversed { goal.inverse() } else { *goal };
+        let limits = std::array::from_fn(|k| Arc::between(limits[if arm.reversed { 6 - k } else { k }]).wider(SLACK));
+        // The others see the pose turn back.
+        let back = scaled(&arm.axes[0], -1.0);
+        let centre = Orbit::of(&back, &sub(&goal.place::<Baseline>(&arm.centre), &arm.parameter));
+        let centre = centre.moved(&sub(&arm.parameter, &arm.root));
+        let end_axis = goal.turn::<Baseline>(&arm.axes[6]);
+        Self {
+            arm,
+            limits,
+            distance: Swing::squared_distance(&centre, &[0.0; 3]),
+            height: Swing::along(&arm.axes[1], &centre),
+            centre,
+            end: Orbit::of(&back, &end_axis),
+            end_axis,
+            end_across: arm.across[1].map(|v| goal.turn::<Baseline>(&v)),
+        }
+    }
+
+    /// Adds values in `part` near which a configuration may be within limits. Where too many intervals are looked at, all that is left
+    /// may hold one.
+    fn add_open(&self, part: &Arc, open: &mut Open) {
+        if open.covers(part) {
+            return;
+        }
+        let is_last = part.half <= SHORTEST || open.left == 0;
+        open.left = open.left.saturating_sub(1);
+        if !self.may_hold(part) {
+            return;
+        }
+        if is_last {
+            open.values.push(part.middle);
+        } else {
+            part.halves().iter().for_each(|half| self.add_open(half, open));
+        }
+    }
+
+    /// Whether a branch may be within limits with the parameter in `part`.
+    fn may_hold(&self, part: &Arc) -> bool {
+        let (turn, off) = (part.turn(), self.arm.off);
+        let reached = Ball { middle: self.centre.at(turn), radius: part.half * norm(&self.centre.sine) + off };
+        let slack = 2.0 * off * (norm(&reached.middle) + reached.radius);
+        let elbows = self.arm.distance.arcs(self.distance.near(turn, part.half, slack), 0.0);
+        elbows.into_iter().flatten().filter_map(|arc| arc.within(&self.limits[3])).any(|elbow| {
+            self.arms(part, &reached, &elbow).into_iter().flatten().any(|arm| self.wrist_may_hold(part, &arm))
+        })
+    }
+
+    /// Arcs of A, B and C within limits, given that of C: rotA rotB u = `reached`, where u leads from the root to the centre before A
+    /// and B turn.
+    fn arms(&self, part: &Arc, reached: &Ball, elbow: &Arc) -> [Option<[Arc; 3]>; 2] {
+        let LimitProof { axes: [_, a, b, c, ..], links: [upper, fore], off, .. } = self.arm;
+        let u = Ball { middle: add(upper, &elbow.turn().about(c, fore)), radius: elbow.half * distance(c, fore) };
+        let (slant, along, lever) = (dot(a, b), dot(b, &u.middle), distance(b, &u.middle));
+        let constant = slant * along;
+        let height_by_b =
+            Swing { base: constant, east: dot(a, &u.middle) - constant, north: dot(a, &cross(b, &u.middle)) };
+        let height = self.height.near(part.turn(), part.half, off + slant.abs() * u.radius);
+        let doubt = u.radius / lever;
+        let Some(arcs) = height_by_b.arcs(height, if doubt < 1.0 { doubt } else { 1.0 }) else { return [None; 2] };
+        // b'(u x du/dq4) where du/dq4 = c x rotC fore: zero where u lies in a plane with b across c.
+        let by_elbow = norm(fore) * (dot(b, c).abs() * (norm(&u.middle) + u.radius) + dot(c, &u.middle).abs());
+        let swerve = u.swerve(b).min(elbow.half * by_elbow / u.least_distance(b).powi(2));
+        arcs.map(|arc| {
+            let second = arc.wider(swerve).within(&self.limits[2])?;
+            let turned = u.turned(b, second.turn(), second.half);
+            // a'(v x dv/dqB) where dv/dqB = b x v.
+            let by_b =
+                slant.abs() * dot(&u.middle, &u.middle) + (dot(a, &turned.middle).abs() + turned.radius) * along.abs();
+            let nearest = turned.least_distance(a);
+            let swerve = turned.swerve(a).min((second.half * by_b / nearest + u.radius) / nearest);
+            let (from, to) = (cross(a, &turned.middle), cross(a, &reached.middle));
+            let middle = dot(a, &cross(&from, &to)).atan2(dot(&from, &to));
+            let first = Arc { middle, half: swerve + reached.swerve(a) }.within(&self.limits[1])?;
+            Some([first, second, *elbow])
+        })
+    }
+
+    /// Whether D, E and F may be within limits with the others on these arcs.
+    fn wrist_may_hold(&self, part: &Arc, arm: &[Arc; 3]) -> bool {
+        let LimitProof { axes: [_, a, b, c, d, e, f], bend, .. } = self.arm;
+        let mut end = Ball { middle: self.end.at(part.turn()), radius: part.half * norm(&self.end.sine) + OFF };
+        for (axis, arc) in [a, b, c].into_iter().zip(arm) {
+            end = end.turned(axis, arc.turn().back(), arc.half);
+        }
+        let cosine = dot(d, &end.middle);
+        let spread = end.radius * (distance(d, &end.middle) + 0.5 * end.radius);
+        let cosines = [cosine - spread, cosine + spread];
+        // How far the direction of the bent axis about the other turns with E: not at all in a wrist with right angles.
+        let squared_sine = 1.0 - cosines[0].abs().max(cosines[1].abs()).powi(2);
+        let skew = dot(d, e).abs() + dot(e, f).abs();
+        let swerve = |bend: &Arc| if squared_sine > 0.0 { bend.half * skew / squared_sine } else { PI };
+        let bends = bend.arcs(cosines, 0.0);
+        bends.into_iter().flatten().filter_map(|arc| arc.within(&self.limits[5])).any(|bend| {
+            self.fourth_may_hold(&bend, &end, swerve(&bend)) && self.last_may_hold(part, arm, &bend, swerve(&bend))
+        })
+    }
+
+    /// Whether D may be within limits: it turns the bent axis of F to `end`.
+    fn fourth_may_hold(&self, bend: &Arc, end: &Ball, swerve: f64) -> bool {
+        let LimitProof { axes: [_, _, _, _, d, e, f], across: [across, _], .. } = self.arm;
+        let middle = azimuth(across, &end.middle) - azimuth(across, &bend.turn().about(e, f));
+        Arc { middle, half: swerve + end.swerve(d) }.within(&self.limits[4]).is_some()
+    }
+
+    /// Whether F may be within limits: it turns the axis of D, seen from the end of the chain, to the bent one.
+    fn last_may_hold(&self, part: &Arc, arm: &[Arc; 3], bend: &Arc, swerve: f64) -> bool {
+        if self.limits[6].is_all() {
+            return true;
+        }
+        let LimitProof { axes: [p, a, b, c, d, e, _], across: [_, across], .. } = self.arm;
+        let mut seen = Ball { middle: *d, radius: OFF };
+        for (axis, arc) in [(c, &arm[2]), (b, &arm[1]), (a, &arm[0]), (p, part)] {
+            seen = seen.turned(axis, arc.turn(), arc.half);
+        }
+        let middle = azimuth(across, &bend.turn().back().about(e, d)) - azimuth(&self.end_across, &seen.middle);
+        Arc { middle, half: swerve + seen.swerve(&self.end_axis) }.within(&self.limits[6]).is_some()
+    }
+}
+
+/// The direction of `v` about an axis, given two unit vectors across it.
+fn azimuth([x, y]: &[Vector; 2], v: &Vector) -> f64 {
+    dot(y, v).atan2(dot(x, v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::seven_joint_arms::{GEN3, PANDA, XARM7, iiwa14_of_urdf, random_angles};
+    use crate::rng;
+
+    fn arms() -> [([[f64; 4]; 7], bool); 4] {
+        [(PANDA, false), (XARM7, false), (GEN3, true), (iiwa14_of_urdf(), true)]
+    }
+
+    /// The arm with its tip where the pose is what the joints do, and the proof for it.
+    fn prepared((rows, by_first): ([[f64; 4]; 7], bool)) -> (AxisChain<7>, LimitProof) {
+        let chain = AxisChain { tip: Frame::IDENTITY, ..AxisChain::of_rows(&rows) };
+        (chain, LimitProof::new(&chain, by_first).expect("its axes meet"))
+    }
+
+    #[test]
+    fn no_interval_around_a_configuration_is_excluded() {
+        let mut rng = rng::stream(5, 0);
+        for arm in arms() {
+            let (chain, proof) = prepared(arm);
+            for q in random_angles(20_000) {
+                let [width, half] = [0, 1].map(|_| rng.uniform_in(-9.0, 0.0).exp());
+                let mut limits =
+                    q.map(|q| [q - width * rng.uniform_in(0.0, 1.0), q + width * rng.uniform_in(0.0, 1.0)]);
+                let free = rng.uniform_in(0.0, 8.0) as usize;
+                limits.iter_mut().take(free).for_each(|limits| *limits = [-4.0, 4.0]);
+                let value = if arm.1 { q[0] } else { q[6] };
+                let part = Arc { middle: value + half * rng.uniform_in(-1.0, 1.0), half };
+                let goal = chain.tip_at(&q);
+                assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
+                assert!(!proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty(), "{q:?} {limits:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_apart_from_all_configurations_are_excluded() {
+        for arm in arms() {
+            let (chain, proof) = prepared(arm);
+            let [mut excluded, mut empty] = [0; 2];
+            for q in random_angles(300) {
+                let mut limits = [[-2.9, 2.9]; 7];
+                (limits[1], limits[5]) = ([q[1] + 0.5, q[1] + 1.0], [q[5] - 1.0, q[5] - 0.7]);
+                let goal = chain.tip_at(&q);
+                excluded += usize::from(proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty());
+                empty += 1;
+            }
+            assert!(excluded > 100, "{excluded} of {empty}");
+        }
+    }
+}
