@@ -275,6 +275,27 @@ fn every_pose_of_an_arm_with_spherical_shoulder_and_wrist_is_solved_or_proven_ou
 }
 
 #[test]
+fn most_poses_that_limits_exclude_are_proven_out_of_reach() {
+    for robot in ["panda", "gen3", "fr3"].map(robot) {
+        let [mut missed, mut proven] = [0; 2];
+        let qs = configurations(&robot, 400);
+        for (q, other) in qs.iter().zip(qs.iter().rev()) {
+            let pose = Target::Pose(Frame { axes: robot.tip(other).axes, ..robot.tip(q) });
+            let solution = solved(&robot, &pose, &SolveOptions::default());
+            missed += usize::from(solution.status != Status::Solved);
+            if solution.status == Status::OutOfReach {
+                proven += 1;
+                let stop = Stop { max_evaluations: 1000, ..Stop::default() };
+                let searched = solved(&robot, &pose, &SolveOptions { stop, ..by_search() });
+                assert_ne!(searched.status, Status::Solved, "{}: {:?}", robot.name(), searched.q);
+                assert!(solution.evaluations < 20, "{}: {}", robot.name(), solution.evaluations);
+            }
+        }
+        assert!(missed > 50 && 20 * proven > 19 * missed, "{}: {proven} of {missed}", robot.name());
+    }
+}
+
+#[test]
 fn budgets_hold_and_tolerances_beyond_rounding_end() {
     for robot in ["ur5e", "panda"].map(robot) {
         let q = configurations(&robot, 1).remove(0);
