@@ -103,10 +103,18 @@ impl LimitProof {
     }
 
     /// Values of the parameter on `arcs` near which a configuration may be within limits, the first `most` of them; none if there is
-    /// none for certain.
-    pub fn open_values(&self, goal: &Frame, arcs: &ParameterArcs, limits: &[[f64; 2]; 7], most: usize) -> Values {
+    /// none for certain. Offers the middle of each interval that may hold one to `visit`, and ends where that returns true: it is the
+    /// last value then.
+    pub fn open_values(
+        &self,
+        goal: &Frame,
+        arcs: &ParameterArcs,
+        limits: &[[f64; 2]; 7],
+        most: usize,
+        visit: &mut dyn FnMut(f64) -> bool,
+    ) -> Values {
         let moving = Moving::new(self, goal, limits);
-        let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS };
+        let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS, visit };
         for [first, last] in arcs.iter() {
             let count = ((last - first) / LONGEST).ceil().max(1.0);
             let length = (last - first) / count;
@@ -119,14 +127,16 @@ impl LimitProof {
 }
 
 /// What branch and bound has found.
-struct Open {
+struct Open<'v> {
     values: Values,
     /// Values wanted, and intervals that may still be looked at.
     most: usize,
     left: usize,
+    /// Whether this value is the one that was looked for.
+    visit: &'v mut dyn FnMut(f64) -> bool,
 }
 
-impl Open {
+impl Open<'_> {
     /// Whether there are enough values, or a configuration in `part` would be near one of them.
     fn covers(&self, part: &Arc) -> bool {
         let near = |value: &f64| (part.middle - value).abs() + part.half < APART;
@@ -157,7 +167,7 @@ impl<'a> Moving<'a> {
 
     /// Adds values in `part` near which a configuration may be within limits. Where too many intervals are looked at, all that is left
     /// may hold one.
-    fn add_open(&self, part: &Arc, open: &mut Open) {
+    fn add_open(&self, part: &Arc, open: &mut Open<'_>) {
         if open.covers(part) {
             return;
         }
@@ -166,7 +176,10 @@ impl<'a> Moving<'a> {
         if !self.may_hold(part) {
             return;
         }
-        if is_last {
+        if (open.visit)(part.middle) {
+            open.values.push(part.middle);
+            open.most = open.values.len();
+        } else if is_last {
             open.values.push(part.middle);
         } else {
             part.halves().iter().for_each(|half| self.add_open(half, open));
@@ -292,7 +305,8 @@ mod tests {
                 let part = Arc { middle: value + half * rng.uniform_in(-1.0, 1.0), half };
                 let goal = chain.tip_at(&q);
                 assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
-                assert!(!proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty(), "{q:?} {limits:?}");
+                let open = proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1, &mut |_| false);
+                assert!(!open.is_empty(), "{q:?} {limits:?}");
             }
         }
     }
@@ -306,7 +320,8 @@ mod tests {
                 let mut limits = [[-2.9, 2.9]; 7];
                 (limits[1], limits[5]) = ([q[1] + 0.5, q[1] + 1.0], [q[5] - 1.0, q[5] - 0.7]);
                 let goal = chain.tip_at(&q);
-                excluded += usize::from(proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1).is_empty());
+                let open = proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1, &mut |_| false);
+                excluded += usize::from(open.is_empty());
                 empty += 1;
             }
             assert!(excluded > 100, "{excluded} of {empty}");

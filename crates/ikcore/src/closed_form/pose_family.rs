@@ -51,7 +51,17 @@ impl<'a> PoseFamily<'a> {
 
     /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
-        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
+        self.is_excluded_unless(limits, arcs, |_| false)
+    }
+
+    /// The same. Values of the parameter (rad) that cannot be excluded yet are offered to `visit`, which ends this by returning true.
+    pub fn is_excluded_unless(
+        &self,
+        limits: &FamilyLimits,
+        arcs: &ParameterArcs,
+        mut visit: impl FnMut(f64) -> bool,
+    ) -> bool {
+        self.redundant.is_excluded(&self.pose, &limits.0, arcs, &mut visit)
     }
 
     /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these

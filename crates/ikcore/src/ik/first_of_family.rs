@@ -101,7 +101,9 @@ impl<'a> FamilySearch<'a> {
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
             if number == VALUES_BEFORE_DOUBT {
-                self.doubt()?;
+                if let Some(solution) = self.doubt(attempt)? {
+                    return Ok(solution);
+                }
                 doubted = true;
             }
             self.family.likely_at(value, &self.limits, &mut likely);
@@ -125,16 +127,24 @@ impl<'a> FamilySearch<'a> {
                 return Err(Scattered::TooCostly);
             }
         }
-        if !doubted {
-            self.doubt()?;
+        match if doubted { None } else { self.doubt(attempt)? } {
+            Some(solution) => Ok(solution),
+            None => Err(Scattered::Open),
         }
-        Err(Scattered::Open)
     }
 
-    /// Ends where there is no solution for certain.
+    /// Ends where there is no solution for certain; otherwise a solution at a value that the proof could not exclude, if there is one.
     #[cold]
-    fn doubt(&self) -> Result<(), Scattered> {
-        if self.family.is_excluded(&self.limits, &self.arcs) { Err(Scattered::Unreachable) } else { Ok(()) }
+    fn doubt(&self, attempt: &mut Attempt<'_, '_>) -> Result<Option<Solution>, Scattered> {
+        let (mut likely, mut solution) = (ArmConfigurations::none(), None);
+        let is_excluded = self.family.is_excluded_unless(&self.limits, &self.arcs, |value| {
+            self.family.likely_at(value, &self.limits, &mut likely);
+            if !likely.is_empty() {
+                solution = attempt.preferred(&self.preference, &mut likely).ok();
+            }
+            solution.is_some()
+        });
+        if is_excluded { Err(Scattered::Unreachable) } else { Ok(solution) }
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
