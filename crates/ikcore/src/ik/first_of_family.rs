@@ -12,11 +12,14 @@ use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
 use crate::solver::Status;
 
-/// Most values of the parameter of a redundant arm that are tried before near misses are.
-const SCANNED: usize = 8;
+/// Most arm angles that are tried before near misses are.
+const SCANNED_ANGLES: usize = 8;
 
-/// Values after which it is asked whether any can have a solution: most poses have one before.
-const VALUES_BEFORE_DOUBT: usize = 4;
+/// Arm angles after which it is asked whether any can have a solution: most poses have one before.
+const ANGLES_BEFORE_DOUBT: usize = 4;
+
+/// Values of a joint as parameter that are tried before it is asked: the answer takes as long as fifty values.
+const SCANNED_VALUES: usize = 16;
 
 /// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
 const OPEN: usize = 8;
@@ -84,8 +87,8 @@ impl<'a> FamilySearch<'a> {
         let mut likely = ArmConfigurations::none();
         let mut doubted = false;
         let half_the_budget = attempt.budget.left() / 2;
-        for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
-            if number == VALUES_BEFORE_DOUBT {
+        for (number, value) in self.arcs.scattered(self.scanned()).enumerate() {
+            if number == ANGLES_BEFORE_DOUBT && self.family.is_by_arm_angle() {
                 self.doubt()?;
                 doubted = true;
             }
@@ -114,6 +117,11 @@ impl<'a> FamilySearch<'a> {
             self.doubt()?;
         }
         Err(Scattered::Open)
+    }
+
+    /// Most values that are tried before near misses are.
+    fn scanned(&self) -> usize {
+        if self.family.is_by_arm_angle() { SCANNED_ANGLES } else { SCANNED_VALUES }
     }
 
     /// Ends where there is no solution for certain.
@@ -161,7 +169,7 @@ impl<'a> FamilySearch<'a> {
         }
         let mut solution = attempt.explained(Status::Stalled, q);
         if solution.obstruction.is_empty() {
-            let (values, evaluations) = (SCANNED + LOOKED, solution.evaluations);
+            let (values, evaluations) = (self.scanned() + LOOKED, solution.evaluations);
             solution.obstruction = format!(
                 "no solution at {values} values of the redundancy, nor by a search, {evaluations} evaluations in all"
             );
