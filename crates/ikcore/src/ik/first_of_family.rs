@@ -12,11 +12,14 @@ use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
 use crate::solver::Status;
 
-/// Most values of the parameter of a redundant arm that are tried before near misses are.
-const SCANNED: usize = 8;
+/// Most arm angles that are tried before near misses are.
+const SCANNED_ANGLES: usize = 8;
 
-/// Values after which it is asked whether any can have a solution: most poses have one before.
-const VALUES_BEFORE_DOUBT: usize = 4;
+/// Arm angles after which it is asked whether any can have a solution: most poses have one before.
+const ANGLES_BEFORE_DOUBT: usize = 4;
+
+/// Values of a joint as parameter that are tried before it is asked: the answer takes as long as fifty values.
+const SCANNED_VALUES: usize = 16;
 
 /// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
 const OPEN: usize = 8;
@@ -85,7 +88,7 @@ impl<'a> FamilySearch<'a> {
             return None;
         }
         let mut near = ArmConfigurations::none();
-        self.arcs.scattered(SCANNED).find_map(|value| {
+        self.arcs.scattered(self.scanned()).find_map(|value| {
             self.family.candidates_at(value, &self.limits, &mut near);
             attempt.descended_from(&self.preference, &mut near)
         })
@@ -99,11 +102,9 @@ impl<'a> FamilySearch<'a> {
         let mut likely = ArmConfigurations::none();
         let mut doubted = false;
         let half_the_budget = attempt.budget.left() / 2;
-        for (number, value) in self.arcs.scattered(SCANNED).enumerate() {
-            if number == VALUES_BEFORE_DOUBT {
-                if let Some(solution) = self.doubt(attempt)? {
-                    return Ok(solution);
-                }
+        for (number, value) in self.arcs.scattered(self.scanned()).enumerate() {
+            if number == ANGLES_BEFORE_DOUBT && self.family.is_by_arm_angle() {
+                self.doubt(attempt)?;
                 doubted = true;
             }
             self.family.likely_at(value, &self.limits, &mut likely);
@@ -131,6 +132,11 @@ impl<'a> FamilySearch<'a> {
             Some(solution) => Ok(solution),
             None => Err(Scattered::Open),
         }
+    }
+
+    /// Most values that are tried before near misses are.
+    fn scanned(&self) -> usize {
+        if self.family.is_by_arm_angle() { SCANNED_ANGLES } else { SCANNED_VALUES }
     }
 
     /// Ends where there is no solution for certain; otherwise a solution at a value that the proof could not exclude, if there is one.
@@ -186,7 +192,7 @@ impl<'a> FamilySearch<'a> {
         }
         let mut solution = attempt.explained(Status::Stalled, q);
         if solution.obstruction.is_empty() {
-            let (values, evaluations) = (SCANNED + LOOKED, solution.evaluations);
+            let (values, evaluations) = (self.scanned() + LOOKED, solution.evaluations);
             solution.obstruction = format!(
                 "no solution at {values} values of the redundancy, nor by a search, {evaluations} evaluations in all"
             );

@@ -18,7 +18,7 @@ use crate::task::{Target, Tolerance};
 const AT_LIMIT: f64 = 1e-9;
 
 /// Values of the parameter of a redundant arm after which it is asked whether the limits exclude all: most poses have a solution before.
-const VALUES_BEFORE_DOUBT: usize = 4;
+const VALUES_BEFORE_DOUBT: usize = 16;
 
 /// Decides which poses of a map are reached. Shared by all threads.
 pub(crate) struct MapTest<'a> {
