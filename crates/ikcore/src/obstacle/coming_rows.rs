@@ -131,7 +131,7 @@ impl Passing<'_> {
         let way = self.way(time);
         let carried = &self.scene.bodies.carried[self.body];
         let axis = self.placement.segments[self.body].map(|end| end - way);
-        let mut frame = self.placement.frames[carried.stages].clone();
+        let mut frame = self.placement.frames[carried.stages];
         (0..3).for_each(|k| frame.origin[k] -= way[k]);
         look(&carried.placed(&axis, &frame))
     }
