@@ -253,6 +253,32 @@ fn an_arm_gets_out_of_the_way_of_a_sphere_no_faster_than_said() {
 }
 
 #[test]
+fn an_arm_between_a_wall_and_a_sphere_that_comes_gets_aside() {
+    let robot = panda();
+    let (tip, dt, margin) = (robot.tip_position(&START), 0.01, 0.01);
+    let wall = Shape::cuboid([tip[0], tip[1] + 0.12, tip[2]], [0.4, 0.04, 0.6], None).unwrap();
+    for limits in all_limits(&robot) {
+        for (x, z, speed) in [(0.0, 0.05, 0.2), (-0.05, 0.1, 0.3), (0.0, 0.1, 0.3)] {
+            let surroundings = Surroundings { margin: Some(margin), ..surroundings(vec![wall.clone()]) };
+            let options = TrackOptions { limits: Some(limits.clone()), surroundings, ..TrackOptions::default() };
+            let mut session = Session::new(&robot, &START, dt, &options).unwrap();
+            // Straight at the hand: ahead of it there is the wall.
+            let sphere =
+                |time: f64| Shape::sphere([tip[0] + x, tip[1] - 0.5 + speed * time, tip[2] + z], 0.08).unwrap();
+            for tick in 0..400 {
+                let time = dt * f64::from(tick);
+                let now = vec![wall.clone(), sphere(time)];
+                session.set_obstacles(Some(now.into()), vec![[0.0; 3], [0.0, speed, 0.0]]).unwrap();
+                session.step(&target(&robot, 0, dt, &[[0.0; 3]]), &mut Unattended).unwrap();
+                let then = [wall.clone(), sphere(time + dt)];
+                let clear = Scene::new(&robot, &then).unwrap().clearance(session.q()).unwrap();
+                assert!(clear >= margin - ROUNDING, "{x} {z}, {speed} m/s, tick {tick}: {clear}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_motion_between_ticks_is_clear() {
     let robot = panda();
     let tip = robot.tip_position(&START);

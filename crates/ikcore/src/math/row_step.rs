@@ -12,8 +12,8 @@ use super::vector::dot;
 /// Violations below this (rad, m) count as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// A row in use gives way by this fraction of the way that its multiplier moves the point along it.
-const SOFTNESS: f64 = 1e-9;
+/// Softness of a row that comes before others.
+pub const SOFTNESS: f64 = 1e-9;
 
 /// Exchanges of the active set per constraint; a few are enough.
 const EXCHANGES: usize = 3;
@@ -25,6 +25,8 @@ pub struct Row {
     pub gradient: [f64; MAX_DOF],
     /// What the row keeps at least.
     pub least: f64,
+    /// In use it gives way by this fraction of the way that its multiplier moves the point along it.
+    pub softness: f64,
 }
 
 /// A step of damped least squares in a box, beside rows.
@@ -233,8 +235,11 @@ impl RowSolver {
             for j in 0..=i {
                 let mut entry = step.product(constraint, &self.active[j].along[..n]);
                 if i == j {
-                    let softness =
-                        if matches!(constraint, Constraint::Row(_) | Constraint::Held(_)) { SOFTNESS } else { 1e-14 };
+                    let softness = match constraint {
+                        Constraint::Row(i) => step.rows[i].softness,
+                        Constraint::Held(i) => step.held[i].softness,
+                        Constraint::Lower(_) | Constraint::Upper(_) => 1e-14,
+                    };
                     entry *= 1.0 + softness;
                 }
                 for k in 0..j {
@@ -350,7 +355,7 @@ mod tests {
         let row = (prop::collection::vec(-1.0..1.0, n), -0.6_f64..0.3).prop_map(move |(entries, least)| {
             let mut gradient = [0.0; MAX_DOF];
             gradient[..n].copy_from_slice(&entries);
-            Row { gradient, least }
+            Row { gradient, least, softness: SOFTNESS }
         });
         prop::collection::vec(row, count)
     }
@@ -380,7 +385,7 @@ mod tests {
                 for (a, b) in case.constraints() {
                     prop_assert!(dot(&a, &x) >= b - 1e-5, "{x:?} {a:?} {b}");
                 }
-                for Row { gradient, least } in &case.held {
+                for Row { gradient, least, .. } in &case.held {
                     prop_assert!((dot(gradient, &x) - least).abs() < 1e-5, "{x:?} {gradient:?} {least}");
                 }
                 // Rows that hardly leave a point give way a little, which costs less.
@@ -402,7 +407,7 @@ mod tests {
         let row = |slope: f64| {
             let mut gradient = [0.0; MAX_DOF];
             gradient[0] = slope;
-            Row { gradient, least: 0.5 }
+            Row { gradient, least: 0.5, softness: SOFTNESS }
         };
         let case = Case {
             columns: vec![[0.0; 6]; 2],

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::chord_check::ChordCheck;
+use super::coming_rows::{Coming, ComingRows};
 use super::contact::{Contact, NearestContact};
 use super::joint_motion::JointMotion;
 use super::kept_distance::KeptDistance;
@@ -81,6 +82,16 @@ impl<'a> ClearSpace<'a> {
     /// Scratch of [`find_rows`](Self::find_rows).
     pub(crate) fn near_rows(&self) -> NearRows {
         NearRows::new(&self.scene)
+    }
+
+    /// Scratch of [`find_coming`](Self::find_coming).
+    pub(crate) fn coming_rows(&self) -> ComingRows {
+        ComingRows::new(&self.scene)
+    }
+
+    /// Finds what comes too near to an arm that stays at `q`.
+    pub(crate) fn find_coming(&self, q: &[f64], coming: &Coming<'_>, rows: &mut ComingRows) {
+        rows.find(&self.scene, q, coming);
     }
 
     /// Scratch of [`is_kept_by`](Self::is_kept_by).

@@ -16,6 +16,7 @@
 //! | `near_pairs` | the nearest pairs |
 //! | `link_displacement` | bound on the motion of a link for given joint motions |
 //! | `near_rows` | near pairs, linearised at a configuration |
+//! | `coming_rows` | obstacles that come too near, linearised at their closest approach |
 //! | `joint_motion` | motions that can be certified |
 //! | `chord_check`, `kept_distance` | pairs of bodies, certified to keep their distances during a motion |
 //! | `sweep` | a whole motion, certified, and its smallest clearance |
@@ -25,6 +26,7 @@ mod body_groups;
 mod body_model;
 mod chord_check;
 mod clear_space;
+mod coming_rows;
 mod contact;
 mod eight_bodies;
 mod eight_scene;
@@ -45,6 +47,7 @@ mod which_clear;
 pub(crate) use chord_check::ChordCheck;
 pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
+pub(crate) use coming_rows::{Coming, ComingRows, MOST_COMING};
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use joint_motion::{Edge, JointMotion};
 pub(crate) use kept_distance::KeptDistance;

@@ -5,6 +5,9 @@
 //! these rows and the box of the tick. It is sent if the command together with the stop after it is certified clear, between ticks too;
 //! otherwise a part of it is, and in the end the stop goes on that was certified before.
 //!
+//! What comes nearer is given way to before it is near. Rows of its closest approach lead the arm aside, out of its way; those of where it
+//! is now would only drive the arm ahead of it, into a corner. They are wishes, softer than the rows of what stands still.
+//!
 //! Pairs of tips that are where they are to be stay there: they are equations beside the rows, and the stop keeps to them as well.
 
 use std::sync::Arc;
@@ -17,10 +20,12 @@ use super::wish::Wish;
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
-use crate::math::row_step::Row;
+use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{between, dot, norm};
 use crate::objective::{Bounds, Point};
-use crate::obstacle::{ChordCheck, ClearSpace, JointMotion, KeptDistance, MOST_ROWS, NearRow, NearRows};
+use crate::obstacle::{
+    ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, KeptDistance, MOST_COMING, MOST_ROWS, NearRow, NearRows,
+};
 use crate::robot::Robot;
 use crate::task::TipAims;
 
@@ -32,7 +37,19 @@ const LEAST_ROOM: f64 = 2e-5;
 const NEAR: [f64; 2] = [0.03, 0.2];
 
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
-const WARNING: f64 = 0.4;
+const WARNING: f64 = 0.2;
+
+/// What comes is given way to so early that this speed is enough (m/s), as far as it is foreseen (s).
+const GIVING_WAY: f64 = 0.05;
+const FORESEEN: f64 = 3.0;
+
+/// Kept beyond the margin, in time, by an arm that has to give way and cannot change its velocity at once (m): close to an obstacle the
+/// certificate of a motion between ticks would refuse to let it start.
+const ROOM_TO_START: f64 = 3e-3;
+
+/// Softness of rows of what moves, and of what is wanted in time: they give way to what stands still.
+const MOVING: f64 = 1e-7;
+const WISHED: f64 = 1e-5;
 
 /// Time in which a distance that is wanted, but not needed, comes about (s).
 const PACE: f64 = 0.1;
@@ -72,6 +89,8 @@ struct Around {
     near: NearRows,
     /// Where it would come to rest after the command.
     after: NearRows,
+    /// What comes too near where the arm comes to rest.
+    coming: ComingRows,
     check: ChordCheck,
 }
 
@@ -131,6 +150,7 @@ impl Around {
         Ok(Self {
             near: space.near_rows(),
             after: space.near_rows(),
+            coming: space.coming_rows(),
             check: space.chord_check(),
             space: Arc::new(space),
             obstacles: ObstacleMotion::default(),
@@ -152,6 +172,25 @@ impl Around {
         let far = self.obstacles.fastest() * (self.since + WARNING);
         let up_to = self.space.margin() + reach.clamp(NEAR[0], NEAR[1]) + 2.0 * far;
         self.space.find_rows(rest, up_to, &mut self.near);
+        self.find_coming(rest);
+    }
+
+    /// Finds what comes too near to an arm at `q`.
+    fn find_coming(&mut self, q: &[f64]) {
+        let (velocities, since) = (&self.obstacles.velocities[..], self.since);
+        let margin = self.space.margin() + ROOM;
+        let coming = Coming { velocities, since, horizon: FORESEEN, margin, pace: GIVING_WAY };
+        self.space.find_coming(q, &coming, &mut self.coming);
+    }
+
+    /// Whether the obstacle of a pair moves.
+    fn is_moving(&self, near: &NearRow) -> bool {
+        near.obstacle().and_then(|i| self.obstacles.speeds.get(i)).is_some_and(|speed| *speed > 0.0)
+    }
+
+    /// What an arm keeps beyond the margin, in time (m).
+    fn room(&self, limited: bool) -> f64 {
+        if limited && self.obstacles.fastest() > 0.0 { ROOM_TO_START } else { ROOM }
     }
 
     /// Whether a motion until `end` (ticks) is certainly clear.
@@ -177,16 +216,17 @@ impl Around {
         command: &[f64],
         RowMotion { rows, wanted, .. }: &mut RowMotion,
     ) -> bool {
-        if self.near.rows().is_empty() {
+        if self.near.rows().is_empty() && self.coming.rows().is_empty() {
             return false;
         }
         let response = Response::new(wish, rest);
         let stop_time = wish.dt * stop_ticks;
         let pace = (wish.dt / PACE).min(1.0);
         for near in self.near.rows() {
-            let [until_rest, while_leaving] = self.approach_of(near, stop_time);
+            // The obstacle moves on while the command is carried out.
+            let [until_rest, while_leaving] = self.approach_of(near, wish.dt + stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
-            let whole = missing + ROOM + while_leaving;
+            let whole = missing + self.room(wish.limited.is_some()) + while_leaving;
             // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
             // velocity at once also comes nearer in time, so that it can give way.
             let paced = if whole > 0.0 || wish.limited.is_some() { pace * whole } else { whole };
@@ -195,8 +235,20 @@ impl Around {
                 let weight = (near.distance / self.near.rows()[0].distance).powi(2);
                 wanted.push(response.row(&near.gradient.map(|entry| weight * entry), weight * paced));
             } else {
-                rows.push(response.row(&near.gradient, paced.max(missing + LEAST_ROOM)));
+                let needed = missing + LEAST_ROOM;
+                let row = response.row(&near.gradient, paced.max(needed));
+                if self.is_moving(near) {
+                    rows.push(Row { softness: MOVING, ..response.row(&near.gradient, needed) });
+                    rows.push(Row { softness: WISHED, ..row });
+                } else {
+                    rows.push(row);
+                }
             }
+        }
+        for coming in self.coming.rows() {
+            let paced = if coming.short > 0.0 || wish.limited.is_some() { pace * coming.short } else { coming.short };
+            let row = response.row(&coming.gradient, paced + GIVING_WAY * wish.dt);
+            rows.push(Row { softness: WISHED, ..row });
         }
         rows.iter().chain(&*wanted).any(|row| dot(&row.gradient, command) < row.least)
     }
@@ -207,8 +259,8 @@ impl Around {
         self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
         for near in self.after.rows().iter().filter(|near| near.distance >= 0.0) {
             let [until_rest, _] = self.approach_of(near, wish.dt * stop_ticks);
-            let mut row =
-                Row { gradient: [0.0; MAX_DOF], least: self.space.margin() + until_rest + LEAST_ROOM - near.distance };
+            let least = self.space.margin() + until_rest + LEAST_ROOM - near.distance;
+            let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
             (0..q.len()).for_each(|j| row.gradient[j] = near.gradient[j] * slope[j]);
             row.least += dot(&row.gradient[..q.len()], q);
             rows.push(row);
@@ -221,9 +273,16 @@ impl Around {
         self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
         rows.clear();
         for near in self.near.rows() {
-            let kept = self.space.margin() + 2.0 * ROOM + self.approach_of(near, 0.0).iter().sum::<f64>();
+            // A goal keeps a little more than the arm that is to get there; goals are pursued under acceleration limits alone.
+            let room = self.room(true) + ROOM;
+            let kept = self.space.margin() + room + self.approach_of(near, 0.0).iter().sum::<f64>();
             let least = kept - near.distance + dot(&near.gradient[..q.len()], q);
-            rows.push(Row { gradient: near.gradient, least });
+            rows.push(Row { gradient: near.gradient, least, softness: SOFTNESS });
+        }
+        self.find_coming(q);
+        for coming in self.coming.rows() {
+            let least = coming.short + ROOM + dot(&coming.gradient[..q.len()], q);
+            rows.push(Row { gradient: coming.gradient, least, softness: WISHED });
         }
         rows.iter().all(|row| dot(&row.gradient, q) >= row.least)
     }
@@ -238,7 +297,7 @@ impl KeptMotion {
     pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
         Ok(Self {
             around: space.map(|space| Around::new(space, limits)).transpose()?,
-            rows: RowMotion::with_room(limits.dof(), MOST_ROWS),
+            rows: RowMotion::with_room(limits.dof(), 2 * MOST_ROWS + MOST_COMING),
             stop: HeldStop::default(),
             next_stop: HeldStop::default(),
             goal_is_held: false,
@@ -391,7 +450,11 @@ impl KeptMotion {
         let start = q.clone();
         // The effect on the tip itself counts, whatever the task.
         let aim = wish.aim.as_ref().filter(|aim| aim.tips().is_some());
-        self.rows.write(&Beside { aim, ..beside(wish, Towards::Start) }, &start, q);
+        // An arm that gives way is corrected by as little as possible, lest the joints that the task leaves free take a leap that no
+        // certificate allows.
+        let gives_way = self.around.as_ref().is_some_and(|around| around.obstacles.fastest() > 0.0);
+        let towards = if gives_way { Towards::Joints } else { Towards::Start };
+        self.rows.write(&Beside { aim, ..beside(wish, towards) }, &start, q);
     }
 
     /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
@@ -494,7 +557,7 @@ impl Response {
 
     /// The row of the command with which gradient'(r(x) - rest) >= `least`.
     fn row(&self, gradient: &[f64; MAX_DOF], least: f64) -> Row {
-        let mut row = Row { gradient: [0.0; MAX_DOF], least };
+        let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
         for (j, (slope, offset)) in self.slope.iter().zip(&self.offset).enumerate() {
             row.gradient[j] = gradient[j] * slope;
             row.least -= gradient[j] * offset;

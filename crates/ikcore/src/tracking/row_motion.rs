@@ -6,7 +6,7 @@ use super::tick_aim::TickAim;
 use crate::math::MAX_DOF;
 use crate::math::block_step::TaskRows;
 use crate::math::box_step::ROWS;
-use crate::math::row_step::{Row, RowSolver, RowStep};
+use crate::math::row_step::{Row, RowSolver, RowStep, SOFTNESS};
 use crate::math::vector::{dot, squared_size};
 use crate::objective::{Linearization, Point, TaskBlock};
 use crate::robot::Robot;
@@ -173,7 +173,7 @@ impl RowMotion {
                 gradient.iter_mut().zip(columns).for_each(|(entry, column)| *entry = column[k]);
                 if gradient != [0.0; MAX_DOF] {
                     let least = dot(&gradient[..start.len()], start) - block.residual[k];
-                    self.held.push(Row { gradient, least });
+                    self.held.push(Row { gradient, least, softness: SOFTNESS });
                 }
             }
         }
