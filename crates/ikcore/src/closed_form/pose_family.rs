@@ -51,23 +51,20 @@ impl<'a> PoseFamily<'a> {
 
     /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
-        self.is_excluded_unless(limits, arcs, |_| false)
+        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
     }
 
-    /// The same. Values of the parameter (rad) that cannot be excluded yet are offered to `visit`, which ends this by returning true.
-    pub fn is_excluded_unless(
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them: none if there
+    /// is none for certain; None where these cannot be known. Values that cannot be excluded yet are offered to `visit`, which ends
+    /// this by returning true.
+    pub fn open_values(
         &self,
         limits: &FamilyLimits,
         arcs: &ParameterArcs,
+        most: usize,
         mut visit: impl FnMut(f64) -> bool,
-    ) -> bool {
-        self.redundant.is_excluded(&self.pose, &limits.0, arcs, &mut visit)
-    }
-
-    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
-    /// can be known.
-    pub fn open_values(&self, limits: &FamilyLimits, arcs: &ParameterArcs, most: usize) -> Values {
-        self.redundant.open_values(&self.pose, &limits.0, arcs, most)
+    ) -> Option<Values> {
+        self.redundant.open_values(&self.pose, &limits.0, arcs, most, &mut visit)
     }
 
     /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are

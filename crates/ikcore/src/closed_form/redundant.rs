@@ -175,27 +175,26 @@ impl Redundant {
         &self.verifier
     }
 
-    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`. Values that look open on
-    /// the way are offered to `visit`, as in [`LimitProof::open_values`].
-    pub fn is_excluded(
+    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`.
+    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
+        match (&self.method, &pose.by_arm_angle) {
+            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
+            _ => self.open_values(pose, limits, arcs, 1, &mut |_| false).is_some_and(|open| open.is_empty()),
+        }
+    }
+
+    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, as in [`LimitProof::open_values`]; None
+    /// where these cannot be known.
+    pub fn open_values(
         &self,
         pose: &RedundantPose,
         limits: &AxisLimits,
         arcs: &ParameterArcs,
+        most: usize,
         visit: &mut dyn FnMut(f64) -> bool,
-    ) -> bool {
-        match (&self.method, &pose.by_arm_angle, &self.proof) {
-            (Method::ArmAngle(method), Some(pose), _) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
-            (.., Some(proof)) => proof.open_values(&pose.goal, arcs, &limits.axes, 1, visit).is_empty(),
-            _ => false,
-        }
-    }
-
-    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them, where these
-    /// can be known.
-    pub fn open_values(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs, most: usize) -> Values {
-        let by_proof = |proof: &LimitProof| proof.open_values(&pose.goal, arcs, &limits.axes, most, &mut |_| false);
-        self.proof.as_deref().map(by_proof).unwrap_or_default()
+    ) -> Option<Values> {
+        let proof = self.proof.as_deref()?;
+        Some(proof.open_values(&pose.goal, arcs, &limits.axes, most, visit))
     }
 
     /// Values of the parameter of which one at least has a configuration within limits, if there is any; None where these are not

@@ -22,7 +22,7 @@ const ANGLES_BEFORE_DOUBT: usize = 4;
 const SCANNED_VALUES: usize = 16;
 
 /// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
-const OPEN: usize = 8;
+const OPEN: usize = 2;
 
 /// The search after both takes one of so many evaluations that the budget leaves.
 const SEARCHED_SHARE: usize = 400;
@@ -34,8 +34,8 @@ const ROUNDED: f64 = 1e-6;
 enum Scattered {
     /// No solution is within the limits.
     Unreachable,
-    /// None is at these values.
-    Open,
+    /// None is at these values, but may be near others.
+    Open(Vec<f64>),
     /// Branches that failed took half the budget: the rest is for a search.
     TooCostly,
 }
@@ -74,10 +74,10 @@ impl<'a> FamilySearch<'a> {
             Ok(solution) => Some(solution),
             Err(Scattered::Unreachable) => self.unreachable(attempt),
             Err(Scattered::TooCostly) => None,
-            Err(Scattered::Open) => match self.at_decisive_values(attempt) {
+            Err(Scattered::Open(open)) => match self.at_decisive_values(attempt) {
                 Ok(solution) => Some(solution),
                 Err(Miss::Far) => self.unreachable(attempt),
-                Err(Miss::Near) => self.near_the_limits(attempt),
+                Err(Miss::Near) => self.near_the_limits(attempt, &open),
             },
         }
     }
@@ -100,12 +100,13 @@ impl<'a> FamilySearch<'a> {
             return Err(Scattered::Unreachable);
         }
         let mut likely = ArmConfigurations::none();
-        let mut doubted = false;
         let half_the_budget = attempt.budget.left() / 2;
         for (number, value) in self.arcs.scattered(self.scanned()).enumerate() {
-            if number == ANGLES_BEFORE_DOUBT && self.family.is_by_arm_angle() {
-                self.doubt(attempt)?;
-                doubted = true;
+            if number == ANGLES_BEFORE_DOUBT
+                && self.family.is_by_arm_angle()
+                && self.family.is_excluded(&self.limits, &self.arcs)
+            {
+                return Err(Scattered::Unreachable);
             }
             self.family.likely_at(value, &self.limits, &mut likely);
             if likely.is_empty() {
@@ -128,10 +129,7 @@ impl<'a> FamilySearch<'a> {
                 return Err(Scattered::TooCostly);
             }
         }
-        match if doubted { None } else { self.doubt(attempt)? } {
-            Some(solution) => Ok(solution),
-            None => Err(Scattered::Open),
-        }
+        self.by_doubt(attempt)
     }
 
     /// Most values that are tried before near misses are.
@@ -139,18 +137,22 @@ impl<'a> FamilySearch<'a> {
         if self.family.is_by_arm_angle() { SCANNED_ANGLES } else { SCANNED_VALUES }
     }
 
-    /// Ends where there is no solution for certain; otherwise a solution at a value that the proof could not exclude, if there is one.
+    /// A solution at a value that the proof of there being none could not exclude, or how that ends.
     #[cold]
-    fn doubt(&self, attempt: &mut Attempt<'_, '_>) -> Result<Option<Solution>, Scattered> {
+    fn by_doubt(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Scattered> {
         let (mut likely, mut solution) = (ArmConfigurations::none(), None);
-        let is_excluded = self.family.is_excluded_unless(&self.limits, &self.arcs, |value| {
+        let open = self.family.open_values(&self.limits, &self.arcs, OPEN, |value| {
             self.family.likely_at(value, &self.limits, &mut likely);
             if !likely.is_empty() {
                 solution = attempt.preferred(&self.preference, &mut likely).ok();
             }
             solution.is_some()
         });
-        if is_excluded { Err(Scattered::Unreachable) } else { Ok(solution) }
+        match (solution, open) {
+            (Some(solution), _) => Ok(solution),
+            (None, Some(open)) if open.is_empty() => Err(Scattered::Unreachable),
+            (None, open) => Err(Scattered::Open(open.unwrap_or_default().to_vec())),
+        }
     }
 
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
@@ -172,9 +174,8 @@ impl<'a> FamilySearch<'a> {
 
     /// A solution near branches that are little outside the limits.
     #[cold]
-    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
-        let open = self.family.open_values(&self.limits, &self.arcs, OPEN);
-        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, &open) {
+    fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>, open: &[f64]) -> Option<Solution> {
+        match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, open) {
             Ok(solution) => Some(solution),
             Err(Miss::Far) if self.family.is_sure_of_arcs() => self.searched_in_short(attempt),
             Err(_) => None,
