@@ -16,6 +16,7 @@
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `around_arm` | what is around an arm, as rows that its command is to keep |
 //! | `kept_motion`, `stop_motion`, `held_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `row_motion`, `wish`, `tick_aim` | steps beside rows, and what they are found from |
 //! | `tip_order`, `track_tips` | several tips: what is asked of them, and the call for their paths |
@@ -27,6 +28,7 @@
 //! | `controller` | controllers, which only command and observe |
 
 mod approach_motion;
+mod around_arm;
 mod commanded_motion;
 mod controller;
 mod held_stop;

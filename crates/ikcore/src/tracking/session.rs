@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::kept_motion::{Kept, KeptMotion, ObstacleMotion};
+use super::around_arm::ObstacleMotion;
+use super::kept_motion::{Kept, KeptMotion};
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::repeated_targets::RepeatedTargets;
