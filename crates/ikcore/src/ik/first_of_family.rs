@@ -19,7 +19,7 @@ const SCANNED_ANGLES: usize = 8;
 const ANGLES_BEFORE_DOUBT: usize = 4;
 
 /// Values of a joint as parameter that are tried before it is asked: the answer takes as long as fifty values.
-const SCANNED_VALUES: usize = 16;
+const SCANNED_VALUES: usize = 10;
 
 /// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
 const OPEN: usize = 2;
