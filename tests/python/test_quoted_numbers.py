@@ -59,8 +59,8 @@ def test_the_readme_quotes_the_comparison() -> None:
 
 
 def test_a_wrong_digit_is_found() -> None:
-    assert len(wrongly_quoted(README.replace("| 599 to 600 of 600 | 20 |", "| 600 of 600 | 21 |"))) == 2
-    assert len(wrongly_quoted(README.replace("| 13 to 1200 |", "| 13 to 1100 |"))) == 1
+    assert len(wrongly_quoted(README.replace("| 596 to 600 of 600 | 24 |", "| 600 of 600 | 25 |"))) == 2
+    assert len(wrongly_quoted(README.replace("| 15 to 1200 |", "| 15 to 1100 |"))) == 1
 
 
 @pytest.mark.parametrize(
