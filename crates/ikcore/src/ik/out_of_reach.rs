@@ -6,7 +6,7 @@ use crate::objective::{LeastSquares, Linearization, Point};
 use crate::solver::Status;
 use crate::task::Assessment;
 
-/// Steps towards the target: they end within 3 % of what a whole descent reaches, on the average (measured on five arms).
+/// Steps towards the target: on six arms they end 2 to 5 % nearer, on the average, than four of the default solver from an indexed start.
 const STEPS: usize = 2;
 
 /// Damping of the first step, relative to the squared error.

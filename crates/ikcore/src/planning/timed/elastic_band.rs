@@ -72,10 +72,12 @@ impl ElasticBand<'_> {
         let [before, after] = neighbours(motion, point);
         let n = q.len();
         let row = |point: usize| &motion.rows[point * n..(point + 1) * n];
-        let (share, beyond) = match () {
-            () if point == before => (1.0, 1.0),
-            () if point == after => (0.0, 1.0),
-            () => ((knots[point] - knots[before]) / (knots[after] - knots[before]), BEYOND),
+        let (share, beyond) = if point == before {
+            (1.0, 1.0)
+        } else if point == after {
+            (0.0, 1.0)
+        } else {
+            ((knots[point] - knots[before]) / (knots[after] - knots[before]), BEYOND)
         };
         for (j, q) in q.iter_mut().enumerate() {
             let between = row(before)[j] + share * (row(after)[j] - row(before)[j]);

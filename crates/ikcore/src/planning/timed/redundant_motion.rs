@@ -298,6 +298,7 @@ impl<'a> RedundantMotion<'a> {
 /// What a nominal motion follows.
 #[derive(Debug, Clone, Copy)]
 enum Leading {
+    /// The path itself.
     OnPath,
     /// The path, displaced as the start is.
     InParallel,
