@@ -51,21 +51,21 @@ def test_a_mean_is_lower_by_more_than_two_standard_errors() -> None:
 
 
 @pytest.mark.parametrize("objective", ["time", "joint_travel"])
-def test_one_broken_limit_contradicts_that_all_are_kept(objective: str) -> None:
+def test_one_broken_limit_leaves_open_that_all_are_kept(objective: str) -> None:
     kept, broken = motions(lambda *_: 1.0), motions(lambda *_: 1.0, success=False)
     assert judge("point_to_point", "planned", objective, kept) is MET
-    assert judge("point_to_point", "planned", objective, [*kept, broken[0], broken[-1]]) is NOT_MET
+    assert judge("point_to_point", "planned", objective, [*kept, broken[0], broken[-1]]) is OPEN
 
 
 def test_convergence_is_held_against_the_best_plan_known() -> None:
     assert judge("point_to_point", "converges_well", motions(lambda *_: 1.0)) is MET
     stalls = motions(lambda name, _, links: 1.5 if name == TPBSO and links == 5 else 1.0)
-    assert judge("point_to_point", "converges_well", stalls) is NOT_MET
+    assert judge("point_to_point", "converges_well", stalls) is OPEN
 
 
 def test_two_links_are_easy_if_few_iterations_do() -> None:
     assert judge("point_to_point", "is_easy", motions(lambda *_: 1.0, after=5 * 150)) is MET
-    assert judge("point_to_point", "is_easy", motions(lambda *_: 1.0, after=20 * 150)) is NOT_MET
+    assert judge("point_to_point", "is_easy", motions(lambda *_: 1.0, after=20 * 150)) is OPEN
 
 
 def test_the_best_search_is_beaten_by_nobody() -> None:
@@ -73,7 +73,7 @@ def test_the_best_search_is_beaten_by_nobody() -> None:
         return motions(lambda name, *_: cost if name == TPBSO else 1.0)
 
     assert judge("comparison", "is_best", swarm(0.9)) is MET
-    assert judge("comparison", "is_best", swarm(1.1)) is NOT_MET
+    assert judge("comparison", "is_best", swarm(1.1)) is OPEN
 
 
 def test_the_best_search_is_open_where_budgets_decide() -> None:
@@ -91,7 +91,7 @@ def test_the_pattern_of_the_rivals_can_be_met() -> None:
         )[objective]
 
     assert judge("comparison", "is_close_where_said", motions(as_in_the_paper)) is MET
-    assert judge("comparison", "is_close_where_said", motions(lambda *_: 1.0)) is NOT_MET
+    assert judge("comparison", "is_close_where_said", motions(lambda *_: 1.0)) is OPEN
 
 
 def test_a_fast_search_is_there_first() -> None:
@@ -103,7 +103,7 @@ def test_a_fast_search_is_there_first() -> None:
     assert judge("comparison", "is_fast", found) is MET
     for motion in found:
         motion.usual[TPBSO] = motion.tuned[TPBSO] = [plan(1.0, after=29_000)] * 3
-    assert judge("comparison", "is_fast", found) is NOT_MET
+    assert judge("comparison", "is_fast", found) is OPEN
 
 
 def past(swarm: list[Any], rivals: list[Any]) -> dict[int, dict[str, list[Any]]]:
@@ -113,15 +113,16 @@ def past(swarm: list[Any], rivals: list[Any]) -> dict[int, dict[str, list[Any]]]
 def test_the_obstacle_is_passed_by_the_swarm_itself() -> None:
     good, long, hit = [plan(1.7)] * 4, [plan(2.5)] * 4, [plan(1.7, success=False)] * 3 + [plan(1.7)]
     assert judge("obstacle", "passes", past(good, hit)) is MET
-    assert judge("obstacle", "passes", past(long, good)) is NOT_MET
-    assert judge("obstacle", "passes", past(hit, good)) is NOT_MET
+    assert judge("obstacle", "passes", past(long, good)) is OPEN
+    assert judge("obstacle", "passes", past(hit, good)) is OPEN
 
 
 def test_robust_is_who_fails_no_more_often_than_the_others() -> None:
-    good, hit = [plan(1.7)] * 4, [plan(1.7, success=False), *[plan(1.7)] * 3]
+    good, hit, often = [plan(1.7)] * 4, [plan(1.7, success=False), *[plan(1.7)] * 3], [plan(1.7, success=False)] * 3
     assert judge("obstacle", "is_robust", past(good, hit)) is MET
-    assert judge("obstacle", "is_robust", past(hit, good)) is NOT_MET
-    assert judge("obstacle", "is_robust", past([plan(1.8)] * 4, good)) is NOT_MET
+    assert judge("obstacle", "is_robust", past(hit, good)) is MET  # 3 of 4 beside 4 of 4 tells nothing apart
+    assert judge("obstacle", "is_robust", past([*often, plan(1.7)], good)) is OPEN
+    assert judge("obstacle", "is_robust", past([plan(1.8)] * 4, good)) is OPEN
 
 
 def test_one_run_of_each_search_decides_nothing() -> None:
@@ -141,11 +142,11 @@ def along(plans: list[Any], *, path: str = "pentagram", objective: str = "time",
 def test_a_path_is_followed_by_all_plans_within_the_accuracy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(parts["along_path"], "from_the_points", lambda plan: plan.accuracy)
     assert judge("along_path", "follows", "pentagram", [along([plan(1.0, accuracy=0.03)])]) is MET
-    assert judge("along_path", "follows", "pentagram", [along([plan(1.0, accuracy=0.05)])]) is NOT_MET
-    assert judge("along_path", "follows", "pentagram", [along([plan(1.0, success=False)])]) is NOT_MET
+    assert judge("along_path", "follows", "pentagram", [along([plan(1.0, accuracy=0.05)])]) is OPEN
+    assert judge("along_path", "follows", "pentagram", [along([plan(1.0, success=False)])]) is OPEN
 
 
-@pytest.mark.parametrize(("curve", "verdict"), [(20, MET), (50, NOT_MET)])
+@pytest.mark.parametrize(("curve", "verdict"), [(20, MET), (50, OPEN)])
 def test_iterations_differ_by_a_factor_of_two_at_most(curve: int, verdict: Verdict) -> None:
     cases = [
         along([plan(1.0, after=iterations * 120)], path=path, objective=objective)
@@ -157,7 +158,7 @@ def test_iterations_differ_by_a_factor_of_two_at_most(curve: int, verdict: Verdi
 
 def test_even_timing_is_held_against_the_fastest() -> None:
     assert judge("along_path", "spreads_time_evenly", [along([plan(1.0)], retimed=0.95)]) is MET
-    assert judge("along_path", "spreads_time_evenly", [along([plan(1.0)], retimed=0.7)]) is NOT_MET
+    assert judge("along_path", "spreads_time_evenly", [along([plan(1.0)], retimed=0.7)]) is OPEN
 
 
 def test_the_printed_deviations_decide_who_varies_least() -> None:
@@ -198,7 +199,7 @@ def test_rounding_of_very_short_segments_breaks_the_polynomials() -> None:
 
 def test_eq_1_and_2_have_no_answer_out_of_reach() -> None:
     assert judge("equations", "reaches", np.array([[0.3, 0.7], [-1.2, -1.0]])) is MET
-    assert judge("equations", "reaches", np.array([[0.3, 0.7], [2.0, 1.0]])) is NOT_MET
+    assert judge("equations", "reaches", np.array([[0.3, 0.7], [2.0, 1.0]])) is OPEN
 
 
 def test_eq_13_lets_a_wrist_into_the_hole_of_unequal_links() -> None:

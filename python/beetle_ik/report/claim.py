@@ -29,8 +29,9 @@ class Verdict(StrEnum):
 _MEANINGS = {
     Verdict.REPRODUCED: "The rule is met, and nothing had to be chosen.",
     Verdict.WITH_READING: "The rule is met once a gap or ambiguity of the paper is filled as stated.",
-    Verdict.CONTRADICTED: "The rule is not met under the stated conditions, or under any reading of the text.",
-    Verdict.NOT_IDENTIFIABLE: "The paper omits what would decide, or its possible readings disagree.",
+    Verdict.CONTRADICTED: "The rule is not met under any reading of the text, and nothing else had to be chosen.",
+    Verdict.NOT_IDENTIFIABLE: "The paper omits what would decide, its possible readings disagree, or the rule is not "
+    "met with what we chose where the paper leaves a choice.",
     Verdict.NOT_TESTED: "Nothing was run that could decide; the report says why.",
 }
 
@@ -65,7 +66,7 @@ class Claim:
     holds: bool | Readings | None
     """Whether the rule is met, for all readings alike or for each; None where nothing was run."""
     reading: str = ""
-    """What was chosen where the paper leaves a choice."""
+    """What was chosen where the paper leaves a choice. Another choice might do better: with one, nothing fails."""
     missing: tuple[str, ...] = ()
     """Quantities that the claim depends on and that the paper does not give."""
     reason: str = ""
@@ -90,9 +91,10 @@ class Claim:
         """A claim whose verdict follows from the data.
 
         - `missing` quantities (see `not_given`): not identifiable, whatever `holds` is.
-        - `holds` is True: reproduced; with a `reading`: reproduced with a stated reading. False: contradicted.
+        - `holds` is True: reproduced; with a `reading`: reproduced with a stated reading.
+        - `holds` is False: contradicted; with a `reading`: not identifiable, since another choice might meet the rule.
         - `holds` maps the readings that the text leaves open to True or False. All True: reproduced with a stated
-          reading; all False: contradicted; mixed: not identifiable. The report lists which of them hold.
+          reading; all False: as False above; mixed: not identifiable. The report lists which of them hold.
         - `holds` is None: not tested, for the `reason` given.
 
         Raises:
@@ -127,10 +129,8 @@ class Claim:
         if self.holds is None:
             return Verdict.NOT_TESTED
         met = list(self.holds.values()) if isinstance(self.holds, Mapping) else [self.holds]
-        if not any(met):
-            return Verdict.CONTRADICTED
         if not all(met):
-            return Verdict.NOT_IDENTIFIABLE
+            return Verdict.NOT_IDENTIFIABLE if any(met) or self.reading else Verdict.CONTRADICTED
         return Verdict.WITH_READING if self.reading or isinstance(self.holds, Mapping) else Verdict.REPRODUCED
 
     @property

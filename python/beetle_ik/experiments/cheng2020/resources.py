@@ -141,8 +141,9 @@ def convergence_claim(reached: list[Reached]) -> Claim:
         rule=f"By eq. (12) and (13) every random target is reached to 0.1 mm within {_PASSES[-1]} passes.",
         measured="; ".join(f"{one.name}: {one.reached[-1]} of {one.count}" for one in reached),
         holds={one.name: one.reached[-1] == one.count for one in reached},
-        reason="Finitely many passes stand for the limit; ten times fewer reach almost as many. The step sizes are the "
-        "paper's own; which ones are proper, it leaves to [38].",
+        reading="Finitely many passes stand for the limit. The step sizes are those of eq. (12) and (13), with c₁ and "
+        "c₂ of ours; which ones are proper, the paper leaves to [38].",
+        reason="Ten times fewer passes reach almost as many.",
         section=TITLE,
     )
 

@@ -123,6 +123,7 @@ def lead_claims(costs: Costs) -> list[Claim]:
             holds={
                 box.name: min(over_beetle(costs, box, BANDS[0]).values()) >= _FASTER for box in (WHOLE, TRUST, SCALED)
             },
+            reading="All five methods are tuned alike; the paper gives no options.",
             reason="The paper does not say which box its swarms search.",
             section=TITLE,
         ),
@@ -136,6 +137,7 @@ def lead_claims(costs: Costs) -> list[Claim]:
                 for box in _DRAWN
                 for band in BANDS
             },
+            reading="All five methods are tuned alike; the paper gives no options.",
             reason="The lead comes from the box: it vanishes where the box shrinks with the error.",
             section=TITLE,
         ),

@@ -184,6 +184,7 @@ def explorations_claim(found: Measurements) -> Claim:
             and many.evaluations.mean > few.evaluations.mean
             for name, (few, many) in ends.items()
         },
+        reading="Bands, c₁ and c₂ are ours.",
         reason="Eq. (8) to (11) describe *star*, step vii of Algorithm 1 *chain*.",
         section=TITLE,
     )
@@ -211,6 +212,7 @@ def length_claim(symbol: str, source: str, found: Measurements) -> Claim:
             name: after.evaluations.mean < before.evaluations.mean and after.roughness.mean > before.roughness.mean
             for name, (before, after) in changes.items()
         },
+        reading="Bands and the other constants are ours.",
         reason="It holds below an optimum; beyond it the cost rises. The paper's own range is not in our copy.",
         section=TITLE,
     )

@@ -104,6 +104,8 @@ def postures(context: Context) -> Part:
     }
     optima, largest = _optima()
     lengths = {name: postures_at(length) for name, length in LENGTHS.items()}
+    printed = {place: _at_printed_tip(region) for place, region in zip(_PLACES, (None, QUADRANT), strict=True)}
+    at_printed = {f"{length:.4g} m": postures_at(length) for length, _ in printed.values()}
     blocks: list[Block] = [
         _TEXT,
         *(_table(measure, posture, len(seeds)) for measure, posture in best.items()),
@@ -116,13 +118,10 @@ def postures(context: Context) -> Part:
     ]
     return Section(TITLE, blocks), [
         found_best(_swarm_gaps(seeds), len(seeds)),
-        printed_optima(
-            {place: _at_printed_tip(region) for place, region in zip(_PLACES, (None, QUADRANT), strict=True)},
-            PRINTED["overall"][-1],
-        ),
+        printed_optima(printed, PRINTED["overall"][-1]),
         text_and_tables({"SM₃": (6.816, PRINTED["tip"][-1]), "SM": (10.6883, PRINTED["overall"][-1])}),
         best_so_far({SYMBOLS[measure]: printed for measure, printed in PRINTED.items()}),
-        second_joint_small(lengths),
+        second_joint_small(at_printed, lengths),
         straight_arm_singular(_least_singular_value()),
         balanced(lengths),
         area_is_balance({name: _balance_of_largest(length) for name, length in LENGTHS.items()}),

@@ -131,12 +131,13 @@ def tracking(context: Context) -> Part:
     ]
 
 
-def _printed_jacobian_entry() -> tuple[float, float]:
-    """J(2,1) as eq. (6) prints it, its lost minus sign put back, and by central differences, at one posture (m/rad)."""
+def _printed_jacobian_entry() -> tuple[dict[str, float], float]:
+    """J(2,1) as eq. (6) prints it, by its lost signs, and by central differences, at one posture (m/rad)."""
     q, step = np.array([0.4, -0.3, 0.1]), np.array([1e-6, 0.0, 0.0])
     links = 0.7  # m, each: half the swing radius of Table 1
-    printed = links * np.sin(q[0]) + np.sin(q[0] - q[1]) * (links + q[2])
-    return float(printed), float((ARM.fk(q + step)[1, 3] - ARM.fk(q - step)[1, 3]) / 2e-6)
+    first, second = links * np.sin(q[0]), np.sin(q[0] - q[1]) * (links + q[2])
+    printed = {"q₁ - q₂": first + second, "the same, first sine negative": second - first}
+    return printed, float((ARM.fk(q + step)[1, 3] - ARM.fk(q - step)[1, 3]) / 2e-6)
 
 
 def _pseudo_inverse_table(results: dict[str, TrackResult]) -> Table:

@@ -11,7 +11,7 @@ from ...report import Block, Claim, Column, Figure, Part, Printed, Section, Spre
 from ..experiment import Context
 from .drawing import label
 from .motions import CONTESTS, EQUAL_EVALUATIONS, EQUAL_ITERATIONS, EQUAL_TUNING, Motion
-from .searches import RIVALS, TOO_FEW, TPBSO, TUNED, USUAL, best_so_far, is_lower
+from .searches import OURS, RIVALS, TOO_FEW, TPBSO, TUNED, USUAL, best_so_far, is_lower
 from .settings import GENERATIONS, LINKS, POPULATION, UNITS, WORDS
 
 TITLE = "Beside PSO and GA"
@@ -52,6 +52,7 @@ def is_best(motions: Sequence[Motion]) -> Claim:
         rule="Neither PSO nor GA has a lower mean than TPBSO on any motion, by more than two standard errors.",
         measured="; ".join(f"{contest}: {_told(who)}" for contest, who in beaten.items()) if enough else "",
         holds={contest: not who for contest, who in beaten.items()} if enough else None,
+        reading=OURS,
         reason="" if enough else TOO_FEW,
         section=TITLE,
     )
@@ -107,6 +108,7 @@ def is_close_where_said(motions: Sequence[Motion]) -> Claim:
             )
             for contest, ratios in over.items()
         },
+        reading=f"“Close” is at most {_CLOSE} times. {OURS}",
         section=TITLE,
     )
 
@@ -130,6 +132,7 @@ def is_fast(motions: Sequence[Motion]) -> Claim:
         rule=f"TPBSO's mean cost is the first to come within {_CLOSE} times its final value, on every motion.",
         measured="; ".join(f"{how}: first on {firsts[how].count(TPBSO)} of {len(tasks)} motions" for how in firsts),
         holds={how: all(name == TPBSO for name in names) for how, names in firsts.items()},
+        reading=OURS,
         section=TITLE,
     )
 

@@ -47,8 +47,9 @@ The dead zone of eq. (20) as printed (no step at all below one degree) must be a
 step.
 """
 _TEXT_TABLES = """
-E is evaluated first, then the angles change, then that E is compared with E₀. So R₁ is one update better than the E
-that ended the search, and iterations are updates. The fourth joint of the last motion passes 360° on its way and is
+E is evaluated first, then the angles change, then that E is compared with E₀: **the printed counts also need this one
+update after the threshold**, which the paper does not state. A search that ends at the threshold itself takes one update
+less in each motion. So R₁ is one update better than the E that ended the search, and iterations are updates. The fourth joint of the last motion passes 360° on its way and is
 brought back by eq. (12).
 """
 
@@ -153,7 +154,10 @@ def _error_table(errors: Array) -> Table:
     )
 
 
-_FACTOR = "η and E₀ belong to an E that is 20 times that of eq. (11); eq. (20) is mended."
+_FACTOR = (
+    "η and E₀ belong to an E that is 20 times that of eq. (11); eq. (20) is mended; the search ends one update after E "
+    "has fallen to E₀."
+)
 
 
 def _claims(runs: list[Motion], angles: Array, positions: Array, rounded: Array, errors: Array) -> list[Claim]:
