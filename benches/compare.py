@@ -51,6 +51,7 @@ GENERAL = [
     restarting.OptIk,
     restarting.TracIk,
     closed_form.Eaik,
+    closed_form.EaikCall,
     closed_form.Ssik,
 ]
 # One descent from the start. They take milliseconds: apart, so that they do not empty the caches of the others, and on
@@ -167,7 +168,7 @@ def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int,
     rows = []
     for order, in_a_row in ORDERS.items():
         measured = interleave(solvers, targets, starts, in_a_row=in_a_row, rounds=rounds)
-        times = {name: judge(chain, targets, calls, tolerance) for name, calls in measured.items()}
+        times = {one.name: judge(chain, targets, measured[one.name], tolerance, one.chosen) for one in adapters}
         rows += [
             Row(task, order, chain.name, library.name, times.get(library.name), missing.get(library.name, ""))
             for library in libraries

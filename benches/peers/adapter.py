@@ -34,6 +34,10 @@ class Adapter:
         """Joint values whose tip pose is `target` (4, 4), in m and rad; None where the library reports failure."""
         raise NotImplementedError
 
+    def chosen(self, answer: Any) -> np.ndarray | None:
+        """The joint values in an answer of `solve_pose` or `solve_position`; not timed."""
+        return answer
+
     def solve_position(self, point: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         """Joint values whose tip is at `point` (3,), in m, with any orientation."""
         raise NotImplementedError

@@ -6,6 +6,7 @@ import gc
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import perf_counter_ns
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -27,7 +28,8 @@ class Times:
     p99: float
 
 
-Solver = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
+Solver = Callable[[np.ndarray, np.ndarray], Any]
+Choice = Callable[[Any], np.ndarray | None]
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Calls:
     """What one library took and answered: `times` (rounds, targets) in µs, `answers` one list a round."""
 
     times: np.ndarray
-    answers: list[list[np.ndarray | None]]
+    answers: list[list[Any]]
 
 
 def interleave(
@@ -70,16 +72,18 @@ def interleave(
     return calls
 
 
-def judge(chain: Chain, targets: np.ndarray, calls: Calls, tolerance: float) -> Times:
+def judge(chain: Chain, targets: np.ndarray, calls: Calls, tolerance: float, chosen: Choice) -> Times:
     """Solved means within the tolerance by Pinocchio's forward kinematics and inside the limits, in every round.
+
+    `chosen` takes the configuration from an answer.
 
     Of a target's calls the median counts: it leaves out what interrupted one of them, a short call and a long one
     alike, and rewards no library for the luckiest of its random restarts, as the quickest call would.
     """
     solved = [
-        q is not None and _reaches(chain, q, target, tolerance)
+        (q := chosen(answer)) is not None and _reaches(chain, q, target, tolerance)
         for answers in calls.answers
-        for q, target in zip(answers, targets, strict=True)
+        for answer, target in zip(answers, targets, strict=True)
     ]
     times = np.median(calls.times, axis=0)
     return Times(sum(solved), len(solved), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99))))

@@ -16,6 +16,7 @@ parts = {
     name: import_module(f"beetle_ik.experiments.wang2019.{name}")
     for name in ("along_path", "comparison", "complexity", "equations", "obstacle", "point_to_point", "table_1")
 }
+PATHS = ("pentagram", "closed curve")
 MET, NOT_MET, OPEN = Verdict.WITH_READING, Verdict.CONTRADICTED, Verdict.NOT_IDENTIFIABLE
 
 
@@ -132,6 +133,9 @@ def test_one_run_of_each_search_decides_nothing() -> None:
     several = motions(lambda name, *_: 1.1 if name == TPBSO else 1.0)
     found = [Motion(each.objective, each.links, first(each.usual), first(each.tuned)) for each in several]
     assert judge("comparison", "is_best", found) is Verdict.NOT_TESTED
+    assert judge("comparison", "is_fast", found) is Verdict.NOT_TESTED
+    once = [along([plan(1.0)], path=path, objective=o) for path in PATHS for o in ("time", "joint_travel")]
+    assert judge("along_path", "takes_as_many_iterations", once) is Verdict.NOT_TESTED
     assert judge("obstacle", "is_robust", past([plan(1.8)], [plan(1.7)])) is Verdict.NOT_TESTED
 
 
@@ -149,8 +153,8 @@ def test_a_path_is_followed_by_all_plans_within_the_accuracy(monkeypatch: pytest
 @pytest.mark.parametrize(("curve", "verdict"), [(20, MET), (50, OPEN)])
 def test_iterations_differ_by_a_factor_of_two_at_most(curve: int, verdict: Verdict) -> None:
     cases = [
-        along([plan(1.0, after=iterations * 120)], path=path, objective=objective)
-        for path, iterations in (("pentagram", 20), ("closed curve", curve))
+        along([plan(1.0, after=iterations * 120)] * 2, path=path, objective=objective)
+        for path, iterations in zip(PATHS, (20, curve), strict=True)
         for objective in ("time", "joint_travel")
     ]
     assert judge("along_path", "takes_as_many_iterations", cases) is verdict

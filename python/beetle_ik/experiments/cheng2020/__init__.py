@@ -16,12 +16,12 @@ A beetle compares the error at the ends of two antennae and steps towards the sm
 this way, without a Jacobian and without violating velocity limits that vary in time.
 
 **The method works**, once the gaps in its description are filled: both arms follow their circles, and no limit is
-violated. **Its errors and its lead are another matter.** The published errors are about half the error band, which is
-chosen freely and which the paper does not give. The lead over the swarms depends on the box that each step searches. In
-all that the limit allows, swarms need several times the evaluations of the beetle. In a small fixed box they need
-fewer, but the more the finer the accuracy. In a box that shrinks with the error, as the beetle's antennae do, they need
-about as many as the beetle. Trackers that use more than the size of the error need one to four evaluations per step
-where the beetle needs hundreds.
+violated. **Its errors and its lead are another matter.** The published errors are a share of the error band, about half
+of it with our c₁ and c₂; the paper gives neither band nor constants. The lead over the swarms depends on the box that
+each step searches. In all that the limit allows, swarms need several times the evaluations of the beetle. In a small
+fixed box they need fewer, but the more the finer the accuracy. In a box that shrinks with the error, as the beetle's
+antennae do, they need about as many as the beetle. Trackers that use more than the size of the error need one to four
+evaluations per step where the beetle needs hundreds.
 """
 
 

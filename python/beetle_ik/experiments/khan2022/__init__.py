@@ -16,11 +16,12 @@ from .theorem import theorem
 _SUMMARY = """
 ZNNBAS works without a model, as the paper claims: it needs one measured position per tick. Its state converges to both
 of the paper's paths, from home and from every start that we tried, and an arm that differs from its drawing makes no
-difference. **Many of the other claims do not hold.** The arm is not at the state: every command is a random antenna
-away from it, and the tool shakes by centimetres. The M passes through points that this arm cannot reach within its
+difference. **Some of the other claims do not hold.** The M passes through points that this arm cannot reach within its
 limits. The star as printed is no star. The gain as printed diverges. The objective does not fall monotonically, since
-the proof of Theorem 1 is about a different algorithm, and with a constant antenna it never reaches zero. α, “the core
-hyper-parameter”, matters least of the three.
+the proof of Theorem 1 is about a different algorithm, and with a constant antenna it never reaches zero. **Many cannot
+be decided**, because the paper leaves two things open. It does not say whether it means the state or the arm: every
+command is a random antenna away from the state, and there the tool shakes by centimetres. And it does not give the time
+step, the unit of α, or what counts as reached.
 
 An error of 10⁻⁵ needs a tenfold gain, with either antenna. At equal gain the antenna of eq. (16) is better if its c₁,
 which the paper does not give, is near 1.

@@ -173,8 +173,8 @@ def continuous(steps: Mapping[str, Sequence[float]]) -> Claim:
         )
         + " (rms, printed constants)",
         holds={name: fine <= _SHORTER * coarse for name, (coarse, fine) in steps.items()},
-        reason="The state θ moves continuously, but the arm is sent to θ′, a new random antenna away in every tick. The "
-        "paper does not say which of the two moves continuously.",
+        reason="The state θ moves continuously; the arm is sent to θ′, a new random antenna away in every tick. The "
+        "paper does not say which of the two it means.",
         section=TITLE,
     )
 
@@ -201,11 +201,9 @@ def global_solution(reached: Mapping[float, int], targets: int) -> Claim:
     return Claim.judged(
         "By the random search of BAS it avoids local minima and converges to a global solution.",
         source="Section 5",
-        rule="From home, within the arm's limits, the tool at θ is as near as counts as reached from 8 to 10 s (median), "
-        "for each random target.",
-        measured=", ".join(
-            f"{count} of {targets} targets to {number(1e3 * near)} mm" for near, count in reached.items()
-        ),
+        rule="From home, within the arm's limits, the tool at θ is near enough to each random target from 8 to 10 s "
+        "(median).",
+        measured=", ".join(f"{count} of {targets} to {number(1e3 * near)} mm" for near, count in reached.items()),
         holds={f"{number(1e3 * near)} mm count as reached": count == targets for near, count in reached.items()},
         reason="The paper does not say what counts as a solution. Targets are the tool's positions at random "
         "configurations within the limits; reaching them all shows no local minimum in these runs, and is no proof.",

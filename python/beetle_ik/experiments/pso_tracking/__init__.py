@@ -11,13 +11,13 @@ A redundant arm can hold its tip in one place in many postures. The paper looks 
 easily, by a particle swarm over joint points on circles. It tracks with the weighted pseudo-inverse, and finds the arm
 in a picture by an active contour.
 
-**The methods work; most of the claims about them do not hold.** Ten generations of five particles find the best
-posture, whatever the length of the links, and the active contour finds the arm, though a plain threshold is more
-reliable. But no length gives both printed optima, q₂ is not small where the paper says it is, and an arm with q₂ = 0 is
-not singular. Which posture is “balanced” depends on the length of the links, which is not given. The printed tracking
-error lies between those of 1 ms and 10 ms steps, once a closed loop is added that the paper lacks. The order of its
-rivals depends on how each is tuned: a PID tuned on a plain grid is as good as the bee colony's, and on the same servos
-the pseudo-inverse does not beat all of them.
+**The methods work; a third of the claims about them do not hold, and most of the others cannot be decided.** Ten
+generations of five particles find the best posture, whatever the length of the links, and the active contour finds the
+arm, though a plain threshold is more reliable. But no length gives both printed optima, q₂ is not small where the paper
+says it is, and an arm with q₂ = 0 is not singular. Which posture is “balanced” depends on the length of the links,
+which is not given. The printed tracking error lies between those of 1 ms and 10 ms steps, once a closed loop is added
+that the paper lacks. The order of its rivals depends on how each is tuned: a PID tuned on a plain grid is as good as
+the bee colony's, and on the same servos the pseudo-inverse does not beat all of them.
 """
 
 

@@ -155,7 +155,7 @@ def costs(plans: Sequence[bik.Plan]) -> list[float]:
     return [plan.cost for plan in plans]
 
 
-TOO_FEW = "One run of each search has no standard error: run without --short."
+TOO_FEW = "One run of each search decides nothing: run without --short."
 OURS = "Reach, limits and the constants of the searches are ours: the paper states none."
 
 

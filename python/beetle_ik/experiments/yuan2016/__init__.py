@@ -11,10 +11,11 @@ from .typos import typos
 _SUMMARY = """
 The seven motions are reproduced **to the last iteration**: {counts}, with the printed angles and positions, once two
 gaps are filled: the printed learning rate and threshold belong to an error 20 times as large as that of eq. (11), and
-the search makes one more update after its error has fallen to the threshold. **The comparison with Newton-Raphson is contradicted**: the textbook method does not fail on these motions. It solves each in
-a handful of iterations, more accurately and in less time. APPS is plain gradient descent. It needs no inverse, but it
-does need a good start: from random starts the paper's learning rate reaches a third of random targets. A rate taken
-from the gradients themselves reaches most of them.
+the search makes one more update after its error has fallen to the threshold. **The comparison with Newton-Raphson is
+contradicted**: the textbook method does not fail on these motions. It solves each in a handful of iterations, more
+accurately and in less time. APPS is plain gradient descent. It needs no inverse, but it does need a good start: from
+random starts the paper's learning rate reaches a third of random targets. A rate taken from the gradients themselves
+reaches most of them.
 """
 
 

@@ -47,10 +47,10 @@ The dead zone of eq. (20) as printed (no step at all below one degree) must be a
 step.
 """
 _TEXT_TABLES = """
-E is evaluated first, then the angles change, then that E is compared with E₀: **the printed counts also need this one
-update after the threshold**, which the paper does not state. A search that ends at the threshold itself takes one update
-less in each motion. So R₁ is one update better than the E that ended the search, and iterations are updates. The fourth joint of the last motion passes 360° on its way and is
-brought back by eq. (12).
+E is evaluated first, then the angles change, then that E is compared with E₀. **The printed counts need this one update
+after the threshold**, which the paper does not mention: a search that ends at the threshold itself makes one update
+less in each motion. So R₁ is one update better than the E that ended the search, and iterations are updates. The fourth
+joint of the last motion passes 360° on its way and is brought back by eq. (12).
 """
 
 
