@@ -100,10 +100,12 @@ docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in targe
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build/html
 
-papers: $(VENV)/with-test  ## the papers run again, reports in target/papers/; the tables that README and site quote
+papers: $(VENV)/with-test  ## the papers run again, reports in target/papers/; the tables and claims that README and site quote
 	$(BIN)/beetle-ik reproduce all --out target/papers
 	cd docs/papers/tables && for table in */*.csv; do \
 	    cp ../../../target/papers/$${table%/*}/tables/$${table#*/} $$table || exit 1; done
+	cd docs/papers/claims && for claims in *.csv; do \
+	    cp ../../../target/papers/$${claims%.csv}/claims.csv $$claims || exit 1; done
 
 SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
     $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')

@@ -2,8 +2,9 @@
 All solutions of a six-joint arm
 ================================
 
-An arm with six joints has a finite number of solutions for a pose, modulo whole turns. ``solve_all`` returns all of
-them where the arm has a closed form, and ``complete`` says that none is missing.
+Away from singularities, an arm with six joints has a finite number of solutions for a pose, modulo whole turns.
+``solve_all`` finds them by the closed form of the arm, where it has one, and ``complete`` says whether it is proven that
+none is missing.
 """
 
 import matplotlib.pyplot as plt

@@ -12,7 +12,9 @@ from typer.testing import CliRunner, Result
 from beetle_ik import experiments
 from beetle_ik.cli import app
 from beetle_ik.experiments import Context, Experiment
-from beetle_ik.report import Check, Claim, Report, Section
+from beetle_ik.report import Check, Claim, Report, Section, Verdict
+
+PAPERS = Path(__file__).parents[2] / "docs" / "papers"
 
 
 def run(*arguments: str) -> Result:
@@ -123,5 +125,13 @@ def test_figures_of_cheng2020_are_all_there(short_reports: Callable[[str], Path]
 @pytest.mark.parametrize("table", ["learning_rates", "iterations_of_all"])
 def test_the_kept_tables_are_those_of_this_version(table: str, short_reports: Callable[[str], Path]) -> None:
     """Tables of yuan2016 that a quick pass and a full run have alike; `make papers` writes all of them anew."""
-    kept = Path(__file__).parents[2] / "docs" / "papers" / "tables" / "yuan2016" / f"{table}.csv"
-    assert read(kept) == read(short_reports("yuan2016") / "tables" / f"{table}.csv")
+    assert read(PAPERS / "tables" / "yuan2016" / f"{table}.csv") == read(short_reports("yuan2016") / "tables" / f"{table}.csv")
+
+
+@pytest.mark.parametrize("name", experiments.names())
+def test_a_quick_pass_gives_no_other_verdict_than_a_full_run(name: str, short_reports: Callable[[str], Path]) -> None:
+    """The claims of a full run are kept; `make papers` writes them anew."""
+    full = {row["statement"]: row["verdict"] for row in read(PAPERS / "claims" / f"{name}.csv")}
+    quick = {row["statement"]: row["verdict"] for row in read(short_reports(name) / "claims.csv")}
+    assert quick.keys() == full.keys()
+    assert {claim for claim, verdict in quick.items() if verdict not in (full[claim], Verdict.NOT_TESTED)} == set()

@@ -162,9 +162,9 @@ impl PySolution {
 ///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
 ///     prefer: which solution to return.
 ///         "any": the first one found.
-///         "nearest": the one with the smallest |q - start| (rad, m). Each solution found is moved along its self-motion
+///         "nearest": of those found, the one with the smallest |q - start| (rad, m). Each is moved along its self-motion
 ///         and by whole turns towards the start; the search ends when 24 in a row are no nearer.
-///         "best": the best one for the goals. Each solution found is optimised along its self-motion; the search ends
+///         "best": of those found, the best one for the goals. Each is optimised along its self-motion; the search ends
 ///         when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
 ///         traced once instead, including the parts beyond joint limits.
 ///     limits: position limits; None: the robot's.
