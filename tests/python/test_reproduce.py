@@ -125,7 +125,9 @@ def test_figures_of_cheng2020_are_all_there(short_reports: Callable[[str], Path]
 @pytest.mark.parametrize("table", ["learning_rates", "iterations_of_all"])
 def test_the_kept_tables_are_those_of_this_version(table: str, short_reports: Callable[[str], Path]) -> None:
     """Tables of yuan2016 that a quick pass and a full run have alike; `make papers` writes all of them anew."""
-    assert read(PAPERS / "tables" / "yuan2016" / f"{table}.csv") == read(short_reports("yuan2016") / "tables" / f"{table}.csv")
+    assert read(PAPERS / "tables" / "yuan2016" / f"{table}.csv") == read(
+        short_reports("yuan2016") / "tables" / f"{table}.csv"
+    )
 
 
 @pytest.mark.parametrize("name", experiments.names())

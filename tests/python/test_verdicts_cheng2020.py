@@ -97,14 +97,17 @@ def test_antenna_length() -> None:
 
 def test_accuracy_at_equal_budget() -> None:
     errors = {"BAS": 1e-10, "GA": 1e-3, "PSO": 1e-4, "FA": 1e-4, "QPSO": 1e-4}
-    assert more_accurate_claim("", errors).verdict is WITH_READING
-    assert more_accurate_claim("", errors | {"FA": 1e-11}).verdict is NOT_IDENTIFIABLE
+    above, below = {"GA": 1e-9, "PSO": 1e-8}, {"GA": 1e-9, "PSO": 1e-14}
+    assert more_accurate_claim("", errors, above).verdict is WITH_READING
+    assert more_accurate_claim("", errors, below).verdict is NOT_IDENTIFIABLE
+    assert more_accurate_claim("", errors | {"FA": 1e-11}, below).verdict is NOT_IDENTIFIABLE
 
 
 def test_oscillations() -> None:
-    roughness = {"BAS": 0.04, "GA": 0.2, "PSO": 0.1}
-    assert oscillations_claim("", roughness).verdict is WITH_READING
-    assert oscillations_claim("", roughness | {"PSO": 0.05}).verdict is NOT_IDENTIFIABLE
+    roughness, rough, smooth = {"BAS": 0.04, "GA": 0.2, "PSO": 0.1}, {"GA": 0.1, "PSO": 0.1}, {"GA": 0.1, "PSO": 0.04}
+    assert oscillations_claim("", roughness, rough).verdict is WITH_READING
+    assert oscillations_claim("", roughness, smooth).verdict is NOT_IDENTIFIABLE
+    assert oscillations_claim("", roughness | {"PSO": 0.05}, smooth).verdict is NOT_IDENTIFIABLE
 
 
 def costs(whole: float, trust: float, scaled: float) -> Costs:

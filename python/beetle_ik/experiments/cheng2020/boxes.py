@@ -68,23 +68,46 @@ def missed_steps(result: bik.TrackResult) -> int:
 def _within(task: Task, limits: bik.Limits | None = None) -> Callable[[Setting, int, float], Cost]:
     def run(setting: Setting, seed: int, band: float) -> Cost:
         if isinstance(setting, ErrorBox):
-            return _follow(task, setting, seed, band)
+            followed = follow_in_error_boxes(task, setting, seed=seed, band=band, most=PATIENCE)
+            return Cost(followed.evaluations / STEPS, int((followed.errors > band).sum()))
         result = track(task, setting, seed=seed, band=band, limits=limits)
         return Cost(evaluations_a_step(result), missed_steps(result))
 
     return run
 
 
-def _follow(task: Task, setting: ErrorBox, seed: int, band: float) -> Cost:
-    """The circle, step by step."""
-    q, random = task.on_path, np.random.default_rng(seed)
-    targets = task.circle.position(np.arange(1, STEPS + 1) * DT)
-    evaluations = missed = 0
-    for target in targets:
-        q, error, spent = _step(task, setting, q, target, band, random)
+@dataclass(frozen=True)
+class Followed:
+    """The circle, followed step by step in boxes as long as the error."""
+
+    q: NDArray[np.float64]
+    """(STEPS + 1, n), with the start."""
+    errors: NDArray[np.float64]
+    """(STEPS,) (m)"""
+    evaluations: int
+
+    @property
+    def error(self) -> float:
+        """Mean over the second half (m)."""
+        return float(self.errors[STEPS // 2 :].mean())
+
+    @property
+    def roughness(self) -> float:
+        """Rms change of joint velocity from step to step over the second half (rad/s)."""
+        changes = np.diff(np.diff(self.q, axis=0)[STEPS // 2 :] / DT, axis=0)
+        return float(np.sqrt(np.mean(changes**2)))
+
+
+def follow_in_error_boxes(task: Task, setting: ErrorBox, *, seed: int, band: float, most: int) -> Followed:
+    """Follow the circle, with at most about so many evaluations a step."""
+    random = np.random.default_rng(seed)
+    joints, errors, evaluations = [task.on_path], [], 0
+    for target in task.circle.position(np.arange(1, STEPS + 1) * DT):
+        q, error, spent = _step(task, setting, joints[-1], target, band, most, random)
+        joints.append(q)
+        errors.append(error)
         evaluations += spent
-        missed += error > band
-    return Cost(evaluations / STEPS, missed)
+    return Followed(np.array(joints), np.array(errors), evaluations)
 
 
 def _step(
@@ -93,13 +116,14 @@ def _step(
     start: NDArray[np.float64],
     target: NDArray[np.float64],
     band: float,
+    most: int,
     random: np.random.Generator,
 ) -> tuple[NDArray[np.float64], float, int]:
     """Search boxes until the error is within the band: configuration, error and evaluations."""
     lower = np.maximum(start - DT * task.velocity, task.robot.lower)
     upper = np.minimum(start + DT * task.velocity, task.robot.upper)
     q, error, spent = start, float(np.linalg.norm(task.robot.fk(start)[:3, 3] - target)), 1
-    while error > band and spent < PATIENCE:
+    while error > band and spent < most:
         half = setting.reach * error
         found = bik.solve(
             task.robot,
