@@ -288,8 +288,9 @@ KHAN_QUOTES = [
     khan_quote("3.0 s with ticks of 10 ms, 4.7 s with ticks of 1 ms", "figures_2_and_3",
                lambda table: [float(table[i][c]) for i in (3, 4) for c in (ARRIVAL, "tick [ms]")]),
     khan_quote("rises in 30 % of", "theorem_1", cells((0, "ticks in which h(θ) rises, still target [%]"))),
-    khan_quote("is 2.4e-3 m", "definition_2", cells((0, "to 50 s [m²]"))),
-    khan_quote("2.1e-3 m", "definition_2", cells((0, "to 200 s [m²]"))),
+    khan_quote("is 2.4e-3 m", "definition_2", cells((1, "to 50 s [m²]"))),
+    khan_quote("2.1e-3 m", "definition_2", cells((1, "to 200 s [m²]"))),
+    khan_quote("is 3.5e-5 and 3.1e-5 m", "definition_2", cells((0, "to 50 s [m²]"), (0, "to 200 s [m²]"))),
     khan_quote("h is 7.5e-6 m", "both_antennae", cells((10, AT_STATE))),
     khan_quote("leaves 10.0e-4 m", "both_antennae", cells((6, AT_STATE))),
     khan_quote("the constant antenna 0.9e-4 m", "both_antennae", cells((3, AT_STATE))),
@@ -434,6 +435,22 @@ QUOTES = CHENG_QUOTES + YUAN_QUOTES + KHAN_QUOTES + PSO_QUOTES + WANG_QUOTES
 @pytest.mark.parametrize("quote", QUOTES, ids=lambda quote: f"{Path(quote.page).stem}: {quote.text}")
 def test_a_page_quotes_its_report(quote: Quote) -> None:
     assert wrong(quote) is None
+
+
+PAGES = {CHENG: CHENG_PAGE, YUAN: YUAN_PAGE, KHAN: KHAN_PAGE, PSO: PSO_PAGE, WANG: WANG_PAGE}
+
+
+@pytest.mark.parametrize("report", PAGES)
+def test_a_page_counts_the_verdicts_of_its_report(report: str) -> None:
+    with (ROOT / "docs" / "papers" / "claims" / f"{report}.csv").open(encoding="utf-8", newline="") as file:
+        verdicts = [row["verdict"] for row in csv.DictReader(file)]
+    reproduced = sum(verdict.startswith("reproduced") for verdict in verdicts)
+    contradicted, open_, untested = map(verdicts.count, ("contradicted", "not identifiable", "not tested"))
+    sentence = (
+        f"Of {len(verdicts)} claims {reproduced} are reproduced, {contradicted} contradicted, {open_} not identifiable "
+        f"and {untested} not tested"
+    )
+    assert sentence in (ROOT / PAGES[report]).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
