@@ -2795,7 +2795,8 @@ class Moving:
     """An obstacle that moves, for a `Tracker`: where it is now, and its velocity.
 
     Give the obstacles anew, `tracker.obstacles = [...]`, as often as they are seen. In between each counts as anywhere that its speed
-    could have taken it, in any direction: its clearance is guaranteed as long as it is no faster.
+    could have taken it, in any direction: commands keep clear of all that, if it is no faster. An arm that is cornered, or too slow
+    to give way, is hit.
 
     Args:
         shape: a shape of `bik.obstacles`, where it is now.
