@@ -91,6 +91,13 @@ def unreached(table: Rows) -> tuple[float, float, float]:
     return min(left), max(left), 200
 
 
+def shares(table: Rows) -> tuple[float, ...]:
+    """Least and largest mean error over the band, and over which constants."""
+    found = [float(row["mean error over band"]) for row in table]
+    constants = [float(row["c₁"]) for row in table]
+    return min(found), max(found), min(constants), max(constants)
+
+
 def steady(table: Rows) -> tuple[float, float]:
     star = table[0]
     return float(star["mean error, second half [m] measured mean"]), float(star["error band [m]"])
@@ -116,6 +123,13 @@ CHENG_QUOTES = [
         report=CHENG,
         table="steady_errors",
         values=steady,
+    ),
+    Quote(
+        page=CHENG_PAGE,
+        text="0.45 to 0.93 of the band, for c₁ and c₂ from 0.3 to 3",
+        report=CHENG,
+        table="shares_of_the_band",
+        values=shares,
     ),
     Quote(
         page=CHENG_PAGE,
