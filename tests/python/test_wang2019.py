@@ -49,6 +49,8 @@ def test_a_mean_is_lower_by_more_than_two_standard_errors() -> None:
     assert not is_lower([1.0, 1.1, 0.9], [1.05, 1.15, 0.95])
     assert not is_lower([2.0, 2.1, 1.9], [1.0, 1.1, 0.9])
     assert is_lower([1.0], [1.1])
+    assert not is_lower([], [1.0])
+    assert not is_lower([1.0], [])
 
 
 @pytest.mark.parametrize("objective", ["time", "joint_travel"])
@@ -123,6 +125,8 @@ def test_robust_is_who_fails_no_more_often_than_the_others() -> None:
     assert judge("obstacle", "is_robust", past(good, hit)) is MET
     assert judge("obstacle", "is_robust", past(hit, good)) is MET  # 3 of 4 beside 4 of 4 tells nothing apart
     assert judge("obstacle", "is_robust", past([*often, plan(1.7)], good)) is OPEN
+    assert judge("obstacle", "is_robust", past([*often, often[0]], good)) is OPEN
+    assert judge("obstacle", "is_robust", past(good, [*often, often[0]])) is MET
     assert judge("obstacle", "is_robust", past([plan(1.8)] * 4, good)) is OPEN
 
 

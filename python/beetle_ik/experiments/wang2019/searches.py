@@ -160,7 +160,12 @@ OURS = "Reach, limits and the constants of the searches are ours: the paper stat
 
 
 def is_lower(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether the mean of `one` is lower than that of `other`, by more than two standard errors of the difference."""
+    """Whether the mean of `one` is lower than that of `other`, by more than two standard errors of the difference.
+
+    Where one of them has no value, nothing is lower.
+    """
+    if not one or not other:
+        return False
     if min(len(one), len(other)) < 2:
         return fmean(one) < fmean(other)
     error = (stdev(one) ** 2 / len(one) + stdev(other) ** 2 / len(other)) ** 0.5
