@@ -3,8 +3,8 @@ All solutions of a six-joint arm
 ================================
 
 Away from singularities, an arm with six joints has a finite number of solutions for a pose, modulo whole turns.
-``solve_all`` finds them by the closed form of the arm, where it has one, and ``complete`` says whether it is proven that
-none is missing.
+``solve_all`` finds them by the closed form of the arm, where it has one, and ``complete`` says whether it is proven
+that none is missing.
 """
 
 import matplotlib.pyplot as plt

@@ -141,6 +141,7 @@ def test_one_run_of_each_search_decides_nothing() -> None:
     once = [along([plan(1.0)], path=path, objective=o) for path in PATHS for o in ("time", "joint_travel")]
     assert judge("along_path", "takes_as_many_iterations", once) is Verdict.NOT_TESTED
     assert judge("obstacle", "is_robust", past([plan(1.8)], [plan(1.7)])) is Verdict.NOT_TESTED
+    assert judge("obstacle", "passes", past([plan(1.8)], [plan(1.7)])) is Verdict.NOT_TESTED
 
 
 def along(plans: list[Any], *, path: str = "pentagram", objective: str = "time", retimed: float = 1.0) -> Any:

@@ -139,6 +139,7 @@ def passes(found: Found) -> Claim:
     plans = {links: searches[TPBSO] for links, searches in found.items()}
     clear = {links: _clear(some) for links, some in plans.items()}
     shortest = {links: min(costs(some), default=math.inf) for links, some in clear.items()}
+    enough = min(map(len, plans.values())) > 1
     return Claim.judged(
         "TPBSO plans past an oval obstacle with arms of different link numbers, on a short path of the tip.",
         source="Section IV-B, Figures 10-12",
@@ -153,8 +154,11 @@ def passes(found: Found) -> Claim:
         ),
         holds=all(
             2 * len(clear[links]) >= len(plans[links]) and shortest[links] <= _SHORT_WAY * _TANGENT for links in plans
-        ),
+        )
+        if enough
+        else None,
         reading="Ellipse, margin and limits are ours. The paper shows one plan of each arm.",
+        reason="" if enough else TOO_FEW,
         section=TITLE,
     )
 
