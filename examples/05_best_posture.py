@@ -2,8 +2,8 @@
 The best posture for a position
 ===============================
 
-A redundant arm reaches a position in many postures. Goals rate the postures, and ``prefer="best"`` searches for the
-best one globally.
+A redundant arm reaches a position in many postures. Goals rate the postures, and ``prefer="best"`` searches all
+of the self-motion that it finds for the best one.
 """
 
 import matplotlib.pyplot as plt

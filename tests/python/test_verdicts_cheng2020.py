@@ -136,9 +136,12 @@ def test_the_lead_over_the_swarms(ratios: tuple[float, float, float], faster: Ve
 
 def test_the_pseudo_inverse() -> None:
     beetle = [Point(1e-3, 100.0, 1e-4), Point(1e-6, 400.0, 4e-4)]
-    assert pseudo_inverse_claim(beetle, Point(2e-6, 5.0, 3e-6)).verdict is CONTRADICTED
-    assert pseudo_inverse_claim(beetle, Point(2e-6, 500.0, 3e-6)).verdict is REPRODUCED
-    assert pseudo_inverse_claim(beetle, Point(2e-6, 5.0, 3e-3)).verdict is REPRODUCED
+    walks = {"chain": beetle, "greedy": beetle}
+    assert pseudo_inverse_claim(walks, Point(2e-6, 5.0, 3e-6)).verdict is CONTRADICTED
+    assert pseudo_inverse_claim(walks, Point(2e-6, 500.0, 3e-6)).verdict is WITH_READING
+    assert pseudo_inverse_claim(walks, Point(2e-6, 5.0, 3e-3)).verdict is WITH_READING
+    quick = walks | {"greedy": [Point(1e-6, 4.0, 4e-4)]}
+    assert pseudo_inverse_claim(quick, Point(2e-6, 5.0, 3e-6)).verdict is NOT_IDENTIFIABLE
 
 
 @pytest.mark.parametrize(

@@ -87,6 +87,7 @@ def not_repeatable(drift: float, rounds: int) -> Claim:
         rule=f"After {rounds} rounds of a circle a joint is over {number(_DRIFTED, 1)} rad from where it began.",
         measured=f"{number(drift)} rad",
         holds=drift > _DRIFTED,
+        reading="The circle of Cheng et al., from a configuration of ours.",
         section=TITLE,
     )
 
