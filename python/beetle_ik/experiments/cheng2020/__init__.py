@@ -17,11 +17,11 @@ this way, without a Jacobian and without violating velocity limits that vary in 
 
 **The method works**, once the gaps in its description are filled: both arms follow their circles, and no limit is
 violated. **Its errors and its lead are another matter.** The published errors are a share of the error band, about half
-of it with our c₁ and c₂; the paper gives neither band nor constants. The lead over the swarms depends on the box that
-each step searches. In all that the limit allows, swarms need several times the evaluations of the beetle. In a small
-fixed box they need fewer, but the more the finer the accuracy. In a box that shrinks with the error, as the beetle's
-antennae do, they need about as many as the beetle. Trackers that use more than the size of the error need one to four
-evaluations per step where the beetle needs hundreds.
+of it with our c₁ and c₂; the paper gives no band, and our copy neither constant. The lead over the swarms depends on
+the box that each step searches. In all that the limit allows, swarms need several times the evaluations of the beetle.
+In a small fixed box they need fewer, but the more the finer the accuracy. In a box that shrinks with the error, as the
+beetle's antennae do, they need about as many as the beetle. Trackers that use more than the size of the error need one
+to four evaluations per step where the beetle needs hundreds.
 """
 
 

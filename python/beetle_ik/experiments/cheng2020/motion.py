@@ -47,7 +47,7 @@ iiwa. In each step the beetle explores only the joint positions that the arm can
 Both arms enter the band and stay there. The mean error is {low} to {high} of the band, for bands of {bands} m alike:
 **the published 2 × 10⁻⁵ m follows from the error band that was chosen, and is not a property of the method.** The paper
 does not give its band; we set ours so that the mean error equals the published one. The share depends on c₁ and c₂,
-which the paper does not give either: with each of them from {smallest} to {largest} it is {lowest} to {highest}, of the
+which our copy does not give: with each of them from {smallest} to {largest} it is {lowest} to {highest}, of the
 settings whose every step stays in the band.
 """
 _TEXT_VELOCITY = """
