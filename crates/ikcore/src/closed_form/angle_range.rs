@@ -11,22 +11,34 @@ pub(crate) const MOVED_BY_POLISHING: f64 = 0.03;
 #[derive(Debug, Clone, Copy)]
 pub struct AngleRange {
     middle: Angle,
+    /// Half its width (rad), at most pi.
+    half: f64,
     /// Least cosine of an angle's distance from the middle.
     least: f64,
 }
 
 impl AngleRange {
     /// All angles.
-    pub const ANY: Self = Self { middle: Angle { cos: 0.0, sin: 0.0 }, least: -1.0 };
+    pub const ANY: Self = Self { middle: Angle::NONE, half: PI, least: -2.0 };
 
     /// Between limits (rad).
     pub fn of([lower, upper]: [f64; 2]) -> Self {
         let half = 0.5 * (upper - lower);
         if half < PI {
-            Self { middle: Angle::by(lower + half), least: half.cos() - MOVED_BY_POLISHING }
+            Self { middle: Angle::by(lower + half), half, least: half.cos() - MOVED_BY_POLISHING }
         } else {
             Self::ANY
         }
+    }
+
+    /// The angles q and r with q + `sense` r = `sum` that are deepest inside this range and `other`, as fractions of the ranges: if they
+    /// are outside, so are all.
+    pub fn deepest_pair(&self, other: &Self, sum: Angle, sense: f64) -> [Angle; 2] {
+        let excess = sum.and(self.middle.back()).and(other.middle.signed(sense).back()).angle();
+        let halves = self.half + other.half;
+        let share = if halves > 0.0 { self.half / halves } else { 0.5 };
+        let [of_this, of_other] = [share * excess, sense * (1.0 - share) * excess].map(Angle::by);
+        [self.middle.and(of_this), other.middle.and(of_other)]
     }
 
     /// False only for angles that no branch within the limits is near.

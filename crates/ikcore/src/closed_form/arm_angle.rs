@@ -4,7 +4,7 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
-use crate::closed_form::branches::Candidates;
+use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::structure::{EXACT, three_meet};
 use crate::closed_form::subproblem::distance_to_point;
@@ -12,6 +12,10 @@ use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendic
 use crate::closed_form::wrist::{Pointing, Wrist};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+
+/// Squared distance of shoulder and wrist, as a multiple of its rounding, below which a pose within the tolerances of a caller may have
+/// any line between them, and any arm angle.
+const NO_LINE: f64 = 1e5;
 
 /// An SRS arm, prepared.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +45,8 @@ pub struct ArmAnglePose {
     count: usize,
     /// Joint 4 is free.
     pub(super) free: bool,
+    /// Whether joint 4 may have other values.
+    pub(super) doubt: Doubt,
 }
 
 impl ArmAnglePose {
@@ -100,11 +106,15 @@ impl ArmAngle {
         let reached = sub(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
         let (from_elbow, to_shoulder) = (sub(&self.wrist, &self.elbow), sub(&self.shoulder, &self.elbow));
         let square = dot(&reached, &reached);
-        let q4 = distance_to_point(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);
+        let mut q4 = distance_to_point(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);
+        if square < NO_LINE * self.floor {
+            q4.doubt = Doubt::Open;
+        }
         let frame = self.frame(&reached, &self.across(&reached));
         let pointing = self.last.pointing(goal);
         let last = Pointing { end: frame.turn_back(&pointing.end), mark: frame.turn_back(&pointing.mark) };
-        let mut pose = ArmAnglePose { frame, last, elbows: [ElbowTurn::NONE; 2], count: 0, free: q4.free };
+        let mut pose =
+            ArmAnglePose { frame, last, elbows: [ElbowTurn::NONE; 2], count: 0, free: q4.free, doubt: q4.doubt };
         for q4 in q4.iter() {
             let arm = sub(&q4.about(&self.elbow_axis, &from_elbow), &to_shoulder);
             let at_zero = self.frame(&arm, &self.elbow_axis);
@@ -130,11 +140,13 @@ impl ArmAngle {
         let back = |v: &Vector| about_z(arm_angle.back(), v);
         let seen = Pointing { end: back(&pose.last.end), mark: back(&pose.last.mark) };
         found.singular |= pose.free;
+        found.doubt.add(pose.doubt);
         for ElbowTurn { q4, first, to_wrist, .. } in pose.elbows(&of_elbow) {
-            let first = self.first.turns(&first.turned(&target));
+            let first = self.first.turns(&first.turned(&target), &[a, b, c]);
             // R567 = R4' R123' R.
-            let last = self.last.turns(&seen.turned(to_wrist));
+            let last = self.last.turns(&seen.turned(to_wrist), &[d, e, f]);
             found.singular |= first.aligned || last.aligned;
+            found.doubt.add(first.doubt.max(last.doubt));
             for [q1, q2, q3] in first.sets[..first.count].iter().filter(|set| may_hold(&[a, b, c], *set)) {
                 for [q5, q6, q7] in last.sets[..last.count].iter().filter(|set| may_hold(&[d, e, f], *set)) {
                     found.push(&[*q1, *q2, *q3, *q4, *q5, *q6, *q7]);

@@ -11,12 +11,16 @@ use smallvec::SmallVec;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, MOVED_BY_POLISHING};
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose, ElbowTurn};
+use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::vector::{Vector, dot};
 use crate::closed_form::wrist::Wrist;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+
+/// Axes at a smaller angle than a thousandth of a radian are nearly aligned: the cosine of that.
+const ALIGNED_COSINE: f64 = 1.0 - 5e-7;
 
 /// Values of a parameter (rad, m).
 pub type Values = SmallVec<[f64; 64]>;
@@ -29,9 +33,10 @@ impl ArmAngle {
         let within = |wrist: &Wrist, [lower, upper]: [f64; 2], reached: &dyn Fn(Angle) -> Vector| {
             let (axis, cosine) = wrist.bending();
             let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
-            Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range)
+            Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range, 1e-5)
         };
-        !pose.free
+        pose.doubt != Doubt::Open
+            && !pose.free
             && pose.elbows(of_elbow).all(|ElbowTurn { first, to_wrist, .. }| {
                 let shoulder = within(&self.first, limits[1], &|arm_angle| {
                     pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos).turn::<Baseline>(&first.end)
@@ -44,15 +49,17 @@ impl ArmAngle {
     }
 
     /// Arm angles (rad) of which one at least has a configuration within limits, if there is any: those at which a joint reaches a
-    /// limit, and one between each two of them. None where joint 4 is free.
+    /// limit, one between each two of them, and those at which shoulder or wrist are aligned. Not sure where an arm angle nearly aligns
+    /// them, and the other joints turn fast, or where joint 4 is nearly free.
     pub fn decisive(
         &self,
         pose: &ArmAnglePose,
         goal: &Frame,
         limits: &[[f64; 2]; 7],
         of_elbow: &AngleRange,
-    ) -> Option<Values> {
-        let mut at_limits = Values::new();
+    ) -> Decisive {
+        let (mut at_limits, mut aligned) = (Values::new(), Values::new());
+        let mut is_sure = pose.doubt != Doubt::Open;
         for ElbowTurn { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
             let shoulder = |arm_angle: Angle, v: &Vector| {
                 let line = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
@@ -64,13 +71,32 @@ impl ArmAngle {
             };
             add_at_limits(&self.axes[0], &limits[..3], &shoulder, &mut at_limits);
             add_at_limits(&self.axes[1], &limits[4..], &wrist, &mut at_limits);
+            is_sure &= !add_aligned(&self.axes[0], &shoulder, &mut aligned);
+            is_sure &= !add_aligned(&self.axes[1], &wrist, &mut aligned);
         }
         at_limits.sort_by(f64::total_cmp);
         let next = at_limits.iter().skip(1).copied().chain(at_limits.first().map(|first| first + TAU));
         let between: Values = at_limits.iter().zip(next).map(|(a, b)| 0.5 * (a + b)).collect();
         let anywhere = if at_limits.is_empty() { Some(0.0) } else { None };
-        (!pose.free).then(|| between.into_iter().chain(at_limits).chain(anywhere).collect())
+        Decisive { values: aligned.into_iter().chain(between).chain(at_limits).chain(anywhere).collect(), is_sure }
     }
+}
+
+/// Values of a parameter that decide whether any has a configuration within limits.
+#[derive(Debug, Clone)]
+pub(crate) struct Decisive {
+    /// The values (rad, m).
+    pub values: Values,
+    /// If none of them has one, neither has any other.
+    pub is_sure: bool,
+}
+
+/// Adds the arm angles at which the first and the last axis of three are nearly aligned; returns whether there are any.
+fn add_aligned([a, _, c]: &[Vector; 3], turned: &dyn Fn(Angle, &Vector) -> Vector, found: &mut Values) -> bool {
+    let wave = Wave::of(|arm_angle| dot(a, &turned(Angle::by(arm_angle), c)));
+    let before = found.len();
+    found.extend(wave.extremes().into_iter().filter(|(_, cosine)| cosine.abs() > ALIGNED_COSINE).map(|(at, _)| at));
+    found.len() > before
 }
 
 /// Adds the arm angles, in (-pi, pi], at which a joint of three is at a limit; `turned` is where these joints turn a vector at an arm

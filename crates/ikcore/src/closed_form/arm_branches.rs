@@ -1,6 +1,6 @@
 //! All branches of an arm for one pose.
 
-use crate::closed_form::branches::{BranchError, Branches, MOST, MOST_JOINTS};
+use crate::closed_form::branches::{BranchError, Branches, Doubt, MOST, MOST_JOINTS};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 
 /// Configurations of an arm for one pose, each at one of its whole turns, and verified by forward kinematics.
@@ -12,8 +12,8 @@ pub(crate) struct ArmBranches {
     errors: [BranchError; MOST],
     /// A configuration that was no solution was near one: the pose may be reached within wide tolerances.
     pub nearly: bool,
-    /// No configuration is missing; for a redundant arm, none at this value of the parameter.
-    pub complete: bool,
+    /// Whether others may be missing; for a redundant arm, others at this value of the parameter.
+    pub doubt: Doubt,
     /// One configuration at least stands for a family, in which a joint is free.
     pub singular: bool,
     /// Evaluations of the forward kinematics.
@@ -32,8 +32,8 @@ impl ArmBranches {
         }
         let mut errors = [BranchError::default(); MOST];
         errors[..count].copy_from_slice(branches.errors());
-        let Branches { nearly, complete, singular, evaluations, .. } = *branches;
-        Self { sets, count, joints, errors, nearly, complete, singular, evaluations }
+        let Branches { nearly, doubt, singular, evaluations, .. } = *branches;
+        Self { sets, count, joints, errors, nearly, doubt, singular, evaluations }
     }
 
     /// How many there are.

@@ -8,6 +8,26 @@ pub const MOST: usize = 16;
 /// Most joints that a closed form has.
 pub const MOST_JOINTS: usize = 7;
 
+/// How sure it is that a pose has no branches beside those found, and neither have poses within the tolerances of a caller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Doubt {
+    /// For certain.
+    #[default]
+    None,
+    /// Branches nearly coincide, or nearly make a family: forward kinematics beside them decides.
+    Beside,
+    /// Others may exist anywhere.
+    Open,
+}
+
+impl Doubt {
+    /// Adds another doubt.
+    #[inline(always)]
+    pub fn add(&mut self, other: Self) {
+        *self = (*self).max(other);
+    }
+}
+
 /// Unverified branches of an arm of up to seven joints, each number for all of them side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct Candidates {
@@ -19,8 +39,8 @@ pub struct Candidates {
     pub count: usize,
     /// One candidate at least stands for a family, in which a joint is free.
     pub singular: bool,
-    /// The method cannot tell whether there are others.
-    pub unsettled: bool,
+    /// Whether there may be others.
+    pub doubt: Doubt,
     /// Beside the six joints that a method solves.
     given: Option<Given>,
 }
@@ -43,7 +63,7 @@ impl Candidates {
             sin: [[0.0; MOST]; MOST_JOINTS],
             count: 0,
             singular: false,
-            unsettled: false,
+            doubt: Doubt::None,
             given: None,
         }
     }
@@ -115,8 +135,8 @@ pub struct Branches<const N: usize> {
     pub nearly: bool,
     /// Evaluations of the forward kinematics that verification took.
     pub evaluations: usize,
-    /// The method proves that there are no others.
-    pub complete: bool,
+    /// Whether there may be others.
+    pub doubt: Doubt,
     /// One branch at least stands for a family, in which a joint is free: aligned wrist or shoulder.
     pub singular: bool,
 }
@@ -131,7 +151,7 @@ impl<const N: usize> Branches<N> {
             count: 0,
             nearly: false,
             evaluations: 0,
-            complete: false,
+            doubt: Doubt::Open,
             singular: false,
         }
     }

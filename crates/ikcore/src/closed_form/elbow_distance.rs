@@ -61,7 +61,7 @@ impl ElbowDistance {
     /// All arm angles of a spherical wrist, or none.
     pub fn arm_angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
         let square = squared_distance(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
-        Wave::new(square, 0.0, 0.0).arcs_between(range)
+        Wave::new(square, 0.0, 0.0).arcs_between(range, self.slack())
     }
 
     /// The values of joint 7, or of joint 1, at which the squared distance is within `range`.
@@ -74,7 +74,13 @@ impl ElbowDistance {
         };
         let way = sub(centre, &other);
         let wave = Wave::new(dot(&way, &way) + dot(cosine, cosine), 2.0 * dot(&way, cosine), 2.0 * dot(&way, sine));
-        wave.arcs_between(range)
+        wave.arcs_between(range, self.slack())
+    }
+
+    /// Change of the squared distance by poses within the tolerances of a caller, where shoulder and wrist are near each other.
+    fn slack(&self) -> f64 {
+        let [(_, longest), _] = self.by_joint_4.extremes();
+        1e-7 * longest
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
-use crate::closed_form::branches::Branches;
+use crate::closed_form::branches::{Branches, Doubt};
 use crate::closed_form::six::{ClosedForm, Structure, samples};
 use crate::closed_form::structure::{EXACT, Pair};
 use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit};
@@ -92,7 +92,7 @@ impl FiveJoints {
         }
         // Of a family of six joints one stands for all: without it, another may leave the virtual joint at zero.
         let is_settled = !six.singular || !found.is_empty();
-        (found.complete, found.singular) = (six.complete && is_settled, six.singular);
+        (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Open }, six.singular);
         found.evaluations += six.evaluations;
         found.nearly |= six.nearly;
         found

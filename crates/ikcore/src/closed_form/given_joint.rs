@@ -68,7 +68,7 @@ impl GivenJoint {
         let left = self.left(goal, self.joint.turn(value));
         let six = self.others.solve_displacement(&left, &left);
         let mut seven = Branches::none();
-        (seven.complete, seven.singular, seven.evaluations) = (six.complete, six.singular, six.evaluations);
+        (seven.doubt, seven.singular, seven.evaluations) = (six.doubt, six.singular, six.evaluations);
         seven.nearly = six.nearly;
         let turns = self.joint.motion == AxisMotion::Turns;
         let value = if turns { Angle::by(value).angle() } else { value };

@@ -277,6 +277,7 @@ fn azimuth([x, y]: &[Vector; 2], v: &Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::closed_form::elbow_distance::ElbowDistance;
     use crate::closed_form::seven_joint_arms::{GEN3, PANDA, XARM7, iiwa14_of_urdf, random_angles};
     use crate::rng;
 
@@ -307,6 +308,37 @@ mod tests {
                 assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
                 let open = proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1, &mut |_| false);
                 assert!(!open.is_empty(), "{q:?} {limits:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn round_angles_at_limits_are_not_excluded() {
+        let mut rng = rng::stream(6, 0);
+        for arm in arms() {
+            let (chain, proof) = prepared(arm);
+            for mut q in random_angles(20_000) {
+                for q in &mut q {
+                    let off = if rng.uniform_in(0.0, 1.0) < 0.5 { 0.0 } else { rng.uniform_in(-30.0, -4.0).exp() };
+                    let round = off + 0.5 * PI * rng.uniform_in(-2.5, 2.5).round();
+                    *q = if rng.uniform_in(0.0, 1.0) < 0.4 { round } else { *q };
+                }
+                let limits = q.map(|q| match rng.uniform_in(0.0, 4.0) as usize {
+                    0 => [q, q],
+                    1 => [q, q + rng.uniform_in(0.0, 2.0)],
+                    2 => [q - rng.uniform_in(0.0, 2.0), q],
+                    _ => [q - rng.uniform_in(0.0, 1.0), q + rng.uniform_in(0.0, 1.0)],
+                });
+                let parameter = if arm.1 { 0 } else { 6 };
+                let goal = chain.tip_at(&q);
+                let part = Arc { middle: q[parameter], half: 0.0 };
+                assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?}");
+                let distance = if arm.1 { ElbowDistance::by_first(&chain) } else { ElbowDistance::by_last(&chain) }
+                    .expect("it has one");
+                let arcs = distance.angles(&goal, distance.range(limits[3])).within(limits[parameter]);
+                assert!(!arcs.is_empty(), "{q:?} {limits:?}");
+                let open = proof.open_values(&goal, &arcs, &limits, 1, &mut |_| false);
+                assert!(!open.is_empty(), "{q:?} {limits:?} {arcs:?}");
             }
         }
     }

@@ -4,8 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use crate::closed_form::subproblem::CLAMP;
 
-/// An arc that ends by less before a limit (rad) reaches it: rounding.
-const SLACK: f64 = 1e-9;
+/// An arc that ends by less before a limit (rad) may reach it: near a peak of its wave, a change of the pose within the tolerances of a
+/// caller moves its end by as much.
+const SLACK: f64 = 5e-3;
 
 /// base + swing cos(q - peak).
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +32,11 @@ impl Wave {
         self.base + self.swing * (q - self.peak).cos()
     }
 
+    /// The angles of its peak and its trough, and the values there.
+    pub fn extremes(&self) -> [(f64, f64); 2] {
+        [(self.peak, self.base + self.swing), (self.peak + PI, self.base - self.swing)]
+    }
+
     /// Smallest and largest value between two angles.
     pub fn range(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
         if upper - lower >= TAU {
@@ -53,11 +59,11 @@ impl Wave {
         [peak - off, peak + off].into_iter().filter(move |_| is_met).map(|angle| angle - TAU * (angle / TAU).round())
     }
 
-    /// The arcs on which the wave lies between two bounds. Bounds missed by little give an arc without length: whether the parameter
-    /// there has a configuration is to be tried.
-    pub fn arcs_between(&self, [least, most]: [f64; 2]) -> ParameterArcs {
+    /// The arcs on which the wave lies between two bounds. Bounds missed by little, or by `slack`, give an arc without length: whether the
+    /// parameter there has a configuration is to be tried.
+    pub fn arcs_between(&self, [least, most]: [f64; 2], slack: f64) -> ParameterArcs {
         let Self { base, swing, peak } = *self;
-        let slack = CLAMP * (base.abs() + swing);
+        let slack = slack + CLAMP * (base.abs() + swing);
         if least > base + swing + slack || most < base - swing - slack {
             return ParameterArcs::NONE;
         }
@@ -109,10 +115,10 @@ impl ParameterArcs {
         }
     }
 
-    /// Adds an arc, its start brought into [-pi, pi).
+    /// Adds an arc, its start brought into [-pi, pi). One shrunk to a point may end before it starts by rounding.
     fn push_wrapped(&mut self, start: f64, end: f64) {
         let turns = ((start + PI) / TAU).floor() * TAU;
-        self.push([start - turns, end - turns]);
+        self.push([start - turns, end.max(start) - turns]);
     }
 
     /// The parts of arcs of an angle that lie within limits, whole turns aside.
@@ -197,7 +203,7 @@ mod tests {
     fn arcs_hold_exactly_the_values_between() {
         let wave = Wave::of(|q: f64| 0.7 + 0.4 * (q - 2.9).cos());
         for bounds in [[0.5, 0.8], [0.0, 0.6], [0.9, 5.0], [0.0, 5.0]] {
-            let arcs = wave.arcs_between(bounds);
+            let arcs = wave.arcs_between(bounds, 0.0);
             for k in -312..313 {
                 let q = f64::from(k) * 0.01;
                 let inside = arcs.within([-3.13, 3.13]).iter().any(|[a, b]| *a <= q && q <= *b);
@@ -219,7 +225,7 @@ mod tests {
 
     #[test]
     fn limits_a_turn_away_leave_the_same_values() {
-        let arcs = Wave::of(|q: f64| (q - 2.9).cos()).arcs_between([0.1, 0.9]);
+        let arcs = Wave::of(|q: f64| (q - 2.9).cos()).arcs_between([0.1, 0.9], 0.0);
         let (here, there) = (arcs.within([-1.0, 4.0]), arcs.within([-1.0 + 3.0 * TAU, 4.0 + 3.0 * TAU]));
         assert!(here.length() > 0.5 && (here.length() - there.length()).abs() < 1e-12, "{here:?} {there:?}");
     }
@@ -239,9 +245,18 @@ mod tests {
     #[test]
     fn an_arc_shrunk_to_a_point_stays() {
         let wave = Wave::of(|q: f64| 0.7 + 0.4 * (q - 1.0).cos());
-        let arcs = wave.arcs_between([1.1, 2.0]);
+        let arcs = wave.arcs_between([1.1, 2.0], 0.0);
         assert!(arcs.len() == 1 && arcs.length() < 1e-7 && (arcs[0][0] - 1.0).abs() < 1e-7);
-        assert_eq!(wave.arcs_between([1.2, 2.0]).len(), 0);
+        assert_eq!(wave.arcs_between([1.2, 2.0], 0.0).len(), 0);
+    }
+
+    #[test]
+    fn an_arc_shrunk_to_a_trough_stays_whatever_rounding_does() {
+        for k in 0..1000 {
+            let wave = Wave { base: 0.7, swing: 0.4, peak: 0.0063 * f64::from(k) - 3.1 };
+            let arcs = wave.arcs_between([0.3, 0.3], 0.0);
+            assert!(arcs.len() == 1 && arcs.length() < 1e-6, "{k} {arcs:?}");
+        }
     }
 
     #[test]

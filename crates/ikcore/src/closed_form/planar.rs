@@ -75,7 +75,7 @@ impl<const N: usize> Planar<N> {
         let floor = self.floor * norm(&links[0]);
         let mut candidates = Candidates::new();
         let bends = distance_to_point(&second.axis, &links[1], &scaled(&links[0], -1.0), square, floor);
-        candidates.singular = bends.free;
+        (candidates.singular, candidates.doubt) = (bends.free, bends.doubt);
         for q2 in bends.iter() {
             let q1 = onto_point(axis, &add(&links[0], &q2.about(&second.axis, &links[1])), &reached);
             let q3 = sum.and(q1.back()).and(q2.signed(-self.senses[0])).signed(self.senses[1]);
@@ -88,9 +88,7 @@ impl<const N: usize> Planar<N> {
             }
             candidates.push(&turns);
         }
-        let mut found = self.verifier.verified(target, &candidates);
-        found.complete = true;
-        found
+        self.verifier.verified(target, &candidates)
     }
 }
 
@@ -100,6 +98,7 @@ mod tests {
 
     use super::*;
     use crate::closed_form::axis_chain::JointAxis;
+    use crate::closed_form::branches::Doubt;
     use crate::rng;
 
     fn random<const N: usize>(seed: u64) -> Vec<[f64; N]> {
@@ -118,7 +117,7 @@ mod tests {
         for q in random::<3>(32) {
             let target = chain.tip_at(&q);
             let found = method.solve(&target);
-            assert!(found.len() == 2 && found.complete && found.iter().any(|b| near(b, &q)));
+            assert!(found.len() == 2 && found.doubt == Doubt::None && found.iter().any(|b| near(b, &q)));
             let lifted = Frame { origin: add(&target.origin, &[0.0, 0.0, 0.01]), ..target };
             assert!(method.solve(&lifted).is_empty());
         }

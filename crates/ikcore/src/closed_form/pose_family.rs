@@ -1,6 +1,6 @@
 //! All configurations of a redundant arm for one pose, as a function of one parameter.
 
-use crate::closed_form::arm_angle_limits::Values;
+use crate::closed_form::arm_angle_limits::{Decisive, Values};
 use crate::closed_form::arm_branches::ArmBranches;
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
@@ -67,9 +67,8 @@ impl<'a> PoseFamily<'a> {
         self.redundant.open_values(&self.pose, &limits.0, arcs, most, &mut visit)
     }
 
-    /// Values of the parameter (rad, m) of which one at least has a configuration within limits, if there is any; None where these are
-    /// not known.
-    pub fn decisive(&self, limits: &FamilyLimits) -> Option<Values> {
+    /// Values of the parameter (rad, m) that decide whether any has a configuration within limits; None where these are not known.
+    pub fn decisive(&self, limits: &FamilyLimits) -> Option<Decisive> {
         self.redundant.decisive(&self.pose, &limits.0)
     }
 
@@ -227,8 +226,8 @@ mod tests {
             let family = PoseFamily::new(&redundant, &drives, &all, &chain.tip_at(&q));
             let inside = |value: f64| family.branches_at(value).iter().any(|(found, _)| is_within(&limits, found));
             let by_scan = (0..1500).any(|k| inside(f64::from(k) * (std::f64::consts::TAU / 1500.0)));
-            let decisive = family.decisive(&all).expect("joint 4 is not free");
-            let found = decisive.iter().any(|value| inside(*value));
+            let decisive = family.decisive(&all).expect("the arm has an arm angle");
+            let found = decisive.values.iter().any(|value| inside(*value));
             assert!(found || !by_scan, "trial {trial}: {q:?}");
             decided[usize::from(found)] += 1;
         }

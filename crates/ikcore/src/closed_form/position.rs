@@ -2,7 +2,10 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
-use crate::closed_form::subproblem::{Linear, QuadraticForm, angle_to_plane, distance_to_point, onto_point, two_axes};
+use crate::closed_form::branches::Doubt;
+use crate::closed_form::subproblem::{
+    Linear, QuadraticForm, Turns, angle_to_plane, distance_to_point, onto_point, two_axes,
+};
 use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 
 use crate::closed_form::axis_chain::JointAxis;
@@ -18,13 +21,13 @@ pub struct Arms {
     count: usize,
     /// A joint is free in one of the sets at least.
     pub free: bool,
-    /// The method cannot tell whether there are others.
-    pub unsettled: bool,
+    /// Whether there may be others.
+    pub doubt: Doubt,
 }
 
 impl Arms {
     /// No set.
-    pub const NONE: Self = Self { sets: [[Angle::NONE; 3]; 4], count: 0, free: false, unsettled: false };
+    pub const NONE: Self = Self { sets: [[Angle::NONE; 3]; 4], count: 0, free: false, doubt: Doubt::None };
 
     /// Adds a set; ignored when full.
     #[inline(always)]
@@ -33,6 +36,13 @@ impl Arms {
             self.sets[self.count] = set;
             self.count += 1;
         }
+    }
+
+    /// Takes over what is not sure of the angles of one joint.
+    #[inline(always)]
+    pub fn add_doubt(&mut self, turns: &Turns<2>) {
+        self.free |= turns.free;
+        self.doubt.add(turns.doubt);
     }
 
     /// The order of joints from the other end.
@@ -120,14 +130,14 @@ impl ThreeAxes {
         let mut arms = Arms::NONE;
         let height = dot(h1, &sub(&sub(a, b), c));
         let q3 = angle_to_plane(h1, h3, w, height, self.floor);
-        arms.free |= q3.free;
+        arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // In the plane across the axes, where the heights cannot disturb the distance.
             let (flat_a, flat_b, flat_u) = (cross(h1, a), cross(h1, b), cross(h1, &u));
             let lever = norm(b);
             let q2 = distance_to_point(h2, &flat_u, &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), self.floor * lever);
-            arms.free |= q2.free;
+            arms.add_doubt(&q2);
             for q2 in q2.iter() {
                 let v = add(b, &q2.about(h2, &u));
                 arms.push([onto_point(h1, &v, a), *q2, *q3]);
@@ -142,12 +152,12 @@ impl ThreeAxes {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
         let q3 = distance_to_point(h3, w, &scaled(c, -1.0), dot(a, a), self.floor * norm(c));
-        arms.free |= q3.free;
+        arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // rot2 u = rot1' a.
             let (q2, back) = two_axes(h2, &u, h1, a, self.floor);
-            arms.free |= q2.free;
+            arms.add_doubt(&q2);
             for (q2, back) in q2.iter().zip(&back) {
                 arms.push([back.back(), *q2, *q3]);
             }
@@ -184,7 +194,7 @@ impl ThreeAxes {
         form.add_product(1.0, &z, &z);
         form.add_linear(&square.map(|s| -s));
         let zeros = form.zeros();
-        arms.unsettled = zeros.free;
+        arms.doubt = zeros.doubt;
         for q3 in zeros.iter() {
             let at = |p: &Linear| p[0] + p[1] * q3.cos + p[2] * q3.sin;
             let u = add(c, &q3.about(h3, w));

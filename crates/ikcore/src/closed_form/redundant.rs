@@ -7,7 +7,7 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
-use crate::closed_form::arm_angle_limits::Values;
+use crate::closed_form::arm_angle_limits::{Decisive, Values};
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
@@ -142,9 +142,7 @@ impl Redundant {
             Method::ArmAngle(_) => {
                 let mut candidates = Candidates::new();
                 self.add_candidates(pose, value, &[AngleRange::ANY; 7], &mut candidates);
-                let mut found = self.verified(pose, &candidates);
-                found.complete = true;
-                found
+                self.verified(pose, &candidates)
             }
         }
     }
@@ -197,12 +195,11 @@ impl Redundant {
         Some(proof.open_values(&pose.goal, arcs, &limits.axes, most, visit))
     }
 
-    /// Values of the parameter of which one at least has a configuration within limits, if there is any; None where these are not
-    /// known.
-    pub fn decisive(&self, pose: &RedundantPose, limits: &AxisLimits) -> Option<Values> {
+    /// Values of the parameter that decide whether any has a configuration within limits; None where these are not known.
+    pub fn decisive(&self, pose: &RedundantPose, limits: &AxisLimits) -> Option<Decisive> {
         match (&self.method, &pose.by_arm_angle) {
             (Method::ArmAngle(method), Some(by_angle)) => {
-                method.decisive(by_angle, &pose.goal, &limits.axes, &limits.ranges[3])
+                Some(method.decisive(by_angle, &pose.goal, &limits.axes, &limits.ranges[3]))
             }
             _ => None,
         }
@@ -243,6 +240,7 @@ mod tests {
 
     use super::*;
     use crate::closed_form::axis_chain::JointAxis;
+    use crate::closed_form::branches::Doubt;
     use crate::closed_form::seven_joint_arms::{
         BAXTER, GEN3, IIWA14, PANDA, SAWYER, XARM7, iiwa14_of_urdf, random_angles,
     };
@@ -290,7 +288,7 @@ mod tests {
             let target = chain.tip_at(&q);
             for angle in q {
                 let found = method.solve(&method.pose(&target), angle);
-                assert!(found.len() == 8 && found.complete);
+                assert!(found.len() == 8 && found.doubt == Doubt::None);
                 assert!(found.iter().all(|b| miss(&chain, b, &target) < 2e-10));
             }
         }

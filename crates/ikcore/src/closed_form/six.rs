@@ -6,7 +6,7 @@ use std::fmt;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
-use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::branches::{Branches, Candidates, Doubt};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 use crate::closed_form::general::General;
 use crate::closed_form::spherical_wrist::SphericalWrist;
@@ -178,13 +178,9 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         self.add_candidates(goal, &[AngleRange::ANY; 6], &mut candidates);
         let mut found = verified(&self.verifier, target, &candidates);
-        found.complete = match self.structure {
-            Structure::ThreeMeet { nearly, .. } | Structure::ThreeParallel { nearly, .. } => {
-                !nearly && !candidates.unsettled
-            }
-            // Decided above.
-            Structure::General | Structure::Unsolved => found.complete,
-        };
+        if !self.has_exact_candidates() {
+            found.doubt = Doubt::Open;
+        }
         match &self.further {
             Some(ways) => self.solve_general(ways, goal, target, found),
             None => found,
@@ -210,7 +206,7 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
         found.replace(drives, candidates.count, |columns| values_of_six(&self.verifier, &candidates, columns));
-        found.is_all = self.has_exact_candidates() && !candidates.unsettled && !candidates.singular;
+        found.is_all = self.has_exact_candidates() && candidates.doubt == Doubt::None && !candidates.singular;
     }
 
     /// Whether candidates are solutions but for rounding.
@@ -223,8 +219,10 @@ impl ClosedForm {
         for way in ways {
             let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
             // No more branches than zeros: as many of both leave none to be found.
-            found.complete = account.sound && found.len() >= account.zeros;
-            if found.complete {
+            let is_all = account.sound && found.len() >= account.zeros;
+            // Zeros that nearly coincide, and their branches, are as good as double.
+            found.doubt = if is_all { Doubt::Beside } else { Doubt::Open };
+            if is_all {
                 return found;
             }
         }
@@ -250,12 +248,12 @@ impl ClosedForm {
                     let method = SphericalWrist::new(&joints, &centre, self.size, tolerance);
                     method.solve(goal, &[AngleRange::ANY; 6], &mut turned);
                 }
-                None => turned.unsettled = true,
+                None => turned.doubt = Doubt::Open,
             },
             _ => ThreeParallel::new(&joints, self.size, tolerance).solve::<Baseline>(goal, &mut turned),
         }
         candidates.singular |= turned.singular;
-        candidates.unsettled |= turned.unsettled;
+        candidates.doubt.add(turned.doubt);
         for place in 0..turned.count {
             // Joint `at` is the first of the opened loop.
             candidates.push_six(&std::array::from_fn(|k| {

@@ -2,9 +2,10 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::branches::Doubt;
 use crate::closed_form::position::Arms;
 use crate::closed_form::structure::Pair;
-use crate::closed_form::subproblem::{CLAMP, distance_to_point, onto_point, two_axes};
+use crate::closed_form::subproblem::{CLAMP, NEARLY_DOUBLE, distance_to_point, onto_point, two_axes};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
 
 /// Three joints, prepared.
@@ -88,11 +89,14 @@ impl SlidingArm {
         if radicand < -CLAMP * distance {
             return arms;
         }
+        if radicand < NEARLY_DOUBLE * distance {
+            arms.doubt.add(Doubt::Beside);
+        }
         let root = radicand.max(0.0).sqrt();
         for slide in [middle + root, middle - root] {
             let reached = add_scaled(u, h3, slide);
             let (q2, back) = two_axes(h2, &reached, h1, a, self.floor);
-            arms.free |= q2.free;
+            arms.add_doubt(&q2);
             for (q2, back) in q2.iter().zip(&back) {
                 arms.push([back.back(), *q2, slid(slide)]);
             }
@@ -110,7 +114,7 @@ impl SlidingArm {
         let (flat_a, flat_b) = (flat(a), flat(b));
         let floor = self.floor * dot(&flat_b, &flat_b).sqrt();
         let q2 = distance_to_point(h2, &flat(&reached), &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), floor);
-        arms.free |= q2.free;
+        arms.add_doubt(&q2);
         for q2 in q2.iter() {
             arms.push([onto_point(h1, &add(b, &q2.about(h2, &reached)), a), *q2, slid(slide)]);
         }

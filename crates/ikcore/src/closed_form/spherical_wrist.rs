@@ -92,12 +92,13 @@ impl SphericalWrist {
             Arm::Sliding(arm) => arm.reach(&self.centre, &reached),
         };
         found.singular |= arms.free;
-        found.unsettled |= arms.unsettled;
+        found.doubt.add(arms.doubt);
         let pointing = self.wrist.pointing(goal);
         for arm in arms.iter().filter(|arm| may_hold(of_arm, *arm)) {
             let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
-            let wrists = self.wrist.turns(&left);
+            let wrists = self.wrist.turns(&left, of_wrist);
             found.singular |= wrists.aligned;
+            found.doubt.add(wrists.doubt);
             for wrist in wrists.sets[..wrists.count].iter().filter(|wrist| may_hold(of_wrist, *wrist)) {
                 found.push_six(&order(arm, wrist));
             }

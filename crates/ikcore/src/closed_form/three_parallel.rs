@@ -7,13 +7,15 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::JointAxis;
-use crate::closed_form::branches::Candidates;
+use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::four_angles::{self, FourAngles};
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::structure::Pair;
-use crate::closed_form::subproblem::{Linear, angle_to_plane, line_on_circle, two_linear_equations};
+use crate::closed_form::subproblem::{
+    CLAMP, Linear, NEARLY_DOUBLE, angle_to_plane, line_on_circle, two_linear_equations,
+};
 use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
-use crate::closed_form::wrist::{ALIGNED, Bend};
+use crate::closed_form::wrist::{ALIGNED, Bend, NEARLY_ALIGNED};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline};
 use crate::math::f64x4::F64x4;
@@ -124,9 +126,11 @@ impl ThreeParallel {
             Last::Meet => {
                 let q1 = angle_to_plane(h, &scaled(h1, -1.0), &a, offset, self.floor);
                 found.singular |= q1.free;
+                found.doubt.add(q1.doubt);
                 for q1 in q1.iter() {
                     let shoulder = self.shoulder(goal, *q1);
                     let (q5, _) = self.bend.angles(&q1.back().about(h1, &n));
+                    found.doubt.add(q5.doubt);
                     for q5 in q5.iter() {
                         self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
@@ -135,10 +139,13 @@ impl ThreeParallel {
             Last::Parallel => {
                 let q1 = angle_to_plane(h, &scaled(h1, -1.0), &n, dot(h, h6), 1e-11);
                 found.singular |= q1.free;
+                found.doubt.add(q1.doubt);
                 for q1 in q1.iter() {
                     let shoulder = self.shoulder(goal, *q1);
                     let height = dot(h, &q1.back().about(h1, &a)) - offset;
-                    for q5 in angle_to_plane(h, h5, &sub(p6, p5), height, self.floor).iter() {
+                    let q5 = angle_to_plane(h, h5, &sub(p6, p5), height, self.floor);
+                    found.doubt.add(q5.doubt);
+                    for q5 in q5.iter() {
                         self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
                 }
@@ -172,10 +179,10 @@ impl ThreeParallel {
         r2[0] -= offset + of_lever[0];
         let m = [[of_n[1], of_n[2]], [of_lever[1], of_lever[2]]];
         let Some((q1, q5)) = two_linear_equations(&m, &[r1, r2]) else {
-            found.unsettled = true;
+            found.doubt = Doubt::Open;
             return;
         };
-        found.unsettled |= q1.free;
+        found.doubt.add(q1.doubt);
         for (q1, q5) in q1.iter().zip(&q5) {
             self.wrist::<A>(&self.shoulder(goal, *q1), *q5, wrists, found);
         }
@@ -202,8 +209,12 @@ impl ThreeParallel {
             self.planar::<A>(wrists, found);
         }
         let seen = self.seen.at(q5);
-        if seen[0] * seen[0] + seen[1] * seen[1] < ALIGNED * ALIGNED {
-            return self.wrist_aligned(shoulder, q5, wrists, found);
+        let square = seen[0] * seen[0] + seen[1] * seen[1];
+        if square < NEARLY_DOUBLE {
+            found.doubt.add(if square < NEARLY_ALIGNED * NEARLY_ALIGNED { Doubt::Open } else { Doubt::Beside });
+            if square < ALIGNED * ALIGNED {
+                return self.wrist_aligned(shoulder, q5, wrists, found);
+            }
         }
         let [.., up] = &shoulder.axes;
         let q6 = Angle::towards(up[0] * seen[0] + up[1] * seen[1], up[0] * seen[1] - up[1] * seen[0]);
@@ -225,6 +236,7 @@ impl ThreeParallel {
         let reached =
             [four_angles::dot(&x, &wrist) + four(&offset[0]), four_angles::dot(&y, &wrist) + four(&offset[1])];
         let bends = self.elbow.bends(&reached, *count);
+        found.doubt.add(bends.doubt);
         let [first, second] = [self.bent(bends.q3[0], sum, &reached), self.bent(bends.q3[1], sum, &reached)];
         for lane in 0..std::mem::take(count) {
             let (q1, q5, q6) = (angles(&turns[0]).lane(lane), q5.lane(lane), back.back().lane(lane));
@@ -269,7 +281,7 @@ impl ThreeParallel {
         let (least, most) = ((first - second).powi(2), (first + second).powi(2));
         let swing = a.hypot(b);
         let (low, high) = (least.max(base - swing), most.min(base + swing));
-        if low > high + 1e-9 * most {
+        if low > high + CLAMP * most {
             return;
         }
         found.singular = true;
@@ -311,6 +323,7 @@ struct Bends<R> {
     q3: [FourAngles<R>; 2],
     /// How many values count in each lane.
     counts: [usize; 4],
+    doubt: Doubt,
 }
 
 impl Elbow {
@@ -334,14 +347,15 @@ impl Elbow {
         let (ac, bc, to_a, to_b) = (R::splat(a) * c, R::splat(b) * c, R::splat(a) * root, R::splat(b) * root);
         let first = FourAngles { cos: (ac - to_b) * inverse, sin: (bc + to_a) * inverse };
         let second = FourAngles { cos: (ac + to_b) * inverse, sin: (bc - to_a) * inverse };
-        let mut bends = Bends { q3: [first, second], counts: [2; 4] };
+        let mut bends = Bends { q3: [first, second], counts: [2; 4], doubt: Doubt::None };
         for lane in 0..count {
-            // The links are in line, or one has no length: not for NaN.
-            if !(radicand.lane(lane) > 0.0) || square <= floor * floor {
+            // The links are nearly in line, or one has no length: not for NaN.
+            if !(radicand.lane(lane) > NEARLY_DOUBLE * square) || square <= floor * floor {
                 let turns = line_on_circle(a, b, c.lane(lane), floor);
                 bends.counts[lane] = turns.len();
-                if let Some(turn) = turns.first() {
-                    bends.q3[0] = bends.q3[0].with_lane(lane, *turn);
+                bends.doubt.add(turns.doubt);
+                for (q3, turn) in bends.q3.iter_mut().zip(turns.iter()) {
+                    *q3 = q3.with_lane(lane, *turn);
                 }
             }
         }

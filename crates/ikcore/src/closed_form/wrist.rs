@@ -1,6 +1,8 @@
 //! Three revolute joints that make a rotation: the spherical wrist.
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::subproblem::{Turns, with_radicand};
@@ -11,6 +13,9 @@ use crate::math::arithmetic::Baseline;
 /// Below this sine of the angle between the outer axes (rad), they count as aligned: only the sum or difference of their
 /// angles matters.
 pub const ALIGNED: f64 = 1e-10;
+
+/// Below this sine (rad) a pose within the tolerances of a caller has a family of solutions, of which rounding finds any member.
+pub const NEARLY_ALIGNED: f64 = 1e-7;
 
 /// The middle joint of a wrist: angles q with outer' rot(axis, q) inner = outer' goal.
 #[derive(Debug, Clone, Copy)]
@@ -107,6 +112,8 @@ pub struct WristTurns {
     pub count: usize,
     /// The outer axes are aligned: one set stands for a family.
     pub aligned: bool,
+    /// Whether they are nearly aligned, or nearly cannot point so.
+    pub doubt: Doubt,
 }
 
 impl Wrist {
@@ -136,13 +143,15 @@ impl Wrist {
         Pointing { end: goal.turn::<Baseline>(&self.end), mark: goal.turn::<Baseline>(&self.mark) }
     }
 
-    /// All angles with rot1 rot2 rot3 = the rotation that points the wrist so, where rotations act on the zero configuration.
+    /// All angles with rot1 rot2 rot3 = the rotation that points the wrist so, where rotations act on the zero configuration. Of a family,
+    /// the member deepest inside `ranges`.
     #[inline(always)]
-    pub fn turns(&self, goal: &Pointing) -> WristTurns {
+    pub fn turns(&self, goal: &Pointing, ranges: &[AngleRange; 3]) -> WristTurns {
         let [x, y, z] = seen(&self.outer, &goal.end);
         let mark = seen(&self.outer, &goal.mark);
         let (bends, sine) = self.bend.angles_by(z, x * x + y * y);
-        let mut found = WristTurns { sets: [[Angle::NONE; 3]; 2], count: 0, aligned: sine < ALIGNED };
+        let mut found =
+            WristTurns { sets: [[Angle::NONE; 3]; 2], count: 0, aligned: sine < ALIGNED, doubt: bends.doubt };
         let wanted = if found.aligned { bends.len().min(1) } else { bends.len() };
         for q2 in &bends[..wanted] {
             found.sets[found.count] = if self.square && found.count == 1 {
@@ -158,6 +167,15 @@ impl Wrist {
                 [q1, *q2, Angle::towards(dot(&to_mark, &left), dot(&to_across, &left))]
             };
             found.count += 1;
+        }
+        if found.aligned && found.count > 0 {
+            // The first and the last joint turn about one line, in the same sense or the opposite one.
+            let ([_, q2, q3], sense) = (found.sets[0], 1.0_f64.copysign(z));
+            let [q1, q3] = ranges[0].deepest_pair(&ranges[2], q3.signed(sense), sense);
+            found.sets[0] = [q1, q2, q3];
+        }
+        if sine < NEARLY_ALIGNED {
+            found.doubt = Doubt::Open;
         }
         found
     }
@@ -181,7 +199,7 @@ mod tests {
             let wrist = Wrist::new(&axes);
             for bend in [1.3, -0.4, 1e-3, 1e-6, 1e-9, -3e-8, 3.1, 0.0] {
                 let goal = rotation(&axes, [Angle::by(0.7), Angle::by(bend), Angle::by(-1.9)]);
-                let found = wrist.turns(&wrist.pointing(&goal));
+                let found = wrist.turns(&wrist.pointing(&goal), &[AngleRange::ANY; 3]);
                 assert!(found.count >= 1, "{bend}");
                 for set in &found.sets[..found.count] {
                     let reached = rotation(&axes, *set);

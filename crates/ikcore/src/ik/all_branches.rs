@@ -1,25 +1,44 @@
 //! All solutions of a pose by the closed form of the arm.
 
+use std::f64::consts::TAU;
+
 use super::attempt::{APPROACHES, Attempt};
 use super::out_of_reach::{ended, is_wide, obstruction};
-use super::preference::Preference;
+use super::preference::{AT_LIMIT, Preference};
 use super::solution::Solution;
 use super::solutions::Solutions;
+use super::weak_direction::WeakDirection;
 use super::whole_turns::NearestTurns;
-use crate::closed_form::{ArmBranches, BranchError, FamilyLimits, MOST_JOINTS, PoseFamily, VERIFIED};
+use crate::closed_form::{
+    ArmBranches, BranchError, Doubt, FamilyLimits, MOST_JOINTS, MOVED_BY_POLISHING, PoseFamily, VERIFIED,
+};
 use crate::math::Frame;
+use crate::math::comparison::larger;
 use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, MultiStart};
-use crate::task::{Target, TipError};
-
-/// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
-const AT_LIMIT: f64 = 1e-9;
+use crate::task::{Target, TipError, Tolerance};
 
 /// Solutions nearer to each other in every joint (rad, m) are one.
 const SAME: f64 = 1e-6;
 
 /// A branch that is outside its limits by less (rad, m) may reach the pose within tolerances from inside them.
 const NEAR_LIMIT: f64 = 1e-4;
+
+/// Tolerances below this (m, rad) are those of rounding.
+const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// Tolerances by which a pose changes per rad or m, below which a direction is as good as free.
+const ALMOST_FREE: f64 = 1.0;
+
+/// A branch that no change of its pose by so many tolerances brings inside the limits is outside them.
+const FIRMLY_OUTSIDE: f64 = 10.0;
+
+/// Steps to each side of a branch at which its nearly free direction is tried, and halvings of a step afterwards.
+const TRIED_ALONG: usize = 32;
+const HALVINGS_ALONG: usize = 30;
+
+/// Descents from scattered starts where the closed form may lack solutions.
+const SCATTERED: usize = 32;
 
 /// How many times more values of the parameter are tried where none has a solution.
 const FINER: usize = 4;
@@ -130,9 +149,10 @@ impl Taker<'_, '_, '_> {
                 return;
             }
         }
-        if let Some(values) = family.decisive(&limits) {
-            self.take_values(family, &limits, values.into_iter());
-            self.found.complete = self.found.solutions.is_empty() && !self.found.interrupted && !self.nearly;
+        if let Some(decisive) = family.decisive(&limits) {
+            self.take_values(family, &limits, decisive.values.into_iter());
+            self.found.complete =
+                decisive.is_sure && self.found.solutions.is_empty() && !self.found.interrupted && !self.nearly;
         }
     }
 
@@ -142,7 +162,11 @@ impl Taker<'_, '_, '_> {
             self.attempt.budget.evaluations += branches.evaluations;
             self.found.singular |= branches.singular;
             for (q, error) in branches.iter() {
-                self.take_inside(q, error);
+                let outside = self.take_inside(q, error);
+                if AT_LIMIT < outside && outside < NEAR_LIMIT && self.found.solutions.is_empty() {
+                    self.nearly = true;
+                    self.take_beyond(q);
+                }
             }
             looks += 1;
             self.found.interrupted = looks % VISITS_BETWEEN_LOOKS == 0 && !self.attempt.monitor.keep_going();
@@ -155,37 +179,41 @@ impl Taker<'_, '_, '_> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
         self.nearly |= branches.nearly;
-        if self.found.solutions.is_empty() && self.found.complete && self.nearly {
+        if self.found.solutions.is_empty() && self.nearly {
             self.take_beside();
+        }
+        if !self.found.complete && !self.found.singular {
+            self.take_scattered();
         }
         Some(branches.len())
     }
 
     fn take_branches(&mut self, branches: &ArmBranches) {
         self.attempt.budget.evaluations += branches.evaluations;
-        self.found.complete &= branches.complete;
+        self.found.complete &= branches.doubt != Doubt::Open;
         self.found.singular |= branches.singular;
+        let is_sure = branches.doubt == Doubt::None && !branches.singular;
         for (q, error) in branches.iter() {
-            // Of a family that is outside with its representative, another member may be inside.
-            if !self.take_inside(q, error) && branches.singular {
-                self.take_beyond(q);
+            let outside = self.take_inside(q, error);
+            if !is_sure || AT_LIMIT < outside && outside < MOVED_BY_POLISHING {
+                self.take_nearby(q, outside);
             }
         }
     }
 
-    /// Takes a branch if it is inside the limits.
+    /// Takes a branch if it is inside the limits. Returns by how much a joint is outside them at most (rad, m).
     #[inline]
-    fn take_inside(&mut self, q: &[f64], error: BranchError) -> bool {
+    fn take_inside(&mut self, q: &[f64], error: BranchError) -> f64 {
         let mut near = [0.0; MOST_JOINTS];
         let near = &mut near[..q.len()];
+        let mut outside = 0.0;
         for ((joint, value), placed) in self.turns.joints().iter().zip(q).zip(near.iter_mut()) {
             let value = joint.nearest(*value);
-            let outside = (joint.lower - value).max(value - joint.upper);
-            if outside > AT_LIMIT {
-                self.nearly |= outside < NEAR_LIMIT;
-                return false;
-            }
+            outside = larger(outside, larger(joint.lower - value, value - joint.upper));
             *placed = value.clamp(joint.lower, joint.upper);
+        }
+        if outside > AT_LIMIT {
+            return outside;
         }
         if self.verified_is_solved {
             let BranchError { position, rotation } = error;
@@ -194,18 +222,62 @@ impl Taker<'_, '_, '_> {
             // The tolerances asked for may be tighter than rounding allows the closed form.
             self.take_beyond(near);
         }
-        true
+        outside
+    }
+
+    /// Takes what the tolerances leave beside a branch: where the arm is nearly singular, they leave a curve of configurations, and of a
+    /// branch that is `outside` the limits (rad, m), part of it may be inside.
+    #[cold]
+    fn take_nearby(&mut self, q: &[f64], outside: f64) {
+        let Some((_, criterion)) = self.attempt.problem.only_target() else { return };
+        let Tolerance { position, rotation } = criterion.tolerance;
+        let tolerance = Tolerance { position: position.max(LEAST_TOLERANCE), rotation: rotation.max(LEAST_TOLERANCE) };
+        let weak = WeakDirection::at(self.attempt.context.robot(), q, &tolerance);
+        if weak.change < ALMOST_FREE {
+            self.found.singular = true;
+            self.found.complete = false;
+        }
+        if outside > AT_LIMIT && (outside < NEAR_LIMIT || outside * weak.change < FIRMLY_OUTSIDE) {
+            let along = self.least_outside_along(q, &weak.direction);
+            self.take_beyond(&along);
+        }
+    }
+
+    /// The configuration on the line from `q` in a direction that is outside the limits by the least.
+    fn least_outside_along(&self, q: &[f64], direction: &[f64]) -> Point {
+        let at = |t: f64| q.iter().zip(direction).map(|(q, v)| q + t * v).collect::<Point>();
+        let outside = |t: f64| {
+            let values = self.turns.joints().iter().zip(at(t));
+            values.fold(0.0, |most: f64, (joint, value)| {
+                let value = joint.nearest(value);
+                most.max(joint.lower - value).max(value - joint.upper)
+            })
+        };
+        let mut best = (outside(0.0), 0.0);
+        let mut step = TAU / TRIED_ALONG as f64;
+        for k in 1..=TRIED_ALONG {
+            for t in [step * k as f64, -step * k as f64] {
+                best = if outside(t) < best.0 { (outside(t), t) } else { best };
+            }
+        }
+        for _ in 0..HALVINGS_ALONG {
+            step *= 0.5;
+            for t in [best.1 + step, best.1 - step] {
+                best = if outside(t) < best.0 { (outside(t), t) } else { best };
+            }
+        }
+        at(best.1)
     }
 
     /// Takes the branches of a pose that is within the tolerances, where the pose itself has none inside the limits: it is at the
     /// edge of the reach, or beside what an arm with few joints can reach.
     #[cold]
     fn take_beside(&mut self) {
+        self.found.complete = false;
         let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
             return;
         }
-        self.found.complete = false;
         let context = self.attempt.context;
         let reached = context.robot().tip(&q);
         let branches = context.robot().branches(&reached);
@@ -217,6 +289,16 @@ impl Taker<'_, '_, '_> {
         }
     }
 
+    /// Takes the solutions that descents from scattered starts find, where the closed form may lack some.
+    #[cold]
+    fn take_scattered(&mut self) {
+        let mut start = self.attempt.first_start(None);
+        for _ in 0..SCATTERED {
+            self.take_beyond(&start);
+            self.attempt.next_start(&mut start);
+        }
+    }
+
     /// Takes the solution that a descent from `q` finds.
     #[cold]
     fn take_beyond(&mut self, q: &[f64]) {
@@ -225,7 +307,8 @@ impl Taker<'_, '_, '_> {
         self.turns.bring_near(&mut near);
         let bounds = self.attempt.context.bounds();
         bounds.clip(&mut near);
-        let q = self.attempt.descend_beyond(&self.descent, near, VERIFIED, bounds);
+        let mut q = self.attempt.descend_beyond(&self.descent, near, VERIFIED, bounds);
+        self.turns.bring_near(&mut q);
         let assessment = self.attempt.problem.assess(&q);
         let known = |other: &[f64]| other.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME);
         if assessment.score.solved && !self.found.solutions.iter().any(|other| known(other.q)) {

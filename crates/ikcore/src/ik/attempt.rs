@@ -55,6 +55,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
     /// Runs the solver from `x0` and, after a miss, descends from its best point. A target provably out of reach is
     /// only approached.
     pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
+        if self.budget.left() == 0 {
+            return self.explained(Status::BudgetSpent, Point::from_slice(x0));
+        }
         let bounds = self.context.bounds();
         let Some(MultiStart { solver: descent, .. }) = self.context.solver().restarted_descent() else {
             let (status, q) = self.search(bounds, x0, 0);
@@ -177,9 +180,11 @@ impl<'m, 'p> Attempt<'m, 'p> {
         is_solved
     }
 
-    /// The result at `q`, with the reason for a miss.
+    /// The result at `q`, with the reason for a miss. Within the tolerances there is none, whatever `status` expects.
     pub fn explained(&self, status: Status, q: Point) -> Solution {
-        let mut solution = self.solution(status, q);
+        let Assessment { score, error } = self.problem.assess(&q);
+        let status = if score.solved && status == Status::OutOfReach { Status::Solved } else { status };
+        let mut solution = self.result(status, q, error.into());
         if status != Status::Solved {
             solution.obstruction = self.problem.obstruction(self.context.bounds(), &solution.q);
         }

@@ -28,7 +28,7 @@ const OPEN: usize = 2;
 const SEARCHED_SHARE: usize = 400;
 
 /// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
-const ROUNDED: f64 = 1e-6;
+const ROUNDED: f64 = 1e-4;
 
 /// How a look at scattered values ends without a solution.
 enum Scattered {
@@ -158,9 +158,10 @@ impl<'a> FamilySearch<'a> {
     /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
     #[cold]
     fn at_decisive_values(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Miss> {
-        let values = self.family.decisive(&self.limits).ok_or(Miss::Near)?;
-        let (mut likely, mut miss) = (ArmConfigurations::none(), Miss::Far);
-        for value in values {
+        let decisive = self.family.decisive(&self.limits).ok_or(Miss::Near)?;
+        let mut likely = ArmConfigurations::none();
+        let mut miss = if decisive.is_sure { Miss::Far } else { Miss::Near };
+        for value in decisive.values {
             self.family.likely_at(value, &self.limits, &mut likely);
             if let Ok(solution) = attempt.preferred(&self.preference, &mut likely) {
                 return Ok(solution);

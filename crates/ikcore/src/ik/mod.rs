@@ -26,6 +26,7 @@ mod solve;
 mod solve_all;
 mod solve_options;
 mod tip_tasks;
+mod weak_direction;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};

@@ -42,7 +42,10 @@ pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> St
 /// The result where there is no solution, with a configuration a few steps nearer to the target than `from`.
 #[cold]
 pub(super) fn ended(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
-    let (q, Assessment { error, .. }) = approached(attempt, from);
+    let (q, Assessment { error, score }) = approached(attempt, from);
+    if score.solved {
+        return attempt.result(Status::Solved, q, error.into());
+    }
     Solution { obstruction, ..attempt.result(Status::OutOfReach, q, error.into()) }
 }
 

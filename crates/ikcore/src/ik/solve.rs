@@ -94,8 +94,5 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
 /// The first solution that a search finds.
 fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let x0 = attempt.first_start(start);
-    if attempt.budget.left() == 0 {
-        return attempt.explained(Status::BudgetSpent, x0);
-    }
     attempt.solve_from(&x0)
 }

@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::preference::AT_LIMIT;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
@@ -55,7 +56,8 @@ impl<'a> NearestTurns<'a> {
 }
 
 impl NearestTurn {
-    /// `value` shifted by whole turns to be as near as possible to the reference within the limits.
+    /// `value` shifted by whole turns to be as near as possible to the reference within the limits, which it is moved inside of if it is
+    /// beyond them by rounding, or as little outside them as possible.
     #[inline]
     pub fn nearest(&self, value: f64) -> f64 {
         let Self { lower, upper, reference, period } = *self;
@@ -66,10 +68,16 @@ impl NearestTurn {
     fn turned(&self, value: f64) -> f64 {
         let Self { lower, upper, reference, period } = *self;
         let turns = ((reference - value) / period).round();
-        let (fewest, most) = (((lower - value) / period).ceil(), ((upper - value) / period).floor());
+        let (fewest, most) =
+            (((lower - AT_LIMIT - value) / period).ceil(), ((upper + AT_LIMIT - value) / period).floor());
         let turned = value + turns.max(fewest).min(most) * period;
-        // Rounding may pass a limit.
-        if lower <= turned && turned <= upper { turned } else { value }
+        let inside = turned.clamp(lower, upper);
+        if (turned - inside).abs() <= AT_LIMIT {
+            return inside;
+        }
+        let above = value + ((lower - value) / period).ceil() * period;
+        let below = above - period;
+        if above - upper < lower - below { above } else { below }
     }
 }
 

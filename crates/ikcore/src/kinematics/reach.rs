@@ -11,6 +11,9 @@ use crate::math::arithmetic::NoFma;
 use crate::math::so3::norm;
 use crate::wording::number;
 
+/// Rounding of positions, relative to the reach, and of angles (rad): a target beyond by less may be reached.
+const ROUNDING: f64 = 1e-12;
+
 /// The ball that the tip cannot leave, or the disk if all joints rotate about parallel axes. Not all of it can be
 /// reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +60,7 @@ impl Reach {
         orientation: Option<&Frame>,
         tolerance: [f64; 2],
     ) -> Option<ReachShortfall> {
-        let [metres, radians] = tolerance;
+        let [metres, radians] = [tolerance[0] + ROUNDING * (1.0 + self.radius), tolerance[1] + ROUNDING];
         let above = |size: f64, tolerance: f64| if size > tolerance { size } else { 0.0 };
         let shortfall = ReachShortfall {
             distance: position.map_or(0.0, |position| above(self.excess(position), metres)),

@@ -1,7 +1,8 @@
 //! The equation a cos q + b sin q = c: a line that meets the unit circle. Subproblems 2, 3 and 4 come down to it.
 
-use super::{CLAMP, Turns};
+use super::{CLAMP, NEARLY_DOUBLE, SMALL_LEVER, Turns};
 use crate::closed_form::angle::Angle;
+use crate::closed_form::branches::Doubt;
 
 /// The angles with a cos q + b sin q = c.
 ///
@@ -10,11 +11,20 @@ use crate::closed_form::angle::Angle;
 pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
     let square = a * a + b * b;
     if square <= floor * floor {
-        return if c.abs() <= floor { Turns::FREE } else { Turns::NONE };
+        return match c.abs() {
+            c if c <= floor => Turns::FREE,
+            c if c <= SMALL_LEVER * floor => Turns { doubt: Doubt::Open, ..Turns::NONE },
+            _ => Turns::NONE,
+        };
     }
     // (r - c) (r + c), since r^2 - c^2 cancels where the line touches the circle.
     let radius = square.sqrt();
-    with_radicand(a, b, c, (radius - c) * (radius + c))
+    let mut turns = with_radicand(a, b, c, (radius - c) * (radius + c));
+    let small = SMALL_LEVER * floor;
+    if radius <= small && c.abs() <= radius + small {
+        turns.doubt = if turns.is_empty() { Doubt::Open } else { Doubt::Beside };
+    }
+    turns
 }
 
 /// The same with r^2 - c^2 known better than by subtraction, r^2 = a^2 + b^2.
@@ -24,6 +34,9 @@ pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
     let mut turns = Turns::NONE;
     if radicand < -CLAMP * square {
         return turns;
+    }
+    if radicand < NEARLY_DOUBLE * square {
+        turns.doubt = Doubt::Beside;
     }
     // `towards` divides by the hypotenuse: a clamped root lands on the circle.
     if radicand <= 0.0 {

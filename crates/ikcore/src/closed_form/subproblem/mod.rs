@@ -16,11 +16,19 @@ pub use onto_point::{onto_point, two_axes};
 pub use quadratic_form::{Linear, QuadraticForm, two_linear_equations};
 
 use crate::closed_form::angle::Angle;
+use crate::closed_form::branches::Doubt;
 
 /// Largest negative radicand, relative to its terms, that counts as a double root.
 ///
 /// Rounding needs 1e-9. A pose just beyond the edge of reach, by the tolerances of a caller, is to be noticed too.
 pub const CLAMP: f64 = 1e-4;
+
+/// Radicand, relative to its terms, below which two solutions are nearly one: they lie within a thousandth of a radian.
+pub const NEARLY_DOUBLE: f64 = 1e-6;
+
+/// Multiple of the rounding of a lever below which a pose within the tolerances of a caller may have solutions where this one has
+/// none.
+pub const SMALL_LEVER: f64 = 1e6;
 
 /// At most `N` rotations.
 #[derive(Debug, Clone, Copy)]
@@ -29,14 +37,16 @@ pub struct Turns<const N: usize> {
     count: usize,
     /// Every angle is a solution; the one listed stands for all.
     pub free: bool,
+    /// How sure it is that there are no others.
+    pub doubt: Doubt,
 }
 
 impl<const N: usize> Turns<N> {
     /// No solution.
-    pub const NONE: Self = Self { turns: [Angle::NONE; N], count: 0, free: false };
+    pub const NONE: Self = Self { turns: [Angle::NONE; N], count: 0, free: false, doubt: Doubt::None };
 
     /// Every angle: zero stands for all.
-    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true };
+    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Beside };
 
     /// Adds a solution; ignored when full.
     #[inline(always)]

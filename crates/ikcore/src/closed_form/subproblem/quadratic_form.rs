@@ -1,7 +1,8 @@
 //! A quadratic equation in cosine and sine of one angle: what subproblems 5 and 6 come down to.
 
-use super::Turns;
+use super::{NEARLY_DOUBLE, Turns};
 use crate::closed_form::angle::Angle;
+use crate::closed_form::branches::Doubt;
 use crate::closed_form::trigonometric::Polynomial;
 
 /// Rounding of the coefficients, relative to their size: zeros that it can hide or merge are listed as one.
@@ -36,7 +37,7 @@ impl QuadraticForm {
         (0..3).for_each(|k| self.entries[k] += p[k]);
     }
 
-    /// The angles of its zeros on the unit circle, double roots included; marked as free where they are not surely all.
+    /// The angles of its zeros on the unit circle, double roots included.
     pub fn zeros(&self) -> Turns<4> {
         let [one, c, s, cc, cs, ss] = self.entries;
         // cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
@@ -45,8 +46,14 @@ impl QuadraticForm {
         let zeros = polynomial.zeros::<4>(NOISE * polynomial.size());
         let mut turns = Turns::NONE;
         zeros.iter().for_each(|root| turns.push(*root));
-        // The form vanishes everywhere, or to a high order.
-        turns.free = !zeros.settled;
+        // Coefficients that are off by as much as those of a pose within tolerances have the same zeros, or others.
+        let nearby = polynomial.zeros::<4>(NEARLY_DOUBLE * polynomial.size());
+        turns.doubt = match zeros.settled && nearby.settled {
+            true if nearby.possible == turns.len() => Doubt::None,
+            true if nearby.possible <= turns.len() => Doubt::Beside,
+            // The form nearly vanishes everywhere, or to a high order, or has zeros nearby.
+            _ => Doubt::Open,
+        };
         turns
     }
 }

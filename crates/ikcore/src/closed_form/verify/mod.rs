@@ -20,6 +20,9 @@ pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 /// leaves more than that in the angles.
 const GOOD: f64 = 1e-12;
 
+/// Where the residual of a candidate that is no branch stays below this (m, rad), a pose within the tolerances of a caller may have one.
+const NEARLY: f64 = 1e-5;
+
 /// Branches nearer to each other than this in every joint (rad, m) are one: a double root.
 const SAME: f64 = 1e-6;
 
@@ -63,7 +66,7 @@ impl<const N: usize> Verifier<N> {
     #[inline(always)]
     fn branches_by<A: Arithmetic>(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         let mut found = Branches::none();
-        found.singular = candidates.singular;
+        (found.singular, found.doubt) = (candidates.singular, candidates.doubt);
         found.evaluations = candidates.count;
         let mut first = 0;
         while first < candidates.count {
@@ -101,8 +104,8 @@ impl<const N: usize> Verifier<N> {
     #[cold]
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
         match polish::polished(&self.chain, target, set, &mut found.evaluations) {
-            Some((set, error)) => push_new(set, error, &self.slides, found),
-            None => found.nearly = true,
+            Ok((set, error)) => push_new(set, error, &self.slides, found),
+            Err(residual) => found.nearly |= residual < NEARLY,
         }
     }
 }

@@ -12,7 +12,7 @@ pub const TOLERANCE: f64 = 1e-10;
 
 const ITERATIONS: usize = 24;
 
-/// Joint values near `q` that bring the tip to `target`, if Newton's method gets there.
+/// Joint values near `q` that bring the tip to `target`, if Newton's method gets there, or else its least residual (m, rad).
 ///
 /// Each step adds one to `evaluations`. Damped by the squared error: beside a double root the Jacobian is singular, and the step
 /// must stay short.
@@ -21,7 +21,7 @@ pub fn polished<const N: usize>(
     target: &Frame,
     mut q: [f64; N],
     evaluations: &mut usize,
-) -> Option<([f64; N], BranchError)> {
+) -> Result<([f64; N], BranchError), f64> {
     let mut last = f64::INFINITY;
     let mut best = (f64::INFINITY, q, BranchError::default());
     for _ in 0..ITERATIONS {
@@ -43,7 +43,10 @@ pub fn polished<const N: usize>(
     }
     let (residual, q, error) = best;
     let turns = |k: usize| chain.joints[k].motion == AxisMotion::Turns;
-    (residual <= TOLERANCE).then(|| (std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
+    if residual > TOLERANCE {
+        return Err(residual);
+    }
+    Ok((std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
 }
 
 fn length(v: &[f64]) -> f64 {

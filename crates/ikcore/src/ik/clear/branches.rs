@@ -1,7 +1,7 @@
 //! Clear solutions by the closed form: branches, and samples of the self-motion.
 
 use super::clear_search::{ClearSearch, Exhausted};
-use crate::closed_form::{ArmConfigurations, PoseFamily, VERIFIED};
+use crate::closed_form::{ArmConfigurations, Doubt, PoseFamily, VERIFIED};
 use crate::ik::first_branch::LEAST_BUDGET;
 use crate::ik::preference::Preference;
 use crate::math::Frame;
@@ -53,7 +53,9 @@ impl ClearSearch<'_, '_, '_> {
         self.attempt.budget.evaluations += branches.evaluations;
         match self.first_clear(preference, &mut branches.configurations(), f64::INFINITY) {
             Some(q) => Some(Ok(q)),
-            None if self.has_candidates() && branches.complete && !branches.singular => Some(Err(Exhausted::All)),
+            None if self.has_candidates() && branches.doubt == Doubt::None && !branches.singular => {
+                Some(Err(Exhausted::All))
+            }
             None => self.clear_by_pushing(),
         }
     }
