@@ -1,0 +1,84 @@
+"""Which files a MuJoCo model names. They are read by MuJoCo, which opens whatever a model asks for."""
+
+from itertools import product
+from pathlib import Path
+from typing import Any
+from xml.parsers import expat
+
+from ._core import InvalidInputError
+from ._own_files import REMEDY, RefusedError, package_of, require_inside
+
+_FOLDERS = ("assetdir", "meshdir", "texturedir")  # of the compiler
+_INCLUDING = (".mjcf", ".urdf", ".xml")
+
+
+def require_own_files(model: str) -> None:
+    """Checks a file, or text, that is not trusted: it may name files of its folder or package, and no plugins.
+
+    Raises:
+        InvalidInputError: it names others. The message names the file that does, and the line.
+    """
+    if "<" in model:
+        _Files(Path("text").absolute()).check(model.encode(), "the text")
+        return
+    file = Path(model).absolute()
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return  # MuJoCo says it
+    _Files(file).check(content, model)
+
+
+class _Files:
+    """The files that a model names.
+
+    MuJoCo looks for them in several folders, by rules that depend on its version: none of the places may be outside.
+    """
+
+    def __init__(self, model: Path) -> None:
+        self._roots = (package_of(model), package_of(model.resolve()))
+        self._bases = {model.parent}
+        self._folders, self._names, self._read = {""}, set[str](), set[Path]()
+
+    def check(self, content: bytes, shown: str) -> None:
+        """Checks a file, and those that it includes; places are combined with those of all files before."""
+        parser = expat.ParserCreate("utf-8")  # whatever it says: MuJoCo takes it for that
+
+        def started(tag: str, attributes: dict[str, str]) -> None:
+            if tag == "plugin":
+                raise RefusedError(f"the plugin '{attributes.get('plugin', '')!s:.60}'")
+            for name, value in attributes.items():
+                if name in _FOLDERS:
+                    self._add(self._folders, value)
+                elif name.startswith("file"):
+                    self._add(self._names, value)
+
+        def declared(name: str, *_: Any) -> None:
+            raise RefusedError(f"the entity '{name:.60}'")
+
+        parser.StartElementHandler, parser.EntityDeclHandler = started, declared
+        try:
+            parser.Parse(content, True)
+        except RefusedError as error:
+            where = f"{shown:.200} line {parser.CurrentLineNumber}"
+            raise InvalidInputError(f"MuJoCo model: {where}: {error} {REMEDY}") from None
+        except expat.ExpatError as error:
+            raise InvalidInputError(f"MuJoCo cannot read the model: {shown:.200}: {error}") from None
+        self._check_included()
+
+    def _add(self, known: set[str], value: str) -> None:
+        known.add(value.replace("\\", "/"))
+        for place in self._places():
+            require_inside(self._roots, place, value)
+
+    def _places(self) -> list[Path]:
+        """Returns where files may be looked for, also with the folders cut off."""
+        names = self._names | {Path(name).name for name in self._names} | {""}
+        return [base / folder / name for base, folder, name in product(self._bases, self._folders, names)]
+
+    def _check_included(self) -> None:
+        for place in self._places():
+            if place.suffix.lower() in _INCLUDING and place.is_file() and place not in self._read:
+                self._read.add(place)
+                self._bases.add(place.parent)
+                self.check(place.read_bytes(), str(place))
