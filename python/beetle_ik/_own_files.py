@@ -32,6 +32,8 @@ def require_inside(folders: Iterable[Path], file: Path, shown: str) -> Path:
     """
     try:
         real = file.resolve()
+    except RecursionError:
+        raise
     except (OSError, RuntimeError, ValueError):  # links in a circle, a name that no file can have
         raise RefusedError(f"the file '{shown:.200}', which cannot be found,") from None
     if not any(real.is_relative_to(folder.resolve()) for folder in folders):

@@ -7,6 +7,8 @@ expressions   the values of expressions, found without Python's `eval`
 functions     the functions and constants that an expression may name
 budget        a bound on the work and the memory that a file asks for
 packages      `$(find package)`, and which files may be included
+
+The functions of xacro that are replaced are listed in `guard`.
 """
 
 from .expand import expand

@@ -1,4 +1,4 @@
-"""A copy of the package xacro for each call: its state and its functions are global, and belong to whoever imports it."""
+"""A copy of the package xacro for each call: its state and functions are global, and belong to whoever imports it."""
 
 import sys
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Values of expressions. Python's grammar is read, but nothing is given to Python's `eval`: what is not here is refused."""
+"""Values of expressions, in Python's grammar. Nothing is given to Python's `eval`; what is not here is refused."""
 
 import ast
 import operator
