@@ -1,5 +1,6 @@
 """Which files a MuJoCo model names. They are read by MuJoCo, which opens whatever a model asks for."""
 
+from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -49,9 +50,9 @@ class _Files:
                 raise RefusedError(f"the plugin '{attributes.get('plugin', '')!s:.60}'")
             for name, value in attributes.items():
                 if name in _FOLDERS:
-                    self._add(self._folders, value)
+                    self._add_folder(value.replace("\\", "/"))
                 elif name.startswith("file"):
-                    self._add(self._names, value)
+                    self._add_name(value.replace("\\", "/"))
 
         def declared(name: str, *_: Any) -> None:
             raise RefusedError(f"the entity '{name:.60}'")
@@ -64,21 +65,32 @@ class _Files:
             raise InvalidInputError(f"MuJoCo model: {where}: {error} {REMEDY}") from None
         except expat.ExpatError as error:
             raise InvalidInputError(f"MuJoCo cannot read the model: {shown:.200}: {error}") from None
-        self._check_included()
+        try:
+            self._check_included()
+        except RefusedError as error:
+            raise InvalidInputError(f"MuJoCo model: {shown:.200}: {error} {REMEDY}") from None
 
-    def _add(self, known: set[str], value: str) -> None:
-        known.add(value.replace("\\", "/"))
-        for place in self._places():
-            require_inside(self._roots, place, value)
+    def _add_folder(self, folder: str) -> None:
+        self._folders.add(folder)
+        self._require_inside(self._bases, [folder], {"", *self._names}, folder)
 
-    def _places(self) -> list[Path]:
-        """Returns where files may be looked for, also with the folders cut off."""
-        names = self._names | {Path(name).name for name in self._names} | {""}
-        return [base / folder / name for base, folder, name in product(self._bases, self._folders, names)]
+    def _add_name(self, name: str) -> None:
+        self._names |= {name, Path(name).name}  # the folders may be cut off
+        self._require_inside(self._bases, self._folders, (name, Path(name).name), name)
+
+    def _require_inside(
+        self, bases: Iterable[Path], folders: Iterable[str], names: Iterable[str], shown: str | None = None
+    ) -> None:
+        for base, folder, name in product(bases, folders, names):
+            require_inside(self._roots, base / folder / name, name if shown is None else shown)
 
     def _check_included(self) -> None:
-        for place in self._places():
-            if place.suffix.lower() in _INCLUDING and place.is_file() and place not in self._read:
+        including = [name for name in self._names if Path(name).suffix.lower() in _INCLUDING]
+        for base, folder, name in list(product(self._bases, self._folders, including)):
+            place = base / folder / name
+            if place.is_file() and place not in self._read:
                 self._read.add(place)
-                self._bases.add(place.parent)
+                if place.parent not in self._bases:
+                    self._bases.add(place.parent)
+                    self._require_inside([place.parent], self._folders, self._names)
                 self.check(place.read_bytes(), str(place))

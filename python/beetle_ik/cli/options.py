@@ -36,6 +36,12 @@ TipLinks = Annotated[
 BaseLink = Annotated[
     str | None, typer.Option("--base", help="Base link, which stays fixed; default: the root.", rich_help_panel=_ROBOT)
 ]
+Trusted = Annotated[
+    bool,
+    typer.Option(
+        "--trusted", help="A xacro or MJCF file of your own: it may execute code, and read any file.", rich_help_panel=_ROBOT
+    ),
+]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Velocity = Annotated[
