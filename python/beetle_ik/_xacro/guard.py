@@ -10,6 +10,7 @@ from functools import partial, wraps
 from types import ModuleType
 from typing import Any
 from xml.parsers import expat
+from xml.sax.saxutils import escape
 
 from .._core import BeetleIkError
 from .._own_files import RefusedError
@@ -150,7 +151,8 @@ class Guard:
             lines = self._packages.require_open(files[-1]).read_text(errors="replace").splitlines()
         except (OSError, RefusedError):
             lines = []
-        line = next((number for number, line in enumerate(lines, 1) if text and text.strip() in line), None)
+        shown = (text.strip(), escape(text.strip()))
+        line = next((i for i, line in enumerate(lines, 1) if text and any(each in line for each in shown)), None)
         if line is not None:
             where += f"line {line}: "
         return f"{where}'{text:.100}': " if text else where

@@ -75,7 +75,7 @@ class Incoming:
         """Returns a control of all pages, or of one; None if there is none."""
         if self.server is None:
             return None
-        owners = (self.server, *self.server.get_clients().values())
+        owners: tuple[Any, ...] = (self.server, *self.server.get_clients().values())
         found = (owner.gui._gui_input_handle_from_uuid.get(uuid) for owner in owners)
         return next((handle for handle in found if handle is not None), None)
 

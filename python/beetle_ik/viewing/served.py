@@ -6,6 +6,7 @@ import logging
 import threading
 from contextlib import contextmanager
 from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from .._core import BeetleIkError
@@ -87,10 +88,9 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
 @contextmanager
 def _replaced_serve(host: str, port: int, serve: Callable[..., Any]) -> Iterator[list[bool]]:
     """Has viser call `serve(original, ...)` at this address, and serve others as ever. Yields whether it was called."""
-    from viser.infra import _infra
-
+    infra: Any = import_module("viser.infra._infra")
     used: list[bool] = []
-    websockets: Any = _infra.websockets
+    websockets = infra.websockets
     original = websockets.asyncio.server.serve
 
     def chosen(*arguments: Any, **options: Any) -> Any:
@@ -101,11 +101,11 @@ def _replaced_serve(host: str, port: int, serve: Callable[..., Any]) -> Iterator
 
     with _replacing:
         server = _Replacing(websockets.asyncio.server, serve=chosen)
-        _infra.websockets = _Replacing(websockets, asyncio=_Replacing(websockets.asyncio, server=server))
+        infra.websockets = _Replacing(websockets, asyncio=_Replacing(websockets.asyncio, server=server))
         try:
             yield used
         finally:
-            _infra.websockets = websockets
+            infra.websockets = websockets
 
 
 class _Replacing:
