@@ -32,5 +32,5 @@ def copied() -> Iterator[ModuleType]:
         spec.loader.exec_module(module)
         yield module
     finally:
-        for loaded in [each for each in sys.modules if each.split(".")[0] == name]:
+        for loaded in [each for each in list(sys.modules) if each.split(".")[0] == name]:
             del sys.modules[loaded]
