@@ -110,6 +110,12 @@ TOO_MUCH = {
     "'a' * 10**10": "so much work or memory",
     "[0] * 10**10": "so much work or memory",
     "len([[0] * 10**4] * 10**4)": "so much work or memory",
+    "int('f' * 20000, 16)": "a number that is too large",
+    "list(map(int, ['f' * 20000], [16]))": "a number that is too large",
+    "sorted([99999] * 1000, key=range)": "a function as an argument",
+    "max([99999] * 99999, key=range)": "a function as an argument",
+    "map(range, [99999] * 99999)": "map() of another function than those of numbers and texts",
+    "map(map, [float], [[1]])": "map() of another function than those of numbers and texts",
     "range(10**12)": "a range of more than 100000 numbers",
     "range(-10**300, 10**300)": "a range of more than 100000 numbers",
     "round(1, -10**9)": "rounding to more than 100 digits",
@@ -318,7 +324,7 @@ DESCRIPTION = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="prefix" value="$(arg prefix)"/>
   <xacro:include filename="$(find arm_description)/urdf/inc/common.xacro"/>
   <xacro:include filename="inc/lim*.xacro" ns="limits"/>
-  <xacro:macro name="segment" params="name parent length:=0.1 mass:=${length * density} axis:='0 0 1' collide:=true
+  <xacro:macro name="segment" params="name parent length:=0.1 density:=${density} axis:='0 0 1' collide:=true
                                       *origin **extra">
     <joint name="${prefix}${name}_joint" type="revolute">
       <xacro:insert_block name="origin"/>
@@ -335,6 +341,7 @@ DESCRIPTION = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
           <geometry><cylinder radius="${0.5 * thickness}" length="${length}"/></geometry>
         </collision>
       </xacro:if>
+      <xacro:property name="mass" value="${length * density}"/>
       <xacro:unless value="${mass &lt; 0}"><xacro:insert_block name="extra"/></xacro:unless>
     </link>
   </xacro:macro>

@@ -42,6 +42,8 @@ class Budget:
             total += _ITEM
             if isinstance(each, str):
                 total += len(each)
+            elif isinstance(each, int) and each.bit_length() > 2 * _BITS:  # its quotients take long
+                raise RefusedError("a number that is too large")
             elif isinstance(each, list | tuple):
                 waiting.extend(each)
             elif type(each) is dict:  # not a scope of xacro, which is not copied

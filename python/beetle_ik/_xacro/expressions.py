@@ -7,7 +7,7 @@ from typing import Any
 
 from .._own_files import RefusedError
 from .budget import Budget
-from .functions import CALLABLE, Reads
+from .functions import CALLABLE, Reads, mapped
 
 _LONGEST = 20_000  # characters
 _EXPRESSION, _PARSED, _NODE = 50, 2, 10  # steps: of an expression, a character and a node
@@ -92,7 +92,7 @@ class Expressions:
         self._budget.spend(_NODE)
         match node:
             case ast.Constant(value=value) if value is None or isinstance(value, int | float | str):
-                return value
+                return self._budget.keep(value)
             case ast.Name(id=name):
                 return _named(name, names)
             case ast.Attribute(value=owner, attr=name):
@@ -194,6 +194,9 @@ class Expressions:
             if keyword.arg is None:
                 raise RefusedError("an unpacking **")
             options[keyword.arg] = self._of(keyword.value, names)
+        passed = arguments[function is mapped :] + list(options.values())
+        if any(callable(each) for each in passed):  # it would be called for each item, out of the budget
+            raise RefusedError("a function as an argument")
         self._budget.keep((arguments, options))
         return self._budget.keep(function(*arguments, **options))
 

@@ -61,6 +61,8 @@ class Incoming:
     def _can_be_set(self, kind: str, fields: dict[str, Any]) -> bool:
         if kind == "TransformControlsUpdateMessage":
             return math.hypot(*fields["wxyz"]) > 1e-3  # that of a rotation is 1
+        if kind in ("GuiFormDirtyMessage", "GuiFormSubmitMessage"):  # viser keeps them for later pages
+            return any(fields["uuid"] in owner.gui._container_handle_from_uuid for owner in self._owners())
         if kind != "GuiUpdateMessage":
             return True
         handle = self._control(fields["uuid"])
@@ -73,11 +75,12 @@ class Incoming:
 
     def _control(self, uuid: str) -> Any:
         """Returns a control of all pages, or of one; None if there is none."""
-        if self.server is None:
-            return None
-        owners: tuple[Any, ...] = (self.server, *self.server.get_clients().values())
-        found = (owner.gui._gui_input_handle_from_uuid.get(uuid) for owner in owners)
+        found = (owner.gui._gui_input_handle_from_uuid.get(uuid) for owner in self._owners())
         return next((handle for handle in found if handle is not None), None)
+
+    def _owners(self) -> list[Any]:
+        """Returns what has controls: the server, for all pages, and each page."""
+        return [] if self.server is None else [self.server, *self.server.get_clients().values()]
 
 
 def _is_value(handle: Any, value: Any) -> bool:
