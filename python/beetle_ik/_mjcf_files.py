@@ -10,7 +10,8 @@ from ._core import InvalidInputError
 from ._own_files import REMEDY, RefusedError, package_of, require_inside
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir")  # of the compiler
-_INCLUDING = (".mjcf", ".urdf", ".xml")
+_BINARY = ("flex", "flexcomp", "hfield", "mesh", "skin", "texture")
+"""Elements whose files are no XML; those of all others may name files in turn."""
 
 
 def require_own_files(model: str) -> None:
@@ -39,20 +40,21 @@ class _Files:
     def __init__(self, model: Path) -> None:
         self._roots = (package_of(model), package_of(model.resolve()))
         self._bases = {model.parent}
-        self._folders, self._names, self._read = {""}, set[str](), set[Path]()
+        self._folders, self._names, self._including, self._read = {""}, set[str](), set[str](), set[Path]()
 
     def check(self, content: bytes, shown: str) -> None:
         """Checks a file, and those that it includes; places are combined with those of all files before."""
         parser = expat.ParserCreate("utf-8")  # whatever it says: MuJoCo takes it for that
 
         def started(tag: str, attributes: dict[str, str]) -> None:
-            if tag == "plugin":
+            if tag.lower() == "plugin":
                 raise RefusedError(f"the plugin '{attributes.get('plugin', '')!s:.60}'")
             for name, value in attributes.items():
-                if name in _FOLDERS:
+                if name.lower() in _FOLDERS:
                     self._add_folder(value.replace("\\", "/"))
-                elif name.startswith("file"):
+                elif name.lower().startswith("file"):
                     self._add_name(value.replace("\\", "/"))
+                    self._including |= set() if tag.lower() in _BINARY else {value.replace("\\", "/")}
 
         def declared(name: str, *_: Any) -> None:
             raise RefusedError(f"the entity '{name:.60}'")
@@ -85,8 +87,7 @@ class _Files:
             require_inside(self._roots, base / folder / name, name if shown is None else shown)
 
     def _check_included(self) -> None:
-        including = [name for name in self._names if Path(name).suffix.lower() in _INCLUDING]
-        for base, folder, name in list(product(self._bases, self._folders, including)):
+        for base, folder, name in list(product(self._bases, self._folders, self._including)):
             place = base / folder / name
             if place.is_file() and place not in self._read:
                 self._read.add(place)

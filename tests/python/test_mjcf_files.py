@@ -28,6 +28,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "out.xml").write_text("<mujoco><asset/></mujoco>")
     (home / "sub" / "mesh.xml").write_text('<mujoco><asset><mesh name="m" file="m.obj"/></asset></mujoco>')
     (home / "sub" / "out.xml").write_text('<mujoco><asset><mesh name="m" file="../../out.obj"/></asset></mujoco>')
+    (home / "sub" / "out.txt").write_text((home / "sub" / "out.xml").read_text())
     (home / "sub" / "dir.xml").write_text('<mujoco><compiler meshdir="../.."/></mujoco>')
     (home / "assets" / "link.obj").symlink_to(tmp_path / "out.obj")
     monkeypatch.chdir(home)
@@ -76,6 +77,8 @@ FOREIGN = {
     "included absolute": ('<include file="/etc/passwd"/>', "/etc/passwd"),
     "in an included file": ('<include file="sub/out.xml"/>', "../../out.obj"),
     "folder of an included file": (mesh("m.obj") + '<include file="sub/dir.xml"/>', "../.."),
+    "include of any name": ('<include file="sub/out.txt"/>', "../../out.obj"),
+    "other letters": ('<INCLUDE FILE="../out.xml"/>', "../out.xml"),
     "link": (mesh("link.obj", '<compiler meshdir="assets"/>'), "link.obj"),
 }
 

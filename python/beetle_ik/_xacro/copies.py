@@ -10,19 +10,23 @@ from types import ModuleType
 _numbers = count()
 
 
+class NotInstalledError(Exception):
+    """There is no package xacro."""
+
+
 @contextmanager
 def copied() -> Iterator[ModuleType]:
     """Loads the package xacro under another name, and forgets it afterwards.
 
     Raises:
-        ModuleNotFoundError: it is not installed.
+        NotInstalledError: it is not installed.
     """
     try:
         found = find_spec("xacro")
     except ValueError:  # there is something else of that name
         found = None
     if found is None or found.origin is None:
-        raise ModuleNotFoundError("No module named 'xacro'")
+        raise NotInstalledError
     name = f"_beetle_ik_xacro_{next(_numbers)}"
     spec = spec_from_file_location(name, found.origin, submodule_search_locations=found.submodule_search_locations)
     assert spec is not None, "found where a package is"

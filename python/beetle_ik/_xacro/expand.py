@@ -7,7 +7,7 @@ from typing import Any
 
 from .._core import BeetleIkError, UrdfError
 from .._own_files import REMEDY
-from .copies import copied
+from .copies import NotInstalledError, copied
 from .guard import Guard, found
 from .packages import Packages
 
@@ -27,9 +27,7 @@ def expand(path: str, package_dirs: Sequence[str], trusted: bool) -> str:
             else:
                 guard = Guard(xacro, packages)
             text = str(xacro.process_file(path).toxml())
-    except ModuleNotFoundError as error:
-        if error.name not in (None, "xacro"):
-            raise
+    except NotInstalledError as error:
         urdf = path.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
         raise UrdfError(
             f"URDF: '{path}' is a xacro file: pip install 'beetle-ik[robots]', or run `xacro {path} > {urdf}` and load "
