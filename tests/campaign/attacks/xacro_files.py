@@ -66,7 +66,7 @@ class Xacro(Attack):
 
     def program(self, case: Case) -> str:
         inner = case["place"].format(quoteattr(case["expression"])) if case["place"] else ""
-        x = "0" if case["place"] else f"${{{case['expression']}}}"
+        x = "0" if case["place"] else f"${{0.0 + ({case['expression']})}}"  # truth is a number too
         text = (
             f"<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>{inner}<link name='a'/><link name='b'/>"
             f"<joint name='j' type='continuous'><origin xyz={quoteattr(f'{x} 0 0')}/><parent link='a'/>"
