@@ -94,6 +94,7 @@ class Robot:
         srdf: str | os.PathLike[str] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
         package_dirs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
+        trusted: bool = False,
     ) -> Robot:
         """Makes a robot from a URDF file or a string of XML. Links and joints beside the chain are kept: see `all_link_names` and
         `held_joints`.
@@ -113,6 +114,8 @@ class Robot:
                 their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
             package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
                 AMENT_PREFIX_PATH, and the folders above the file.
+            trusted: whether a xacro file may do all that xacro can: execute expressions of any kind, read the environment and
+                any file. False: it may come from anyone; what it may do is on the page on robots, and all else is refused.
 
         Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
         `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
@@ -129,6 +132,7 @@ class Robot:
         tip: str | Sequence[str] | None = None,
         hold: Mapping[str, float] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = "primitives",
+        trusted: bool = False,
     ) -> Robot:
         """Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
 
@@ -137,6 +141,7 @@ class Robot:
             base: body whose frame is the reference frame; None: "world".
             tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
             hold, collision: as in `from_urdf`.
+            trusted: whether the model may name files outside its folder, and plugins. False: it may come from anyone.
 
         Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
         follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
@@ -156,6 +161,7 @@ class Robot:
         hold: Mapping[str, float] | None = None,
         srdf: str | os.PathLike[str] | None = None,
         collision: Literal["primitives", "fit", "hulls"] | None = None,
+        trusted: bool = False,
     ) -> Robot:
         """Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
         downloads it at first use. Needs the extra "robots".
@@ -164,6 +170,7 @@ class Robot:
             name: a name of robot_descriptions.
             base, tip, hold: as in `from_urdf`.
             srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
+            trusted: as in `from_urdf` and `from_mjcf`.
 
         Raises:
             BeetleIkError: robot_descriptions is not installed.

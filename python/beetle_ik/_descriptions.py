@@ -10,7 +10,7 @@ from ._core import InvalidInputError, Robot, UnknownNameError
 from ._needs import library
 
 
-def robot(name: str, options: Mapping[str, Any]) -> Robot:
+def robot(name: str, options: Mapping[str, Any], trusted: bool) -> Robot:
     """Returns `Robot.from_description`."""
     require_text("name", name)
     package = library("robot_descriptions", "robot_descriptions", f"the robot named '{name:.60}'", extra="robots")
@@ -24,13 +24,13 @@ def robot(name: str, options: Mapping[str, Any]) -> Robot:
         hint = f"; did you mean {' or '.join(near)}?" if near else f"; it has {len(known)} others"
         raise UnknownNameError(f"robot_descriptions has no robot named '{name:.60}'{hint}")
     if hasattr(described, "URDF_PATH"):
-        return Robot.from_urdf(described.URDF_PATH, **options)
+        return Robot.from_urdf(described.URDF_PATH, trusted=trusted, **options)
     if hasattr(described, "XACRO_PATH"):
-        return Robot.from_urdf(described.XACRO_PATH, **options)
+        return Robot.from_urdf(described.XACRO_PATH, trusted=trusted, **options)
     if hasattr(described, "MJCF_PATH"):
         if "srdf" in options:
             raise InvalidInputError(f"the description '{name}' is a MuJoCo model, which takes no srdf=")
-        return Robot.from_mjcf(described.MJCF_PATH, **options)
+        return Robot.from_mjcf(described.MJCF_PATH, trusted=trusted, **options)
     raise InvalidInputError(f"the description '{name}' is neither URDF nor MJCF")
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ._arguments import require, require_text
 from ._core import InvalidInputError, Robot, UnknownNameError, UrdfError, pose
+from ._mjcf_files import require_own_files
 from ._needs import library
 from ._text import listed
 
@@ -28,10 +29,11 @@ def robot(
     tips: list[str],
     hold: Mapping[str, float] | None,
     collision: Literal["primitives", "fit", "hulls"] | None,
+    trusted: bool,
 ) -> Robot:
     """Returns `Robot.from_mjcf` of a file, a text or a compiled model."""
     mujoco = library("mujoco", "mujoco", "a MuJoCo model", extra="sim")
-    described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model)
+    described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model, trusted)
     reader = _Reader(mujoco, described)
     for link in (base, *tips):
         reader.require_known(link)
@@ -49,12 +51,14 @@ def robot(
     return made
 
 
-def _read(mujoco: Any, model: str | os.PathLike[str]) -> Any:
+def _read(mujoco: Any, model: str | os.PathLike[str], trusted: bool) -> Any:
     require("model", model, mujoco.MjModel, str, os.PathLike)
     text = os.fspath(model)
     if not isinstance(text, str):
         raise InvalidInputError(f"model must be a path of text, got {text!r:.60}")
     require_text("model", text)
+    if not trusted:
+        require_own_files(text)
     try:
         return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
     except ValueError as error:

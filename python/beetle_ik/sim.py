@@ -88,7 +88,13 @@ class MujocoPlant:
 
     @classmethod
     def from_urdf(
-        cls, path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None, **options: Any
+        cls,
+        path_or_xml: str | os.PathLike[str],
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        trusted: bool = False,
+        **options: Any,
     ) -> MujocoPlant:
         """Makes a plant from a URDF; meshes are ignored.
 
@@ -96,9 +102,10 @@ class MujocoPlant:
             path_or_xml: file, or text that contains "<".
             base: link whose frame is the reference frame; None takes the root.
             tip: link at the end of the chain; None takes the only leaf.
+            trusted: whether a xacro file may execute code and read any file.
             **options: the options of the class.
         """
-        return cls(Robot.from_urdf(path_or_xml, base=base, tip=tip), **options)
+        return cls(Robot.from_urdf(path_or_xml, base=base, tip=tip, trusted=trusted), **options)
 
     def reset(self, q: ArrayLike) -> None:
         """Places the arm at rest at `q` (n,) and lets it settle under gravity."""

@@ -13,8 +13,8 @@ CORPUS = Path(__file__).parents[1] / "corpus" / "map" / "map.npz"
 @pytest.mark.parametrize(
     ("name", "array", "problem"),
     [
-        ("reachability_map", np.zeros(2), "a map of format [0. 0.]; this library reads format 1: compute it again"),
-        ("reachability_map", np.array(["1"]), "a map of format ['1']; this library reads format 1: compute it again"),
+        ("reachability_map", np.zeros(2), "a map of format [0. 0.]; this library reads format 2: compute it again"),
+        ("reachability_map", np.array(["1"]), "a map of format ['1']; this library reads format 2: compute it again"),
         (
             "manipulability",
             np.zeros(5),

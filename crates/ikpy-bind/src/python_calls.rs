@@ -40,9 +40,9 @@ pub fn robot<'py>(
     call(py, &format!("beetle_ik.{module}"), "robot", arguments)
 }
 
-/// Calls `beetle_ik._xacro.expand(path)`.
-pub fn expand_xacro(py: Python<'_>, path: &str) -> PyResult<String> {
-    call(py, "beetle_ik._xacro", "expand", (path,))?.extract()
+/// Calls `beetle_ik._xacro.expand(path, package_dirs, trusted)`.
+pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted: bool) -> PyResult<String> {
+    call(py, "beetle_ik._xacro", "expand", (path, package_dirs, trusted))?.extract()
 }
 
 /// Logs at level INFO under "beetle_ik", for calls that take long.

@@ -3,7 +3,7 @@
 import hashlib
 import io
 import pickle
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral, Real
 
 import numpy as np
@@ -31,6 +31,15 @@ def digest(arrays: Sequence[NDArray[np.generic]]) -> NDArray[np.uint8]:
     for array in arrays:
         seen.update(f"{array.dtype.str}{array.shape}".encode())
         seen.update(np.ascontiguousarray(array).data)
+    return np.frombuffer(seen.digest(), np.uint8)
+
+
+def sealed(job: bytes, number: int, arrays: Mapping[str, NDArray[np.generic]]) -> NDArray[np.uint8]:
+    """Returns the SHA-256 of named arrays of a job, together with the job and their number in it (32,)."""
+    names = sorted(arrays)
+    seen = hashlib.sha256(hashlib.sha256(job).digest())
+    seen.update(f"{number} {names}".encode())
+    seen.update(digest([arrays[name] for name in names]).tobytes())
     return np.frombuffer(seen.digest(), np.uint8)
 
 

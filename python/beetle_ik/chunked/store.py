@@ -1,13 +1,14 @@
 """The results of a job on disk: a zarr group with one array per column, written chunk by chunk.
 
-The array `chunks` holds two hashes for each chunk: of what it was computed from, and of its results. They are written
-last, so a chunk whose results do not match them is not finished. Nothing in the store depends on time or on who
-computed it: two stores of one job are equal byte for byte.
+The array `chunks` holds two hashes for each chunk: of what it was computed from, and of its results, its number and the
+job. They are written last, so a chunk whose results do not match them is not finished, or is of another place or store.
+Nothing in the store depends on time or on who computed it: two stores of one job are equal byte for byte.
 """
 
 from __future__ import annotations
 
 import errno
+import json
 import os
 from collections.abc import Mapping
 from math import prod
@@ -16,19 +17,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .._core import InvalidInputError
+from .._core import BeetleIkError, InvalidInputError
 from .._needs import library
 from .._text import listed
-from .fingerprint import digest
+from .fingerprint import digest, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Arrays = Mapping[str, NDArray[np.generic]]
 
-_FORMAT = 1
-_ATTRIBUTE = "beetle_ik"
-_FINISHED = "chunks"
+FORMAT = 2
+ATTRIBUTE = "beetle_ik"
+CONTENT = "content"
+HASHES = (2, 32)  # of a chunk
+FINISHED = "chunks"
 _ENCODING = {"name": "default", "separator": "."}  # files, not a folder for each chunk
 
 
@@ -84,9 +87,10 @@ class Store:
         if not (folder / "zarr.json").exists():
             what = "no store here: the folder must be on a file system that all workers share, under the same path"
             raise FileNotFoundError(errno.ENOENT, what, str(folder))
-        self.group = _zarr().open_group(store=folder, mode="r+", zarr_format=3)
+        self.group = zarr_library().open_group(store=folder, mode="r+", zarr_format=3)
         self._folder = folder
         self._layout = layout
+        self._job = job(self.group.attrs.asdict())
         self._opened: dict[str, Any] = {}
 
     @classmethod
@@ -97,8 +101,8 @@ class Store:
             BeetleIkError: zarr is not installed.
             InvalidInputError: the folder cannot be written, holds something else, or the store of another job.
         """
-        zarr = _zarr()
-        wanted = {"format": _FORMAT, **identity}
+        zarr = zarr_library()
+        wanted = {"format": FORMAT, **identity}
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if (folder / "zarr.json").exists():
@@ -106,11 +110,18 @@ class Store:
             else:
                 _require_empty(folder)
                 # Written first, in one file: an empty store of this job continues like any other.
-                zarr.create_group(store=folder, attributes={_ATTRIBUTE: wanted}, zarr_format=3)
+                attributes = {ATTRIBUTE: wanted, CONTENT: content(layout, attached)}
+                zarr.create_group(store=folder, attributes=attributes, zarr_format=3)
             store = cls(folder, layout)
+            if store.group.attrs.asdict().get(CONTENT) != content(layout, attached):
+                raise ValueError("what it says of its arrays is of another store")
             store._create_arrays(attached)
         except OSError as error:
             raise InvalidInputError(f"store: folder '{folder}' cannot be written: {error.strerror}") from error
+        except BeetleIkError:
+            raise
+        except Exception as error:  # zarr raises many kinds
+            raise InvalidInputError(f"store: '{folder}' is damaged: {error!s:.200}: give another folder") from error
         return store
 
     def holds(self, chunk: int, inputs: NDArray[np.uint8]) -> bool:
@@ -119,13 +130,13 @@ class Store:
         Raises:
             InvalidInputError: it was computed from something else.
         """
-        hashes = self._read(_FINISHED, (slice(chunk, chunk + 1),))
+        hashes = self._read(FINISHED, (slice(chunk, chunk + 1),))
         if hashes is None or not hashes.any():
             return False
         region = self._layout.region(chunk)
-        columns = [self._read(name, region) for name in self._layout.columns]
-        found = [column for column in columns if column is not None]
-        if len(found) < len(columns) or not np.array_equal(digest(found), hashes[0, 1]):
+        columns = {name: self._read(name, region) for name in self._layout.columns}
+        found = {name: column for name, column in columns.items() if column is not None}
+        if len(found) < len(columns) or not np.array_equal(sealed(self._job, chunk, found), hashes[0, 1]):
             return False
         if not np.array_equal(hashes[0, 0], inputs):
             where = f"rows {region[0].start} to {region[0].stop - 1} of the store '{self._folder}'"
@@ -140,12 +151,12 @@ class Store:
         """
         region = self._layout.region(chunk)
         columns = {name: np.ascontiguousarray(arrays[name]) for name in self._layout.columns}
-        hashes = np.stack([inputs, digest(list(columns.values()))])
+        hashes = np.stack([inputs, sealed(self._job, chunk, columns)])
         failure = None
         try:
             for name, column in columns.items():
                 self._array(name)[region] = column
-            self._array(_FINISHED)[chunk : chunk + 1] = hashes[None]
+            self._array(FINISHED)[chunk : chunk + 1] = hashes[None]
         except OSError as error:
             failure = error
         if failure is not None:  # raised here, without zarr's own as its context: not all of them can be sent by dask
@@ -168,12 +179,15 @@ class Store:
         for name, (dtype, shape) in layout.columns.items():
             whole, chunk = (*layout.shape, *shape), (*layout.chunk_shape, *shape)
             self._create(name, whole, chunk, dtype, _absent(dtype))
-        self._create(_FINISHED, (layout.chunks, 2, 32), (1, 2, 32), np.dtype(np.uint8), 0)
+        self._create(FINISHED, (layout.chunks, *HASHES), (1, *HASHES), np.dtype(np.uint8), 0)
 
     def _create(
         self, name: str, shape: tuple[int, ...], chunks: tuple[int, ...], dtype: np.dtype[Any], fill: object
     ) -> None:
         if name in self.group:
+            there = self.group[name]
+            if (there.shape, there.dtype) != (shape, dtype):
+                raise ValueError(f"array '{name}' is of another size or type")
             return
         checksum = library("zarr.codecs", "zarr", "store=", extra="distributed").Crc32cCodec()
         self.group.create_array(
@@ -201,31 +215,23 @@ class Store:
         return values
 
 
-def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
-    """Reads all arrays of a finished store of `call`.
-
-    Raises:
-        BeetleIkError: zarr is not installed.
-        InvalidInputError: the folder is not such a store, or is not finished or damaged. Names it.
-    """
-    there = _description(folder)
-    if there is None or there.get("call") != call:
-        raise InvalidInputError(f"{folder}: not a store of {call}")
-    if there.get("format") != _FORMAT:
-        raise InvalidInputError(f"{folder}: a store of format {there.get('format')}; this library reads {_FORMAT}")
-    group = _zarr().open_group(store=folder, mode="r", zarr_format=3)
-    try:
-        arrays: dict[str, NDArray[Any]] = {name: np.asarray(array[:]) for name, array in sorted(group.arrays())}
-        finished = np.asarray(arrays.pop(_FINISHED).any(axis=(1, 2)))
-    except (KeyError, ValueError) as error:
-        raise InvalidInputError(f"{folder}: damaged store: {error!s:.200}; the call that made it repairs it") from error
-    if not finished.all():
-        done = f"{np.count_nonzero(finished)} of {len(finished)} chunks are done"
-        raise InvalidInputError(f"{folder}: {done}: the call that began the store goes on")
-    return arrays
+def content(layout: Layout, attached: Arrays) -> dict[str, Any]:
+    """Returns what a store says of its arrays."""
+    return {
+        "columns": sorted(layout.columns),
+        "shape": list(layout.shape),
+        "chunk_shape": list(layout.chunk_shape),
+        "attached": {name: digest([array]).tobytes().hex() for name, array in sorted(attached.items())},
+    }
 
 
-def _zarr() -> Any:
+def job(attributes: Mapping[str, Any]) -> bytes:
+    """Returns what the results of a store depend on, and their layout."""
+    return json.dumps([attributes.get(ATTRIBUTE), attributes.get(CONTENT)], sort_keys=True).encode()
+
+
+def zarr_library() -> Any:
+    """Returns zarr, which is imported when it is needed."""
     return library("zarr", "zarr", "store=", extra="distributed")
 
 
@@ -243,17 +249,17 @@ def _require_empty(folder: Path) -> None:
         raise InvalidInputError(f"store: folder '{folder}' holds other files: {listed(others)}: give another folder")
 
 
-def _description(folder: Path) -> dict[str, Any] | None:
+def description(folder: Path) -> dict[str, Any] | None:
     """Returns what a store says of its job; None where there is no store of this library."""
     try:
-        there = _zarr().open_group(store=folder, mode="r", zarr_format=3).attrs.asdict().get(_ATTRIBUTE)
+        there = zarr_library().open_group(store=folder, mode="r", zarr_format=3).attrs.asdict().get(ATTRIBUTE)
     except (ValueError, KeyError, TypeError, FileNotFoundError):
         return None
     return there if isinstance(there, dict) else None
 
 
 def _require_same_job(folder: Path, wanted: Mapping[str, Any]) -> None:
-    there = _description(folder)
+    there = description(folder)
     if there is None:
         raise InvalidInputError(f"store: folder '{folder}' is not a store of beetle-ik: give another folder")
     names = [*there, *(name for name in wanted if name not in there)]

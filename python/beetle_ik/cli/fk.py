@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from .options import AsJson, BaseLink, RobotName, TipLink, UrdfFile, load_robot, numbers
+from .options import AsJson, BaseLink, RobotName, TipLink, Trusted, UrdfFile, load_robot, numbers
 from .show import listed, print_json, print_pairs
 
 
@@ -15,10 +15,11 @@ def fk(
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Forward kinematics: the pose of the tip in the frame of the base."""
-    arm = load_robot(robot, urdf, base, tip)
+    arm = load_robot(robot, urdf, base, tip, trusted=trusted)
     pose = arm.fk(numbers("--q", q))
     if as_json:
         print_json({"robot": arm.name, "tip": arm.link_names[-1], "pose": pose})

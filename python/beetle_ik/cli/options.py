@@ -36,6 +36,14 @@ TipLinks = Annotated[
 BaseLink = Annotated[
     str | None, typer.Option("--base", help="Base link, which stays fixed; default: the root.", rich_help_panel=_ROBOT)
 ]
+Trusted = Annotated[
+    bool,
+    typer.Option(
+        "--trusted",
+        help="The xacro or MJCF file is your own: it may execute code, and read any file.",
+        rich_help_panel=_ROBOT,
+    ),
+]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Velocity = Annotated[
@@ -110,18 +118,24 @@ def make_solver(name: SolverName) -> "_Single":
 
 
 def load_robot(
-    name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None, link_radius: float | None = None
+    name: str | None,
+    urdf: Path | None,
+    base: str | None,
+    tip: str | list[str] | None,
+    link_radius: float | None = None,
+    *,
+    trusted: bool = False,
 ) -> Robot:
     """Loads the built-in robot or the one in the URDF file, whichever was given; with capsules of `link_radius`."""
-    robot = _load(name, urdf, base, tip)
+    robot = _load(name, urdf, base, tip, trusted)
     return robot if link_radius is None else robot.with_capsules(radius=link_radius)
 
 
-def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None) -> Robot:
+def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None, trusted: bool) -> Robot:
     if urdf is not None:
         if name is not None:
             raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
-        return Robot.from_urdf(urdf, base=base, tip=tip or None)
+        return Robot.from_urdf(urdf, base=base, tip=tip or None, trusted=trusted)
     if name is None:
         raise InvalidInputError(
             "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE"

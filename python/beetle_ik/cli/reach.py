@@ -8,7 +8,7 @@ import typer
 
 from .. import InvalidInputError, ReachabilityMap, Scene, reachability
 from .files import can_draw
-from .options import AsJson, BaseLink, LinkRadius, Margin, RobotName, SceneFile, TipLink, UrdfFile, load_robot
+from .options import AsJson, BaseLink, LinkRadius, Margin, RobotName, SceneFile, TipLink, Trusted, UrdfFile, load_robot
 from .show import print_json, print_pairs
 
 
@@ -30,12 +30,13 @@ def reach(
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Reachability map: the share of orientations that an arm reaches in each voxel of space."""
     if picture is not None and not can_draw():
         raise InvalidInputError("--picture needs matplotlib: pip install 'beetle-ik[plot]'")
-    arm = load_robot(robot, urdf, base, tip, link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     found = reachability(
         arm,
         voxel=voxel,

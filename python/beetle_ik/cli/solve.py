@@ -18,6 +18,7 @@ from .options import (
     SolverName,
     Start,
     TipLinks,
+    Trusted,
     UrdfFile,
     load_robot,
     make_solver,
@@ -52,10 +53,11 @@ def solve(
     urdf: UrdfFile = None,
     tip: TipLinks = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Inverse kinematics: joint positions for a position or a pose of the tip."""
-    arm = load_robot(robot, urdf, base, tip, link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     wanted = _wanted(position, rpy, target)
     options: dict[str, Any] = {
         "start": None if start is None else numbers("--start", start),

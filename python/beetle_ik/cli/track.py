@@ -23,6 +23,7 @@ from .options import (
     SolverName,
     Start,
     TipLink,
+    Trusted,
     UrdfFile,
     Velocity,
     limit,
@@ -114,10 +115,11 @@ def track(
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Follow a path with the tip, within the joint limits."""
-    arm = load_robot(robot, urdf, base, tip, link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     triples = {"center": center, "a": a, "b": b}
     others = {
         "diameter": diameter,

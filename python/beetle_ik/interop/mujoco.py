@@ -10,7 +10,11 @@ if TYPE_CHECKING:
 
 
 def from_mujoco(
-    model: "mujoco.MjModel | str | os.PathLike[str]", *, base: str | None = None, tip: str | None = None
+    model: "mujoco.MjModel | str | os.PathLike[str]",
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    trusted: bool = False,
 ) -> Robot:
     """Makes a robot from a MuJoCo model: `Robot.from_mjcf` under the name that goes with the other conversions."""
-    return Robot.from_mjcf(model, base=base, tip=tip)
+    return Robot.from_mjcf(model, base=base, tip=tip, trusted=trusted)

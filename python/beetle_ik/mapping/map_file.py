@@ -11,23 +11,27 @@ import numpy as np
 from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
 from .._files import path_of, whole_file
-from ..chunked.store import read_finished
+from ..chunked.fingerprint import sealed
+from ..chunked.finished import read_finished
 from ..export import read_arrays
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FORMAT = 1
+FORMAT = 2
 """Version of the file; a file of another version is refused."""
-
 
 QUALITY = ("manipulability", "clearance")
 """What may be measured beside the bits."""
 
+_SEAL = "seal"
+_SEALED = ("robot", "grid", "bits", *QUALITY)
+
 
 def write(file: str | os.PathLike[str], robot: Robot, grid: MapGrid, results: Mapping[str, Any]) -> None:
     """Writes a map, of which `results` are the arrays that there are; the file appears complete or not at all."""
-    arrays: dict[str, Any] = {"reachability_map": np.array(FORMAT), **attached(robot, grid), **results}
+    kept = {**attached(robot, grid), **results}
+    arrays: dict[str, Any] = {"reachability_map": np.array(FORMAT), **kept, _SEAL: _seal(kept)}
     with whole_file(file) as stream:
         np.savez_compressed(stream, **arrays)
 
@@ -51,10 +55,23 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> dict[str, Any]:
         stored, grid = _restored(Robot, arrays["robot"]), _restored(MapGrid, arrays["grid"])
         results = {"bits": arrays["bits"], **{name: arrays.get(name) for name in QUALITY}}
         require_results(grid, results)
+        if not place.is_dir():  # stores are sealed by chunks
+            _require_sealed(arrays)
     except (KeyError, BeetleIkError) as error:
         raise InvalidInputError(f"{place}: damaged reachability map: {error!s:.200}") from error
     require_same_robot(f"{place}: the map", stored, robot)
     return {"robot": stored, "grid": grid, **results}
+
+
+def _require_sealed(arrays: Mapping[str, Any]) -> None:
+    """Raises `InvalidInputError` unless all arrays are of one map: a whole array may come from another file."""
+    seal = arrays[_SEAL]
+    if seal.dtype != np.uint8 or not np.array_equal(seal, _seal(arrays)):
+        raise InvalidInputError("its arrays do not belong together")
+
+
+def _seal(arrays: Mapping[str, Any]) -> NDArray[np.uint8]:
+    return sealed(b"reachability_map", FORMAT, {name: arrays[name] for name in _SEALED if name in arrays})
 
 
 def require_results(grid: MapGrid, results: Mapping[str, Any]) -> None:

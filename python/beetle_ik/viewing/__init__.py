@@ -4,6 +4,9 @@
     checks      its arguments
     worker      the only thread that moves the arm
     address     a free port
+    admission   who may use the page
+    incoming    which messages it may send
+    served      the server of viser, with both
     arm         the state of the arm: configuration, target, obstacles, how it follows the target. Without a page
     start       bodies, speeds and a configuration for robots that come without
     parts       what the page consists of

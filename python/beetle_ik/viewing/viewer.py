@@ -17,11 +17,13 @@ from .._needs import library
 from .._scene import Scene
 from . import start
 from .address import free_port
+from .admission import Admission
 from .arm import DT, FOLLOWS, Arm
 from .checks import configuration, inside_limits, path_points, target_poses
 from .looks import looks
 from .page import Page
 from .parts import Parts
+from .served import serve
 from .worker import Request, Worker
 
 if TYPE_CHECKING:
@@ -67,7 +69,8 @@ def view(
             configuration near the middle of the limits.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, in the frame of the robot's base.
         path: a path to draw: one of `bik.paths`, positions (k, 3) (m) or poses (k, 4, 4).
-        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": whoever reaches it.
+        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": whoever reaches it
+            and knows the token, which is part of the address.
         port: the port; if it is in use, the next free one. 0: any.
         block: whether to wait until Ctrl-C, which closes the viewer.
 
@@ -94,7 +97,7 @@ class Viewer:
     Attributes:
         robot: the robot as it is shown: with bodies, and with velocity limits.
         server: the server of viser, which takes further controls and shapes.
-        url: the address of the page.
+        url: the address of the page, with its token if other machines reach it.
     """
 
     def __init__(
@@ -114,10 +117,12 @@ class Viewer:
         scene = list(Scene(() if obstacles is None else obstacles))
         begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
         line = None if path is None else path_points(path)
-        module = library("viser", "viser", "the viewer", extra="view")
-        port = free_port(host, port)
-        self.server: viser.ViserServer = module.ViserServer(host=host, port=port, label=robot.name, verbose=False)
-        self.url = f"http://{f'[{host}]' if ':' in host else host}:{port}"
+        library("viser", "viser", "the viewer", extra="view")
+        port, admission = free_port(host, port), Admission(host)
+        self.server: viser.ViserServer = serve(host, port, robot.name, admission)
+        self.url = admission.address(host, port)
+        if admission.token is not None:
+            print(f"Other machines reach this viewer: {self.url}")
         self._lock = threading.RLock()
         self._closed, self._first_close = threading.Event(), threading.Lock()
         self._callbacks: list[Callable[[Any], object]] = []

@@ -3,9 +3,23 @@
 from importlib import import_module
 
 from ..attack import Attack
-from . import calls, clearance, command_line, kinematics, motion, readers, searching, several, solving, tracking
+from . import (
+    calls,
+    clearance,
+    command_line,
+    kinematics,
+    motion,
+    readers,
+    searching,
+    several,
+    solving,
+    tracking,
+    xacro_files,
+)
 
-_MODULES = (kinematics, solving, searching, several, tracking, motion, clearance, readers, calls, command_line)
+_MODULES = (
+    *(kinematics, solving, searching, several, tracking, motion, clearance, readers, xacro_files, calls, command_line),
+)
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
 

@@ -34,6 +34,8 @@ impl PyRobot {
     ///         their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
     ///     package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
     ///         AMENT_PREFIX_PATH, and the folders above the file.
+    ///     trusted: whether a xacro file may do all that xacro can: execute expressions of any kind, read the environment and
+    ///         any file. False: it may come from anyone; what it may do is on the page on robots, and all else is refused.
     ///
     /// Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
     /// `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
@@ -43,8 +45,8 @@ impl PyRobot {
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision=Some("primitives"),
-                        package_dirs=None),
-           text_signature = "(path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision='primitives', package_dirs=None)")]
+                        package_dirs=None, trusted=false),
+           text_signature = "(path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision='primitives', package_dirs=None, trusted=False)")]
     #[allow(clippy::too_many_arguments)]
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
@@ -54,13 +56,15 @@ impl PyRobot {
         srdf: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
         package_dirs: Option<&Bound<'_, PyAny>>,
+        trusted: bool,
     ) -> PyResult<Self> {
         let py = path_or_xml.py();
         let mut source = path_or_text("path_or_xml", path_or_xml)?;
+        let package_dirs = package_dirs.map_or(Ok(vec![]), read_folders)?;
         let mut directory = None;
         if source.ends_with(".xacro") && Path::new(&source).is_file() {
             directory = Path::new(&source).parent().map(Path::to_path_buf);
-            source = python_calls::expand_xacro(py, &source)?;
+            source = python_calls::expand_xacro(py, &source, &package_dirs, trusted)?;
         }
         let options = UrdfOptions {
             base: base.map(str::to_owned),
@@ -68,7 +72,7 @@ impl PyRobot {
             hold: hold.map_or(Ok(vec![]), read_hold)?,
             srdf: srdf.map(|srdf| path_or_text("srdf", srdf)).transpose()?,
             collision: read_collision(collision)?,
-            package_dirs: package_dirs.map_or(Ok(vec![]), read_folders)?,
+            package_dirs,
             directory,
         };
         on_a_thread(py, move || Robot::from_urdf_with(&source, &options)).map(Self::from)
@@ -81,6 +85,7 @@ impl PyRobot {
     ///     base: body whose frame is the reference frame; None: "world".
     ///     tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
     ///     hold, collision: as in `from_urdf`.
+    ///     trusted: whether the model may name files outside its folder, and plugins. False: it may come from anyone.
     ///
     /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
     /// follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
@@ -91,18 +96,19 @@ impl PyRobot {
     ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
     ///         another way.
     #[staticmethod]
-    #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives")),
-           text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives')")]
+    #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives"), trusted=false),
+           text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives', trusted=False)")]
     fn from_mjcf<'py>(
         model: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
         tip: Option<&Bound<'py, PyAny>>,
         hold: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
+        trusted: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         read_collision(collision)?;
         let tip = tip.map_or(Ok(vec![]), read_tips)?;
-        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision))
+        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision, trusted))
     }
 
     /// Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
@@ -112,12 +118,13 @@ impl PyRobot {
     ///     name: a name of robot_descriptions.
     ///     base, tip, hold: as in `from_urdf`.
     ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
+    ///     trusted: as in `from_urdf` and `from_mjcf`.
     ///
     /// Raises:
     ///     BeetleIkError: robot_descriptions is not installed.
     ///     UnknownNameError: no description of that name; the message names the nearest.
     #[staticmethod]
-    #[pyo3(signature = (name, *, base=None, tip=None, hold=None, srdf=None, collision=None))]
+    #[pyo3(signature = (name, *, base=None, tip=None, hold=None, srdf=None, collision=None, trusted=false))]
     fn from_description<'py>(
         name: &Bound<'py, PyAny>,
         base: Option<&Bound<'py, PyAny>>,
@@ -125,10 +132,11 @@ impl PyRobot {
         hold: Option<&Bound<'py, PyAny>>,
         srdf: Option<&Bound<'py, PyAny>>,
         collision: Option<&Bound<'py, PyAny>>,
+        trusted: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let given = [("base", base), ("tip", tip), ("hold", hold), ("srdf", srdf), ("collision", collision)];
         let given = given.into_iter().filter_map(|(option, value)| Some((option, value?)));
-        python_calls::robot(name.py(), "_descriptions", (name, given.into_py_dict(name.py())?))
+        python_calls::robot(name.py(), "_descriptions", (name, given.into_py_dict(name.py())?, trusted))
     }
 
     /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.

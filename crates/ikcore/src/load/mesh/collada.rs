@@ -18,7 +18,7 @@ const DEEPEST: usize = 64;
 const MOST_NODES: usize = 100_000;
 
 pub(super) fn parse(text: &str) -> Parsed {
-    let document = Document::parse(text).map_err(|error| format!("not XML: {error}"))?;
+    let document = Document::parse(text).map_err(|error| format!("not XML at {}", error.pos()))?;
     let file = File::of(&document)?;
     let mut read = Triangles::default();
     match file.scene() {
@@ -64,7 +64,7 @@ impl<'a, 'i> File<'a, 'i> {
     fn of(document: &'a Document<'i>) -> Problem<Self> {
         let root = document.root_element();
         if !root.has_tag_name_any("COLLADA") {
-            return Err(format!("expected <COLLADA>, got <{}>", root.tag_name().name()));
+            return Err("its root is not <COLLADA>".into());
         }
         let with_id = document.descendants().filter_map(|node| Some((node.attribute("id")?, node)));
         let by_id = with_id.collect();
@@ -79,8 +79,8 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// The element that a URL such as "#part" names.
     fn named(&self, url: &str) -> Problem<Node<'a, 'i>> {
-        let id = url.strip_prefix('#').ok_or_else(|| format!("'{url}' is not in this file"))?;
-        self.by_id.get(id).copied().ok_or_else(|| format!("nothing has the id '{id}'"))
+        let id = url.strip_prefix('#').ok_or("a url that is not in this file")?;
+        self.by_id.get(id).copied().ok_or("nothing has the id that a url names".into())
     }
 
     fn scene(&self) -> Option<Node<'a, 'i>> {
@@ -235,6 +235,6 @@ fn words<'a>(node: Node<'a, '_>) -> impl Iterator<Item = &'a str> {
 }
 
 fn whole_numbers(node: Node) -> Problem<Vec<usize>> {
-    let whole = |word: &str| word.parse::<usize>().map_err(|_| format!("'{word}' is not an index"));
+    let whole = |word: &str| word.parse::<usize>().map_err(|_| "an index that is no whole number".to_string());
     words(node).map(whole).collect()
 }

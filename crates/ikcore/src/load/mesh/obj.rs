@@ -41,6 +41,6 @@ fn index(word: &str, count: usize) -> Result<u32, String> {
     });
     match index {
         Some(index) if index < count => Ok(index as u32),
-        _ => Err(format!("a face names vertex '{given}' of {count}")),
+        _ => Err(format!("a face names none of the {count} vertices before it")),
     }
 }

@@ -1,0 +1,41 @@
+"""What a file that anyone may have written must not do, and which files belong to it."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+REMEDY = (
+    "is not allowed in a file from anyone: trusted=True lets your own files execute code, and read the environment "
+    "and other files"
+)
+_MARK = "package.xml"
+
+
+class RefusedError(Exception):
+    """Something that a file which is not trusted may not do."""
+
+
+def is_package(folder: Path) -> bool:
+    """Whether a folder is a package of ROS."""
+    return (folder / _MARK).is_file()
+
+
+def package_of(file: Path) -> Path:
+    """Returns the folder of the package that a file belongs to; its own folder if it is in none."""
+    return next((folder for folder in file.parents if is_package(folder)), file.parent)
+
+
+def require_inside(folders: Iterable[Path], file: Path, shown: str) -> Path:
+    """Returns a file, with links followed, that is in one of the folders.
+
+    Raises:
+        RefusedError: it is elsewhere; the message names it as `shown`.
+    """
+    try:
+        real = file.resolve()
+    except RecursionError:
+        raise
+    except (OSError, RuntimeError, ValueError):  # links in a circle, a name that no file can have
+        raise RefusedError(f"the file '{shown:.200}', which cannot be found,") from None
+    if not any(real.is_relative_to(folder.resolve()) for folder in folders):
+        raise RefusedError(f"the file '{shown:.200}', which is outside of the package,")
+    return real
