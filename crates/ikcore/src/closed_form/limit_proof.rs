@@ -22,6 +22,9 @@ const OFF: f64 = 2e-5;
 /// A joint outside its limits by less (rad) may be inside.
 const SLACK: f64 = 1e-4;
 
+/// Beyond the ends of its arcs the parameter (rad) is looked at as far as a pose off by [`OFF`] moves them: at a fold the others turn fast.
+const FOLD: f64 = 1e-3;
+
 /// Longest interval of the parameter (rad) that is looked at.
 const LONGEST: f64 = 0.4;
 
@@ -115,7 +118,7 @@ impl LimitProof {
     ) -> Values {
         let moving = Moving::new(self, goal, limits);
         let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS, visit };
-        for [first, last] in arcs.iter() {
+        for [first, last] in arcs.iter().map(|[first, last]| [first - FOLD, last + FOLD]) {
             let count = ((last - first) / LONGEST).ceil().max(1.0);
             let length = (last - first) / count;
             for start in (0..count as usize).map(|k| first + length * k as f64) {

@@ -11,6 +11,10 @@ use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, s
 use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::structure::Pair;
 
+/// Common normal of two axes times the sine of their angle, as a multiple of its rounding, below which they nearly meet or are nearly
+/// parallel.
+const NEARLY_JOINED: f64 = 1e8;
+
 /// Angles of three joints.
 pub type Three = [Angle; 3];
 
@@ -185,7 +189,8 @@ impl ThreeAxes {
         });
         let k2: Linear = std::array::from_fn(|k| if k == 0 { dot(h1, &sub(a, b)) } else { 0.0 } - hz * z[k]);
         let m = [[dot(b, &e1), dot(b, &e2)], [dot(h1, &e1), dot(h1, &e2)]];
-        let inverse = 1.0 / (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
+        let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+        let inverse = 1.0 / determinant;
         let y1: Linear = std::array::from_fn(|k| inverse * (m[1][1] * k1[k] - m[0][1] * k2[k]));
         let y2: Linear = std::array::from_fn(|k| inverse * (m[0][0] * k2[k] - m[1][0] * k1[k]));
         let mut form = QuadraticForm::default();
@@ -194,7 +199,8 @@ impl ThreeAxes {
         form.add_product(1.0, &z, &z);
         form.add_linear(&square.map(|s| -s));
         let zeros = form.zeros();
-        arms.doubt = zeros.doubt;
+        // Axes that nearly meet, or are nearly parallel, leave rounding much room.
+        arms.doubt = if determinant.abs() > NEARLY_JOINED * self.floor { zeros.doubt } else { Doubt::Open };
         for q3 in zeros.iter() {
             let at = |p: &Linear| p[0] + p[1] * q3.cos + p[2] * q3.sin;
             let u = add(c, &q3.about(h3, w));
