@@ -47,8 +47,8 @@ impl JointProfile {
         }
     }
 
-    /// The motion of these phases from the position `q`.
-    pub(super) fn of(phases: &Phases, q: f64) -> Self {
+    /// The motion of these phases from the position `q` in `duration` (s), which is theirs but for rounding.
+    pub(super) fn of(phases: &Phases, q: f64, duration: f64) -> Self {
         let mut motion = Self::empty();
         let mut state = MotionState { q, v: phases.velocity, a: 0.0 };
         for phase in &phases.phases {
@@ -56,7 +56,26 @@ impl JointProfile {
             motion.push(state, phase.jerk, phase.duration);
             state = state.after(phase.jerk, phase.duration);
         }
-        motion
+        motion.segments.retain(|segment| segment.time < duration);
+        if motion.segments.is_empty() {
+            motion = Self::still(MotionState { q, ..state });
+        }
+        Self { duration, ..motion }
+    }
+
+    /// The same motion to the position `q`, which it misses by rounding: all after the longest segment is shifted.
+    pub(super) fn ending_at(mut self, q: f64) -> Self {
+        let error = q - self.at(self.duration).q;
+        let spans = (0..self.segments.len()).map(|i| (i, self.end_of(i) - self.segments[i].time));
+        if let Some((longest, _)) = spans.max_by(|one, other| one.1.total_cmp(&other.1)) {
+            self.segments[longest + 1..].iter_mut().for_each(|segment| segment.state.q += error);
+        }
+        self
+    }
+
+    /// The time at which a segment ends (s).
+    fn end_of(&self, segment: usize) -> f64 {
+        self.segments.get(segment + 1).map_or(self.duration, |next| next.time)
     }
 
     /// JointSegment at time `t` (s), clamped to the motion.
@@ -76,7 +95,7 @@ impl JointProfile {
         let mut range = (f64::INFINITY, f64::NEG_INFINITY);
         let mut visit = |q: f64| range = (range.0.min(q), range.1.max(q));
         for (i, segment) in self.segments.iter().enumerate() {
-            let end = self.segments.get(i + 1).map_or(self.duration, |next| next.time) - segment.time;
+            let end = self.end_of(i) - segment.time;
             let MotionState { v, a, .. } = segment.state;
             let turns = quadratic_roots(v, a, 0.5 * segment.jerk, 0.0, end);
             turns.into_iter().chain([0.0, end]).for_each(|t| visit(segment.state.after(segment.jerk, t).q));
@@ -93,7 +112,7 @@ impl JointProfile {
         loop {
             let (one, two) = (&self.segments[i], &other.segments[k]);
             let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
-            let blend = |x: f64, y: f64| share * x + (1.0 - share) * y;
+            let blend = |x: f64, y: f64| y + share * (x - y);
             let state = MotionState { q: blend(a.q, b.q), v: blend(a.v, b.v), a: blend(a.a, b.a) };
             mean.segments.push(JointSegment { time, state, jerk: blend(one.jerk, two.jerk) });
             let next = start(self, i + 1).min(start(other, k + 1));
@@ -131,4 +150,4 @@ impl JointProfile {
 }
 
 /// Times that are nearer to each other, relative to the duration, count as the same.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -21,14 +21,16 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Distance covered in all phases.
-    pub(super) fn displacement(&self) -> f64 {
+    /// Distance covered in all phases, and the rounding error of its terms.
+    pub(super) fn displacement(&self) -> (f64, f64) {
         let mut state = MotionState { q: 0.0, v: self.velocity, a: 0.0 };
-        for phase in &self.phases {
-            state.a = phase.acceleration;
-            state = state.after(phase.jerk, phase.duration);
+        let mut terms = 0.0;
+        for Phase { duration, acceleration, jerk } in self.phases {
+            state.a = acceleration;
+            terms += duration * (state.v.abs() + duration * (acceleration.abs() + duration * jerk.abs()));
+            state = state.after(jerk, duration);
         }
-        state.q
+        (state.q, ROUNDING * terms)
     }
 
     /// The same motion with the direction of the axis reversed.
@@ -41,6 +43,9 @@ impl Phases {
         Self { velocity: -self.velocity, phases }
     }
 }
+
+/// Rounding error of a sum, relative to its terms.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Durations (s).
 pub(super) type Durations = SmallVec<[f64; 16]>;

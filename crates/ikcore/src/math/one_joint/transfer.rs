@@ -5,6 +5,7 @@ use super::extremal::Extremal;
 use super::first_passing::first_passing;
 use super::joint_profile::JointProfile;
 use super::motion_state::{MotionState, Rates};
+use super::phases::{Phases, ROUNDING};
 
 /// A joint that has to get from one state to another within its limits. Outside its limits it first returns inside them,
 /// as quickly as possible.
@@ -17,12 +18,6 @@ pub struct Transfer {
     up: Extremal,
     down: Extremal,
 }
-
-/// Fraction of an interval between critical durations by which its ends are moved inwards until the motion exists there.
-const INSETS: [f64; 5] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9];
-
-/// Differences of positions that count as rounding, relative to their size and to the distances travelled.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Transfer {
     /// From one state to another; the final state is inside the limits and can be reached inside them.
@@ -42,8 +37,8 @@ impl Transfer {
     pub fn to_velocity(from: MotionState, to: MotionState, rates: &Rates) -> Option<JointProfile> {
         let transfer = Self::new(from, to, rates);
         let [shortest, _] = *transfer.up.possible().first()?;
-        let found = INSETS.into_iter().find_map(|inset| transfer.up.phases(shortest + inset * shortest.max(1e-9)))?;
-        let profile = transfer.entry.then(&JointProfile::of(&found, transfer.from.q));
+        let stop = JointProfile::of(&transfer.up.phases(shortest), transfer.from.q, shortest);
+        let profile = transfer.entry.then(&stop);
         Some(if profile.segments.is_empty() { JointProfile::still(transfer.from) } else { profile })
     }
 
@@ -54,26 +49,26 @@ impl Transfer {
     }
 
     /// The motion of a possible duration (s).
-    pub fn motion(&self, duration: f64) -> Option<JointProfile> {
+    pub fn motion(&self, duration: f64) -> JointProfile {
         let t = duration - self.entry.duration;
         if t <= 0.0 {
-            return Some(self.entry.clone());
+            return self.entry.clone();
         }
-        let (up, down) = (self.up.phases(t)?, self.down.phases(t)?.mirrored());
-        let (highest, lowest) = (up.displacement(), down.displacement());
+        let (up, down) = (self.up.phases(t), self.down.phases(t).mirrored());
+        let ((highest, above), (lowest, below)) = (up.displacement(), down.displacement());
         let share = (self.displacement - lowest) / (highest - lowest);
-        let rounding = self.rounding(highest).max(self.rounding(lowest));
+        let profile = |phases: &Phases| JointProfile::of(phases, self.from.q, t);
         let inside = match () {
-            () if !(self.displacement < highest - rounding) => JointProfile::of(&up, self.from.q),
-            () if !(self.displacement > lowest + rounding) => JointProfile::of(&down, self.from.q),
-            () => JointProfile::of(&up, self.from.q).mean(share, &JointProfile::of(&down, self.from.q)),
+            () if !(self.displacement < highest - self.rounding(above)) => profile(&up),
+            () if !(self.displacement > lowest + self.rounding(below)) => profile(&down),
+            () => profile(&up).mean(share, &profile(&down)),
         };
-        let inside = JointProfile { duration: t, ..inside };
-        Some(self.entry.clone().then(&inside))
+        self.entry.clone().then(&inside.ending_at(self.to.q))
     }
 
-    fn rounding(&self, displacement: f64) -> f64 {
-        ROUNDING * (displacement.abs() + self.displacement.abs() + self.from.q.abs())
+    /// Distance from the goal that counts as rounding, for a motion whose own rounding error is `of_motion`.
+    fn rounding(&self, of_motion: f64) -> f64 {
+        ROUNDING * (self.displacement.abs() + self.from.q.abs()) + of_motion
     }
 
     /// The shortest possible duration of at least `least` (s), from inside the limits.
@@ -91,16 +86,13 @@ impl Transfer {
 
     /// The shortest duration in an interval for which motions exist throughout.
     fn first_in(&self, [start, end]: [f64; 2]) -> Option<f64> {
-        let width = if end.is_finite() { end - start } else { start.max(1e-9) };
-        let (start, up, down) = INSETS.into_iter().find_map(|inset| {
-            let t = start + inset * width;
-            Some((t, self.up.displacement(t)?, self.down.displacement(t)?))
-        })?;
+        let ((up, above), (down, below)) =
+            (self.up.phases(start).displacement(), self.down.phases(start).displacement());
         let (short, past) = (self.displacement - up, -self.displacement - down);
-        if short > self.rounding(up) {
+        if short > self.rounding(above) {
             return first_passing(&self.up, self.displacement, [start, end], -short);
         }
-        if past > self.rounding(down) {
+        if past > self.rounding(below) {
             return first_passing(&self.down, -self.displacement, [start, end], -past);
         }
         Some(start)

@@ -1,6 +1,6 @@
 //! The quickest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
 use crate::planning::MotionLimits;
 use crate::trajectory::{Coefficients, Trajectory, polynomial};
@@ -81,7 +81,7 @@ impl JointPolyline {
             knots.push(time);
             coefficients.extend((0..limits.dof()).map(|j| quintic(line[0][j], displacement(j), h)));
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
     }
 
     /// Moves from rest to rest along each line as fast as the limits up to jerk allow.
@@ -89,7 +89,7 @@ impl JointPolyline {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         for line in self.0.windows(2) {
             let begin = knots[knots.len() - 1];
-            let shares = line_profile(line, limits)?;
+            let shares = line_profile(line, limits);
             let starts = shares.segments.iter().skip(1).map(|segment| begin + segment.time);
             knots.extend(starts.chain([begin + shares.duration]));
             for segment in &shares.segments {
@@ -101,7 +101,7 @@ impl JointPolyline {
                 }));
             }
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
     }
 
     /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
@@ -195,7 +195,7 @@ impl JointPolyline {
                 }));
             }
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
     }
 }
 
@@ -214,7 +214,7 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
 }
 
 /// The fastest motion from 0 to 1 along a line, as a fraction of it.
-fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> Result<JointProfile> {
+fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
     let share = |all: &[f64]| {
         let of_joint = |j: usize| {
             let size = (line[1][j] - line[0][j]).abs();
@@ -228,8 +228,7 @@ fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> Result<JointProfile
         jerk: share(&limits.jerk),
     };
     let transfer = Transfer::new(MotionState::rest(0.0), MotionState::rest(1.0), &rates);
-    let too_long = || Error::Infeasible { problem: "the limits let no motion end".into() };
-    transfer.motion(transfer.duration(0.0)).ok_or_else(too_long)
+    transfer.motion(transfer.duration(0.0))
 }
 
 /// The quintic from rest to rest over `displacement` in `h` (s).
