@@ -9,7 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from .. import ruckig_apart, typed
+from .. import arms, ruckig_apart, typed
 from ..attack import Attack, BrokenError, Case
 
 RELATIVE = 1e-9  # excess over a limit that counts as rounding
@@ -210,6 +210,77 @@ def toppra_duration(points: np.ndarray, velocity: np.ndarray, acceleration: np.n
     )
 
 
+class JointPlans(Attack):
+    name = "joint_plans"
+    promise = "Plans between configurations keep limits up to jerk at every instant, with straight lines at their ends too"
+    page = "planning"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Limits are round and tie; hard configurations are at limits and at zero, or have joints in common."""
+        joints = arms.easy_arm(random, int(random.integers(1, 8)))
+        arms.put(joints, random, hard, 2)
+        shared = [typed.limits(random, -1, 1) for _ in range(2)] if random.random() < 0.6 else None
+        for joint in joints:
+            joint["rates"], joint["slower"] = shared or [typed.limits(random, -1, 2) for _ in range(2)]
+            joint["share"] = float(random.choice([0.0, 0.0, 0.5, 1.0, -1.0]))
+            if hard and random.random() < 0.3:
+                joint["at"] = (joint["at"][0],) * 2
+        begins = ("rest", "rest", "zero", "moving", "line", "free")
+        return {"joints": joints, "orders": int(random.integers(1, 4)), "begin": str(random.choice(begins))}
+
+    def limits(self, case: Case, name: str = "rates") -> dict[str, np.ndarray]:
+        """The limits of the free joints."""
+        rates = np.array([joint[name] for joint in arms.free(case["joints"])])
+        return dict(zip(("velocity", "acceleration", "jerk")[: case["orders"]], rates.T, strict=False))
+
+    def program(self, case: Case) -> str:
+        first, last = arms.configurations(case["joints"])
+        speeds = [joint["share"] * joint["rates"][0] for joint in arms.free(case["joints"])]
+        begin = {
+            "zero": f", start_qd={[0.0] * len(first)}",
+            "moving": f", start_qd={speeds}",
+            "line": ", retreat=0.02, approach=0.01",
+            "free": ", free_start=True",
+        }.get(case["begin"] if case["orders"] > 1 else "rest", "")
+        limits, slower = (
+            ", ".join(f"{kind}={values.tolist()}" for kind, values in self.limits(case, name).items())
+            for name in ("rates", "slower")
+        )
+        return (
+            f"{arms.written(case['joints'])}limits = bik.Limits({limits})\n"
+            f"given = dict(start_q={first.tolist()}, end_q={last.tolist()}, limits=limits{begin})\n"
+            "plan = bik.plan_point_to_point(robot, **given)\n"
+            f"again = plan.retime(bik.Limits({slower})) if plan.success else None"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        ends = arms.configurations(case["joints"])
+        for plan, name in ((left["plan"], "rates"), (left["again"], "slower")):
+            if plan is None or not plan.success:
+                raise BrokenError("a straight motion is not found", getattr(plan, "message", ""))
+            motion, limits = plan.trajectory, self.limits(case, name)
+            check_rates(motion, limits, 1e-8)
+            if np.abs(motion.q[[0, -1]] - ends).max() > ENDS:
+                raise BrokenError("the plan misses its ends", motion.q[[0, -1]].tolist())
+            for order in range(len(limits)):
+                ends_of_segments = dense(motion, order, 2)
+                jump = np.abs(np.diff(ends_of_segments.reshape(-1, len(ends[0])), axis=0)[1::2]).max(initial=0.0)
+                if jump > 1e-6 * max(1.0, np.abs(ends_of_segments).max()):
+                    raise BrokenError(f"derivative {order} jumps", jump)
+        return 2
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        same = np.ptp(arms.configurations(case["joints"]), axis=0).max() == 0.0
+        said = str(error)
+        allowed = {
+            "moving": "would get to" in said,  # too fast to stop before a position limit
+            "line": "no straight line" in said,
+        }.get(case["begin"], False)
+        jumps = "jumps" in said and case["orders"] == 3 and case["begin"] == "moving"  # from a velocity, retimed
+        if not (same or allowed or jumps):
+            raise BrokenError("a right plan is refused", error)
+
+
 class Trajectories(Attack):
     name = "trajectories"
     promise = "A trajectory is its polynomials: samples, largest rates, files and pickles agree with them"
@@ -277,4 +348,4 @@ class Trajectories(Attack):
             raise BrokenError("right samples are refused", error)
 
 
-ATTACKS = [StateToState(), TimeOptimal(), Trajectories()]
+ATTACKS = [StateToState(), TimeOptimal(), JointPlans(), Trajectories()]

@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from .. import arms
+from .. import arms, typed
 from ..attack import Attack, BrokenError, Case
 from .motion import check_rates
 from .solving import ROUNDING, TOLERANCE

@@ -34,11 +34,11 @@ impl Extremal {
     pub(super) fn displacement(&self, t: f64) -> f64 {
         match self {
             Self::Jerk(extremal) => extremal.displacement(t),
-            Self::Acceleration(extremal) => extremal.phases(t).displacement().0,
+            Self::Acceleration(extremal) => extremal.phases(t).displacement(),
         }
     }
 
-    /// Intervals of possible durations (s), at most three, in order; the last has no end.
+    /// Intervals of possible durations (s), at most four, in order; the last has no end.
     pub(super) fn possible(&self) -> Possible {
         let mut found = Possible::new();
         match self {

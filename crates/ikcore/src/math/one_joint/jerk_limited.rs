@@ -182,11 +182,15 @@ impl JerkLimited {
             Some([shorter, longer])
         };
         let mut start = (a0 - a1).max(0.0);
+        if a0 < a1 && k == 0.0 || a0 > a1 && fall == 0.0 {
+            // The ramp alone: a little longer there may be nothing.
+            found.push([self.duration_of(start); 2]);
+        }
         let mut excluded = [excluded(a0, k, before), excluded(-a1, -k, after)];
         excluded
             .sort_unstable_by(|one, two| one.map(|e| e[0]).partial_cmp(&two.map(|e| e[0])).unwrap_or(Ordering::Equal));
         for [from, to] in excluded.into_iter().flatten() {
-            if from >= start {
+            if from > start {
                 found.push([self.duration_of(start), self.duration_of(from)]);
             }
             start = to.max(start);
@@ -232,7 +236,7 @@ impl JerkLimited {
     /// Whether all motions longer than `t` (s) get farther, since they can spend the rest of the time at a velocity that
     /// is not negative.
     pub(super) fn rises_from(&self, t: f64) -> bool {
-        let passes_zero = |shape: &Shape| shape.peak > 0.0 && shape.trough < 0.0;
+        let passes_zero = |shape: &Shape| shape.peak >= 0.0 && shape.trough <= 0.0;
         let shape = self.shape(t);
         passes_zero(&shape) && self.top_speed(&shape) >= 0.0
     }

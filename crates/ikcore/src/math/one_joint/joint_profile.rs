@@ -56,7 +56,9 @@ impl JointProfile {
             motion.push(state, phase.jerk, phase.duration);
             state = state.after(phase.jerk, phase.duration);
         }
-        motion.segments.retain(|segment| segment.time < duration);
+        while motion.segments.last().is_some_and(|segment| segment.time >= duration) {
+            motion.segments.pop();
+        }
         if motion.segments.is_empty() {
             motion = Self::still(MotionState { q, ..state });
         }
@@ -66,10 +68,14 @@ impl JointProfile {
     /// The same motion to the position `q`, which it misses by rounding: all after the longest segment is shifted.
     pub(super) fn ending_at(mut self, q: f64) -> Self {
         let error = q - self.at(self.duration).q;
-        let spans = (0..self.segments.len()).map(|i| (i, self.end_of(i) - self.segments[i].time));
-        if let Some((longest, _)) = spans.max_by(|one, other| one.1.total_cmp(&other.1)) {
-            self.segments[longest + 1..].iter_mut().for_each(|segment| segment.state.q += error);
+        let (mut longest, mut longest_span) = (0, 0.0);
+        for i in 0..self.segments.len() {
+            let span = self.end_of(i) - self.segments[i].time;
+            if span > longest_span {
+                (longest, longest_span) = (i, span);
+            }
         }
+        self.segments[longest + 1..].iter_mut().for_each(|segment| segment.state.q += error);
         self
     }
 

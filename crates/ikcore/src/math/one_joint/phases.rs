@@ -21,16 +21,14 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Distance covered in all phases, and the rounding error of its terms.
-    pub(super) fn displacement(&self) -> (f64, f64) {
+    /// Distance covered in all phases.
+    pub(super) fn displacement(&self) -> f64 {
         let mut state = MotionState { q: 0.0, v: self.velocity, a: 0.0 };
-        let mut terms = 0.0;
-        for Phase { duration, acceleration, jerk } in self.phases {
-            state.a = acceleration;
-            terms += duration * (state.v.abs() + duration * (acceleration.abs() + duration * jerk.abs()));
-            state = state.after(jerk, duration);
+        for phase in &self.phases {
+            state.a = phase.acceleration;
+            state = state.after(phase.jerk, phase.duration);
         }
-        (state.q, ROUNDING * terms)
+        state.q
     }
 
     /// The same motion with the direction of the axis reversed.
@@ -51,4 +49,4 @@ pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub(super) type Durations = SmallVec<[f64; 16]>;
 
 /// Intervals of durations (s).
-pub(super) type Possible = SmallVec<[[f64; 2]; 3]>;
+pub(super) type Possible = SmallVec<[[f64; 2]; 4]>;

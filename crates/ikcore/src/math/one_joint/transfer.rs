@@ -14,6 +14,7 @@ pub struct Transfer {
     entry: JointProfile,
     from: MotionState,
     to: MotionState,
+    rates: Rates,
     displacement: f64,
     up: Extremal,
     down: Extremal,
@@ -27,6 +28,7 @@ impl Transfer {
             entry,
             from: inside,
             to,
+            rates: *rates,
             displacement: to.q - inside.q,
             up: Extremal::new(inside, to, *rates),
             down: Extremal::new(inside.mirrored(), to.mirrored(), *rates),
@@ -55,20 +57,23 @@ impl Transfer {
             return self.entry.clone();
         }
         let (up, down) = (self.up.phases(t), self.down.phases(t).mirrored());
-        let ((highest, above), (lowest, below)) = (up.displacement(), down.displacement());
+        let (highest, lowest, rounding) = (up.displacement(), down.displacement(), self.rounding(t));
         let share = (self.displacement - lowest) / (highest - lowest);
         let profile = |phases: &Phases| JointProfile::of(phases, self.from.q, t);
         let inside = match () {
-            () if !(self.displacement < highest - self.rounding(above)) => profile(&up),
-            () if !(self.displacement > lowest + self.rounding(below)) => profile(&down),
+            () if !(self.displacement < highest - rounding) => profile(&up),
+            () if !(self.displacement > lowest + rounding) => profile(&down),
             () => profile(&up).mean(share, &profile(&down)),
         };
         self.entry.clone().then(&inside.ending_at(self.to.q))
     }
 
-    /// Distance from the goal that counts as rounding, for a motion whose own rounding error is `of_motion`.
-    fn rounding(&self, of_motion: f64) -> f64 {
-        ROUNDING * (self.displacement.abs() + self.from.q.abs()) + of_motion
+    /// Distance from the goal that counts as rounding after `t` (s): relative to the positions, and to the way there.
+    fn rounding(&self, t: f64) -> f64 {
+        let Self { from, to, rates: Rates { velocity, acceleration, jerk }, .. } = self;
+        let largest = (from.a.abs() + to.a.abs() + t * jerk).min(*acceleration);
+        let fastest = (from.v.abs() + to.v.abs() + t * largest).min(*velocity);
+        ROUNDING * (self.displacement.abs() + from.q.abs() + t * fastest)
     }
 
     /// The shortest possible duration of at least `least` (s), from inside the limits.
@@ -86,13 +91,12 @@ impl Transfer {
 
     /// The shortest duration in an interval for which motions exist throughout.
     fn first_in(&self, [start, end]: [f64; 2]) -> Option<f64> {
-        let ((up, above), (down, below)) =
-            (self.up.phases(start).displacement(), self.down.phases(start).displacement());
-        let (short, past) = (self.displacement - up, -self.displacement - down);
-        if short > self.rounding(above) {
+        let (up, down) = (self.up.displacement(start), self.down.displacement(start));
+        let (short, past, rounding) = (self.displacement - up, -self.displacement - down, self.rounding(start));
+        if short > rounding {
             return first_passing(&self.up, self.displacement, [start, end], -short);
         }
-        if past > self.rounding(below) {
+        if past > rounding {
             return first_passing(&self.down, -self.displacement, [start, end], -past);
         }
         Some(start)
