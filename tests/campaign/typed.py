@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 Limits = tuple[float, float, float]  # velocity, acceleration, jerk
+FARTHEST = 1e3  # rad or m
 
 
 def number(random: np.random.Generator, lowest: int = -3, highest: int = 3) -> float:
@@ -45,9 +46,16 @@ def rates(random: np.random.Generator, of_joint: Limits, *, ends: bool = False) 
         v = within(random, velocity)
         if random.random() < 0.3:
             v = beside(random, float(random.choice([-1.0, 0.0, 0.5, 1.0])) * velocity - change)
-        if abs(v) <= velocity and abs(a) <= acceleration and abs(v + change) <= velocity:
+        if stays(of_joint, (v, a), ends=ends):
             return v, a
     return 0.0, 0.0
+
+
+def stays(of_joint: Limits, at: tuple[float, float], *, ends: bool = False) -> bool:
+    """Whether a joint with this velocity and acceleration can stay inside its limits, or was inside them before."""
+    (velocity, acceleration, jerk), (v, a) = of_joint, at
+    change = a * abs(a) / (2 * jerk) * (-1 if ends else 1)
+    return abs(v) <= velocity and abs(a) <= acceleration and abs(v + change) <= velocity
 
 
 def displacement(random: np.random.Generator, of_joint: Limits) -> float:
@@ -62,5 +70,5 @@ def displacement(random: np.random.Generator, of_joint: Limits) -> float:
         case 2:
             size = 10.0 ** random.uniform(-16, 0)
         case _:
-            size = beside(random, float(random.choice(ties)))
+            size = beside(random, min(float(random.choice(ties)), FARTHEST))
     return size * float(random.choice([-1.0, 1.0]))

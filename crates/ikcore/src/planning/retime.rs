@@ -4,6 +4,7 @@ use super::collision_checks::{TimedMotion, too_near};
 use super::motion_limits::MotionLimits;
 use super::plan::{Freed, Plan};
 use super::time_optimal::{TimingLimits, time_all};
+use super::within_limits::within_limits;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::obstacle::Sweep;
@@ -91,7 +92,7 @@ pub(super) fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Traje
     if factor == 0.0 {
         return Err(Error::NoPace { joint: limits.joint_name(0).into() });
     }
-    motion.slowed(factor * CAUTION)
+    within_limits(motion.slowed(factor * CAUTION)?, [&limits.velocity, &limits.acceleration, &limits.jerk])
 }
 
 /// Checks that the acceleration does not jump, neither at a knot nor from or to rest.

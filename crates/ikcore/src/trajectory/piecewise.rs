@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coefficients::{Coefficients, POWERS};
+use super::coefficients::{Coefficients, POWERS, shifted};
 use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::interrupt::checkpoint_at;
@@ -80,10 +80,11 @@ impl Trajectory {
             return Self::new(joints, knots, coefficients);
         }
         let (mut kept_knots, mut kept) = (vec![0.0], Vec::with_capacity(coefficients.len()));
-        for (end, phase) in knots[1..].iter().zip(coefficients.chunks(joints.len().max(1))) {
-            if *end - kept_knots[kept_knots.len() - 1] > shortest {
-                kept_knots.push(*end);
-                kept.extend_from_slice(phase);
+        for (ends, phase) in knots.windows(2).zip(coefficients.chunks(joints.len().max(1))) {
+            let begin = kept_knots[kept_knots.len() - 1];
+            if ends[1] - begin > shortest {
+                kept_knots.push(ends[1]);
+                kept.extend(phase.iter().map(|polynomial| shifted(*polynomial, begin - ends[0])));
             }
         }
         if let [_, .., last] = &mut kept_knots[..] {
@@ -281,5 +282,48 @@ impl Trajectory {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::polynomial;
+
+    /// At 1 rad/s, with these knots.
+    fn steady(knots: &[f64]) -> Result<Trajectory> {
+        let coefficients = knots[1..].iter().zip(knots).map(|(_, start)| polynomial([*start, 1.0])).collect();
+        Trajectory::from_phases(vec!["a".into()], knots.to_vec(), coefficients)
+    }
+
+    #[test]
+    fn phases_of_no_length_are_left_out_wherever_they_are() {
+        let tiny = f64::EPSILON;
+        for (knots, kept) in [
+            (vec![0.0, 0.0, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, tiny, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, 1.0, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, 0.5, 0.5, 0.5 + tiny, 0.5, 1.0, 1.0 - tiny, 1.0], vec![0.0, 0.5, 1.0]),
+            (vec![0.0, 0.5, 1.0], vec![0.0, 0.5, 1.0]),
+        ] {
+            let motion = steady(&knots).unwrap();
+            assert_eq!(motion.knots(), kept, "{knots:?}");
+            let range = motion.position_range()[0];
+            assert!(range.0 == 0.0 && (range.1 - 1.0).abs() < 1e-15, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn many_tiny_phases_are_not_left_out_together() {
+        let knots: Vec<f64> = (0..=1000).map(|i| f64::from(i) * f64::EPSILON).chain([1.0]).collect();
+        let motion = steady(&knots).unwrap();
+        assert!(motion.knots().len() > 50, "{}", motion.knots().len());
+        let jump = |i: usize| (motion.coefficients()[i][0] - motion.knots()[i]).abs();
+        assert!((0..motion.knots().len() - 1).all(|i| jump(i) < 1e-14));
+    }
+
+    #[test]
+    fn a_motion_of_no_duration_is_an_error() {
+        assert_eq!(steady(&[0.0, 0.0]).unwrap_err().to_string(), "trajectory times: expected at least 2, got 1");
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
 use crate::planning::MotionLimits;
+use crate::planning::within_limits::within_limits;
 use crate::trajectory::{Coefficients, Trajectory, polynomial};
 
 /// Largest speed of a quintic from rest to rest, relative to displacement / duration.
@@ -101,7 +102,8 @@ impl JointPolyline {
                 }));
             }
         }
-        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
+        let motion = Trajectory::from_phases(limits.joint_names(), knots, coefficients)?;
+        within_limits(motion, [&limits.velocity, &limits.acceleration, &limits.jerk])
     }
 
     /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
@@ -251,6 +253,12 @@ mod tests {
         MotionLimits::new(&robot, Some(&limits), "this test").unwrap()
     }
 
+    impl MotionLimits {
+        fn with_jerk(self, jerk: f64) -> Self {
+            Self { jerk: vec![jerk; self.dof()], ..self }
+        }
+    }
+
     fn corner() -> JointPolyline {
         JointPolyline(vec![vec![0.0, 0.0], vec![1.0, 0.2], vec![1.2, 1.4], vec![0.3, 1.0]])
     }
@@ -261,6 +269,30 @@ mod tests {
         let [q, qd, qdd] = &mut state;
         motion.at(t, q, qd, qdd).unwrap();
         state
+    }
+
+    /// One, two and five times powers of ten.
+    fn round_numbers() -> impl Iterator<Item = f64> + Clone {
+        (-3..=3).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10.0_f64.powi(power)))
+    }
+
+    #[test]
+    fn round_limits_that_tie_are_kept_and_reached() {
+        for velocity in round_numbers() {
+            for acceleration in round_numbers() {
+                for tie in [1.0, 0.5, 2.0] {
+                    let jerk = tie * acceleration * acceleration / velocity;
+                    let limits = limits(velocity, acceleration).with_jerk(jerk);
+                    let motion = corner().with_stops(&limits).unwrap();
+                    let reached = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
+                    let parts = reached.map(|reached| reached.into_iter().fold(0.0, f64::max));
+                    for (part, limit) in parts.iter().zip([velocity, acceleration, jerk]) {
+                        assert!(*part <= limit * (1.0 + 1e-8), "{part} of {limit}: {velocity}, {acceleration}, {jerk}");
+                    }
+                    assert!(parts[2] > 0.999 * jerk, "{}: {velocity}, {acceleration}, {jerk}", parts[2]);
+                }
+            }
+        }
     }
 
     #[test]
