@@ -217,7 +217,7 @@ def toppra_duration(points: np.ndarray, velocity: np.ndarray, acceleration: np.n
 
 class JointPlans(Attack):
     name = "joint_plans"
-    promise = "Plans between configurations keep limits up to jerk at every instant, with straight lines at the ends too"
+    promise = "Plans between configurations keep limits up to jerk at every instant, with lines at their ends too"
     page = "planning"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
