@@ -242,14 +242,14 @@ fn rates([v, a, j]: [f64; 3], sense: f64, parts: [(f64, i32); 2], tied: Option<(
 
 /// A joint with round limits, in states that are at the limits in many ways.
 fn round_joint() -> impl Strategy<Value = OneJoint> {
-    let state = (part(), part(), prop::option::of(part()));
+    let state = || (part(), part(), prop::option::of(part()));
     let displacement = prop_oneof![
         Just((0.0, 0)),
         round().prop_map(|d| (d, 0)),
         (-1..=1).prop_map(|steps| (f64::INFINITY, steps)), // that of the limits
         part(),
     ];
-    (round_limits(), state.clone(), prop::option::of(state), displacement, prop::sample::select(vec![0.0, 1.0, -0.7]))
+    (round_limits(), state(), prop::option::of(state()), displacement, prop::sample::select(vec![0.0, 1.0, -0.7]))
         .prop_map(|(limits, start, end, (d, steps), q)| {
             let [v, a, j] = limits;
             let (v0, a0) = rates(limits, 1.0, [start.0, start.1], start.2);
@@ -315,7 +315,7 @@ proptest! {
         let longer = transfer.duration(factor * shortest);
         prop_assert!(shortest.is_finite() && longer >= factor * shortest && transfer.duration(longer) == longer);
         if shortest > 0.0 {
-            let profile = transfer.motion(longer).unwrap();
+            let profile = transfer.motion(longer);
             let end = profile.at(longer);
             let scale = 1.0 + (velocity + acceleration + jerk) * longer;
             prop_assert!((end.q - to.q).abs() + (end.v - to.v).abs() + (end.a - to.a).abs() < 1e-11 * scale);

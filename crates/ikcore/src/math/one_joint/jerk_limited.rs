@@ -14,6 +14,7 @@ use std::cmp::Ordering;
 
 use super::motion_state::{MotionState, Rates};
 use super::phases::{Durations, Phase, Phases, Possible, ROUNDING};
+use crate::math::comparison::{larger, smaller};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JerkLimited {
@@ -54,7 +55,7 @@ impl JerkLimited {
     /// The shape for a possible duration `t` (s).
     #[inline]
     fn shape(&self, t: f64) -> Shape {
-        let shape = self.unlimited((0.5 * (self.rates.jerk * t + self.from.a - self.to.a)).max(0.0));
+        let shape = self.unlimited(larger(0.5 * (self.rates.jerk * t + self.from.a - self.to.a), 0.0));
         if shape.peak > 0.0 && shape.trough < 0.0 && self.top_speed(&shape) > self.rates.velocity {
             return self.cruising(t);
         }
@@ -66,8 +67,9 @@ impl JerkLimited {
         let Self { from, to, c1, c3, rates: Rates { velocity, jerk, .. }, .. } = *self;
         let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t);
         // A ramp from x to y along which the velocity is c + a^2 / (2 J).
-        let ramp = |c: f64, x: f64, y: f64| (y - x) * (c + (x * x + x * y + y * y) / (6.0 * jerk)) / jerk;
-        let half = 0.5 / jerk;
+        let inverse = 1.0 / jerk;
+        let [half, sixth] = [0.5 * inverse, inverse / 6.0];
+        let ramp = |c: f64, x: f64, y: f64| (y - x) * inverse * (c + (x * x + x * y + y * y) * sixth);
         let [before_hold, after_hold] = [c1 + half * peak * peak, c3 + half * trough * trough];
         let top = before_hold + peak * peak_hold + half * peak * peak;
         let holds = peak_hold * (before_hold + 0.5 * peak * peak_hold)
@@ -110,7 +112,7 @@ impl JerkLimited {
     /// The shape without a velocity limit. Whatever rounding does to it, its phases last the duration that belongs to `s`.
     fn unlimited(&self, s: f64) -> Shape {
         let Self { from, to, k, rates: Rates { acceleration: limit, jerk, .. }, .. } = *self;
-        let between = |x: f64, least: f64, most: f64| x.min(most).max(least);
+        let between = |x: f64, least: f64, most: f64| larger(smaller(x, most), least);
         // Of a ramp that rises all the way (s = 0 and k = 0) every point is peak and trough.
         let ratio = if k == 0.0 { 0.0 } else { k / s };
         let peak = between(0.5 * (ratio + s), from.a, to.a + s);
@@ -156,8 +158,8 @@ impl JerkLimited {
     fn at_top_speed(&self) -> Shape {
         let Rates { velocity, acceleration: limit, jerk } = self.rates;
         let side = |c: f64, least: f64| {
-            let peak = (jerk * (velocity - c)).max(0.0).sqrt().max(least);
-            if peak <= limit { (peak, 0.0) } else { (limit, ((velocity - c) / limit - limit / jerk).max(0.0)) }
+            let peak = larger(larger(jerk * (velocity - c), 0.0).sqrt(), least);
+            if peak <= limit { (peak, 0.0) } else { (limit, larger((velocity - c) / limit - limit / jerk, 0.0)) }
         };
         let ((peak, peak_hold), (depth, trough_hold)) = (side(self.c1, self.from.a), side(self.c3, -self.to.a));
         Shape { peak, peak_hold, cruise: 0.0, trough: -depth, trough_hold }

@@ -254,8 +254,9 @@ mod tests {
     }
 
     impl MotionLimits {
-        fn with_jerk(self, jerk: f64) -> Self {
-            Self { jerk: vec![jerk; self.dof()], ..self }
+        fn with_jerk(mut self, jerk: f64) -> Self {
+            self.jerk = vec![jerk; self.dof()];
+            self
         }
     }
 
