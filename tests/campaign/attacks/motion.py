@@ -113,7 +113,8 @@ class StateToState(Attack):
         right = all(
             min(joint["limits"]) > 0.0 and typed.stays(joint["limits"], joint["to"][1:], ends=True) for joint in joints
         )
-        if right and any(joint["from"] != joint["to"] for joint in joints):
+        same = all(np.allclose(joint["from"], joint["to"], rtol=1e-14, atol=1e-300) for joint in joints)
+        if right and not same:
             raise BrokenError("a right pair of states is refused", error)
 
 

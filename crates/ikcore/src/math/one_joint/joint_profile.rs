@@ -65,8 +65,9 @@ impl JointProfile {
         Self { duration, ..motion }
     }
 
-    /// The same motion to the position `q`, which it misses by rounding: all after the longest segment is shifted.
-    pub(super) fn ending_at(mut self, q: f64) -> Self {
+    /// The same motion to the position `q`, which it misses by rounding. The longest segment makes up for it by its
+    /// velocity, as far as `rounding` (rad/s or m/s) goes, and then by its position.
+    pub(super) fn ending_at(mut self, q: f64, rounding: f64) -> Self {
         let error = q - self.at(self.duration).q;
         let (mut longest, mut longest_span) = (0, 0.0);
         for i in 0..self.segments.len() {
@@ -74,6 +75,10 @@ impl JointProfile {
             if span > longest_span {
                 (longest, longest_span) = (i, span);
             }
+        }
+        // The velocities at both ends stay.
+        if 0 < longest && longest + 1 < self.segments.len() {
+            self.segments[longest].state.v += (error / longest_span).clamp(-rounding, rounding);
         }
         self.segments[longest + 1..].iter_mut().for_each(|segment| segment.state.q += error);
         self
@@ -114,13 +119,14 @@ impl JointProfile {
         let mut mean = Self { segments: SmallVec::new(), duration: self.duration };
         let (mut i, mut k) = (0, 0);
         let start = |motion: &Self, index: usize| motion.segments.get(index).map_or(f64::INFINITY, |s| s.time);
-        let mut time = 0.0;
+        let (mut time, mut q) = (0.0, self.segments[0].state.q);
         loop {
             let (one, two) = (&self.segments[i], &other.segments[k]);
             let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
             let blend = |x: f64, y: f64| y + share * (x - y);
-            let state = MotionState { q: blend(a.q, b.q), v: blend(a.v, b.v), a: blend(a.a, b.a) };
-            mean.segments.push(JointSegment { time, state, jerk: blend(one.jerk, two.jerk) });
+            let state = MotionState { q, v: blend(a.v, b.v), a: blend(a.a, b.a) };
+            let segment = JointSegment { time, state, jerk: blend(one.jerk, two.jerk) };
+            mean.segments.push(segment);
             let next = start(self, i + 1).min(start(other, k + 1));
             if next == f64::INFINITY {
                 return mean;
@@ -132,6 +138,8 @@ impl JointProfile {
             if start(other, k + 1) <= together {
                 k += 1;
             }
+            // The positions of both may be far away, and their mean near.
+            q = segment.state.after(segment.jerk, next - time).q;
             time = next;
         }
     }

@@ -65,15 +65,19 @@ impl Transfer {
             () if !(self.displacement > lowest + rounding) => profile(&down),
             () => profile(&up).mean(share, &profile(&down)),
         };
-        self.entry.clone().then(&inside.ending_at(self.to.q))
+        self.entry.clone().then(&inside.ending_at(self.to.q, ROUNDING * self.fastest(t)))
     }
 
     /// Distance from the goal that counts as rounding after `t` (s): relative to the positions, and to the way there.
     fn rounding(&self, t: f64) -> f64 {
+        ROUNDING * (self.displacement.abs() + self.from.q.abs() + t * self.fastest(t))
+    }
+
+    /// A speed that no motion of the duration `t` (s) exceeds.
+    fn fastest(&self, t: f64) -> f64 {
         let Self { from, to, rates: Rates { velocity, acceleration, jerk }, .. } = self;
         let largest = (from.a.abs() + to.a.abs() + t * jerk).min(*acceleration);
-        let fastest = (from.v.abs() + to.v.abs() + t * largest).min(*velocity);
-        ROUNDING * (self.displacement.abs() + from.q.abs() + t * fastest)
+        (from.v.abs() + to.v.abs() + t * largest).min(*velocity)
     }
 
     /// The shortest possible duration of at least `least` (s), from inside the limits.
