@@ -262,15 +262,19 @@ fn lines_begin_and_end_with_joints_at_their_limits() {
     let mut rng = rng::stream(11, 0);
     let [lower, upper] = [robot.joints()[6].lower, robot.joints()[6].upper];
     let mut found = 0;
-    for i in 0..40 {
+    for i in 0..60 {
         let mut q = robot.random_configurations(1, &mut rng).unwrap();
-        q[6] = if i % 2 == 0 { lower } else { upper };
+        q[6] = if i % 2 == 0 { upper } else { lower };
         let options = PointToPointOptions { retreat: line(0.02), ..options(&robot) };
         let [start, end] = [q, READY.to_vec()].map(Endpoint::Configuration);
-        let Ok(plan) = plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended) else { continue };
-        let (low, high) = plan.trajectory.position_range()[6];
-        assert!(low >= lower - 1e-9 && high <= upper + 1e-9, "{low} and {high}");
-        found += 1;
+        match plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended) {
+            Ok(plan) => {
+                let (low, high) = plan.trajectory.position_range()[6];
+                assert!(low >= lower - 1e-9 && high <= upper + 1e-9, "{low} and {high}");
+                found += 1;
+            }
+            Err(error) => assert!(!error.to_string().contains("position of joint"), "{error}"),
+        }
     }
-    assert!(found >= 30, "{found} of 40");
+    assert!(found >= 40, "{found} of 60");
 }
