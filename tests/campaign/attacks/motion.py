@@ -102,7 +102,8 @@ class StateToState(Attack):
         scale = np.array([1e-6 * reach, limits[0].max(), limits[1].max()])[:, None]
         for what, state, row in (("start", start, 0), ("end", end, -1)):
             found = np.array([dense(motion, order, 2)[row, row] for order in range(3)])
-            off = np.abs(found - state) / np.maximum(scale, 1.0)
+            resolution = 4.0 * np.spacing(motion.duration) * limits  # of times, see check_rates
+            off = np.maximum(np.abs(found - state) - resolution, 0.0) / np.maximum(scale, 1.0)
             if off.max() > 1e-7:
                 raise BrokenError(f"the motion misses its {what}", off.tolist())
         check_duration(motion, start, end, limits)
