@@ -101,6 +101,11 @@ SPOILED = {
         "motion = bik.Trajectory(motion.time, 1.1 * motion.coefficients)",
         "the velocity is beyond its limit",
     ),
+    "joint_plans": (
+        "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
+        "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
+        "the plan misses its ends",
+    ),
     "trajectories": (
         "most = [0.5 * rate for rate in most]",
         "the largest derivative 1 is too small",

@@ -255,3 +255,26 @@ fn pieces_end_with_the_time_and_the_monitor() {
     assert!(plan.is_ok(), "{plan:?}");
     assert!(plan_point_to_point(&robot, &start, &ends, &with(None), &mut Never).is_err());
 }
+
+#[test]
+fn lines_begin_and_end_with_joints_at_their_limits() {
+    let robot = panda();
+    let mut rng = rng::stream(11, 0);
+    let [lower, upper] = [robot.joints()[6].lower, robot.joints()[6].upper];
+    let mut found = 0;
+    for i in 0..60 {
+        let mut q = robot.random_configurations(1, &mut rng).unwrap();
+        q[6] = if i % 2 == 0 { upper } else { lower };
+        let options = PointToPointOptions { retreat: line(0.02), ..options(&robot) };
+        let [start, end] = [q, READY.to_vec()].map(Endpoint::Configuration);
+        match plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended) {
+            Ok(plan) => {
+                let (low, high) = plan.trajectory.position_range()[6];
+                assert!(low >= lower - 1e-9 && high <= upper + 1e-9, "{low} and {high}");
+                found += 1;
+            }
+            Err(error) => assert!(!error.to_string().contains("position of joint"), "{error}"),
+        }
+    }
+    assert!(found >= 40, "{found} of 60");
+}

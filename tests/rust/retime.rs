@@ -254,3 +254,33 @@ fn errors_name_the_reason_and_the_remedy() {
         "start_qd is kept by method=\"minmax\": method=\"tpbso\" begins at rest"
     );
 }
+
+#[test]
+fn a_velocity_of_zero_plans_around_what_is_in_the_way() {
+    let (robot, obstacles) = (panda(), a_box());
+    let pair = &pairs_around(&robot, &obstacles, 1)[0];
+    let options = PointToPointOptions {
+        limits: Some(with_limits(&robot, &[(Field::Acceleration, 5.0), (Field::Jerk, JERK)])),
+        obstacles: obstacles.clone().into(),
+        start_velocity: Some(vec![0.0; 7]),
+        ..PointToPointOptions::default()
+    };
+    let [start, end] = [0, 1].map(|i| Endpoint::Configuration(pair[i].clone()));
+    let plan = plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap();
+    assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+    assert!(smallest_distance(&Scene::new(&robot, &obstacles).unwrap(), &plan.trajectory) >= 1e-3 - 1e-9);
+}
+
+#[test]
+fn short_phases_late_in_a_motion_are_retimed_within_limits() {
+    let robot = Robot::named("panda").unwrap();
+    let start = vec![0.0, 1.397_937_058_730_536_6, 2.056_5, -0.178_8, 0.504_56, 1.286_6, 0.0];
+    let end = vec![-2.1, -1.6, 1.6, -2.4, -0.9, 0.1, -1.2];
+    for acceleration in [500.0, 2000.0] {
+        let slow = with_limits(&robot, &[(Field::Velocity, 0.002), (Field::Acceleration, acceleration)]);
+        let plan = around(&robot, &[], &[start.clone(), end.clone()], slow);
+        let limits = with_limits(&robot, &[(Field::Velocity, 0.5), (Field::Acceleration, 20.0), (Field::Jerk, 20.0)]);
+        let motion = plan.retime(&robot, Some(&limits)).unwrap().trajectory;
+        assert!(largest(motion.max_jerk()) <= 20.0 * (1.0 + 1e-8), "{:?}", motion.max_jerk());
+    }
+}

@@ -199,20 +199,90 @@ fn joint() -> impl Strategy<Value = OneJoint> {
     })
 }
 
+/// One, two or five times a power of ten.
+fn round() -> impl Strategy<Value = f64> {
+    (prop::sample::select(vec![1.0, 2.0, 5.0]), -3..=3_i32).prop_map(|(digit, power)| digit * 10.0_f64.powi(power))
+}
+
+/// Limits of a joint (velocity, acceleration, jerk), of half of which two are reached at once.
+fn round_limits() -> impl Strategy<Value = [f64; 3]> {
+    let tied = prop::option::of(prop::sample::select(vec![1.0, 1.0, 0.5, 2.0, 0.25, 4.0]));
+    (round(), round(), round(), tied).prop_map(|(v, a, j, tied)| [v, a, tied.map_or(j, |share| share * a * a / v)])
+}
+
+/// Parts of a limit: none, all, round ones, any; and the numbers beside them.
+fn part() -> impl Strategy<Value = (f64, i32)> {
+    let share = prop_oneof![
+        prop::sample::select(vec![0.0, 1.0, -1.0, 0.5, -0.5, 0.2]),
+        -1.0..1.0_f64,
+        (-16.0..0.0_f64).prop_map(|power| 10.0_f64.powf(power)),
+    ];
+    (share, -1..=1)
+}
+
+/// This part of a limit.
+fn of(limit: f64, (share, steps): (f64, i32)) -> f64 {
+    let value: f64 = share * limit;
+    match steps {
+        _ if value == 0.0 => value,
+        -1 => value.next_down(),
+        1 => value.next_up(),
+        _ => value,
+    }
+}
+
+/// Velocity and acceleration at a start (`sense` 1) or an end (-1), at the limits in many ways. With `tied` the joint
+/// comes to that part of its velocity limit when the acceleration has ended.
+fn rates([v, a, j]: [f64; 3], sense: f64, parts: [(f64, i32); 2], tied: Option<(f64, i32)>) -> (f64, f64) {
+    let acceleration = of(a, parts[0]).clamp(-a, a);
+    let change = sense * 0.5 * acceleration * acceleration.abs() / j;
+    let velocity = tied.map_or(of(v, parts[1]), |part| of(v, part) - change);
+    let kept = velocity.abs() <= v && (velocity + change).abs() <= v;
+    if kept { (velocity, acceleration) } else { (0.0, 0.0) }
+}
+
+/// A joint with round limits, in states that are at the limits in many ways.
+fn round_joint() -> impl Strategy<Value = OneJoint> {
+    let state = || (part(), part(), prop::option::of(part()));
+    let displacement = prop_oneof![
+        Just((0.0, 0)),
+        round().prop_map(|d| (d, 0)),
+        (-1..=1).prop_map(|steps| (f64::INFINITY, steps)), // that of the limits
+        part(),
+    ];
+    (round_limits(), state(), prop::option::of(state()), displacement, prop::sample::select(vec![0.0, 1.0, -0.7]))
+        .prop_map(|(limits, start, end, (d, steps), q)| {
+            let [v, a, j] = limits;
+            let (v0, a0) = rates(limits, 1.0, [start.0, start.1], start.2);
+            let (v1, a1) = end.map_or((0.0, 0.0), |end| rates(limits, -1.0, [end.0, end.1], end.2));
+            let d = if d.is_infinite() { of(v * (v / a + a / j), (1.0, steps)) } else { d };
+            (limits, [q, v0, a0], [q + d, v1, a1])
+        })
+}
+
+/// How much a limit may be exceeded (relative): rounding, and what a rate changes in the resolution of the times.
+fn excess(limit: f64, rate: f64, duration: f64) -> f64 {
+    1e-9 + 4.0 * f64::EPSILON * duration * rate / limit
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn limits_hold_throughout_and_the_ends_are_met(joints in prop::collection::vec(joint(), 1..5)) {
+    fn limits_hold_throughout_and_the_ends_are_met(
+        joints in prop::collection::vec(prop_oneof![joint(), round_joint()], 1..5)
+    ) {
         let column = |pick: fn(&OneJoint) -> f64| joints.iter().map(pick).collect::<Vec<f64>>();
         let rates = [column(|j| j.0[0]), column(|j| j.0[1]), column(|j| j.0[2])];
         let from = ArmState { q: column(|j| j.1[0]), qd: column(|j| j.1[1]), qdd: column(|j| j.1[2]) };
         let to = ArmState { q: column(|j| j.2[0]), qd: column(|j| j.2[1]), qdd: column(|j| j.2[2]) };
-        prop_assume!(from != to);
+        prop_assume!(from.qd != to.qd || from.qdd != to.qdd || largest_difference(&from, &to) > 1e-15);
         let motion = state_to_state(&from, &to, &up_to_jerk([&rates[0], &rates[1], &rates[2]])).unwrap();
-        for (found, limit) in [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()].iter().zip(&rates) {
-            for (found, limit) in found.iter().zip(limit) {
-                prop_assert!(*found <= limit * (1.0 + 1e-9), "{found} of {limit}");
+        let duration = motion.duration();
+        for (order, found) in [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()].iter().enumerate() {
+            for (j, found) in found.iter().enumerate() {
+                let (limit, rate) = (rates[order][j], if order < 2 { rates[order + 1][j] } else { 0.0 });
+                prop_assert!(*found <= limit * (1.0 + excess(limit, rate, duration)), "{found} of {limit}");
             }
         }
         let scale = 1.0 + rates.iter().flatten().copied().fold(0.0, f64::max) * motion.duration();
@@ -246,10 +316,41 @@ proptest! {
         let longer = transfer.duration(factor * shortest);
         prop_assert!(shortest.is_finite() && longer >= factor * shortest && transfer.duration(longer) == longer);
         if shortest > 0.0 {
-            let profile = transfer.motion(longer).unwrap();
+            let profile = transfer.motion(longer);
             let end = profile.at(longer);
             let scale = 1.0 + (velocity + acceleration + jerk) * longer;
             prop_assert!((end.q - to.q).abs() + (end.v - to.v).abs() + (end.a - to.a).abs() < 1e-11 * scale);
         }
+    }
+
+    /// Two starts that differ by rounding take the same time, but for the square root of rounding.
+    #[test]
+    fn the_next_start_takes_as_long(joint in round_joint(), step in prop::sample::select(vec![f64::next_up, f64::next_down])) {
+        let ([velocity, acceleration, jerk], [q0, v0, a0], [q1, ..]) = joint;
+        let rates = Rates { velocity, acceleration, jerk };
+        let duration = |v: f64| {
+            Transfer::new(MotionState { q: q0, v, a: a0 }, MotionState::rest(q1), &rates).duration(0.0)
+        };
+        let (one, next) = (duration(v0), duration(step(v0)));
+        prop_assert!((one - next).abs() <= 1e-6 * one + 1e-5 * (velocity / jerk).sqrt(), "{one} and {next}");
+    }
+
+    /// From any state, inside the limits or not, a joint gets to any rest within its jerk limit, and its end is exact.
+    #[test]
+    fn every_start_has_a_motion(
+        (limits, parts, beyond, d) in (round_limits(), [part(), part()], [round(), round()], round())
+    ) {
+        let [velocity, acceleration, jerk] = limits;
+        let (v0, a0) = (of(velocity * beyond[0], parts[0]), of(acceleration * beyond[1], parts[1]));
+        // The way back inside takes days, not centuries.
+        prop_assume!(v0.abs() + 0.5 * a0 * a0 / jerk <= 100.0 * velocity);
+        let from = state([&[0.0], &[v0], &[a0]]);
+        let motion = state_to_state(&from, &rest(&[d]), &up_to_jerk([&[velocity], &[acceleration], &[jerk]])).unwrap();
+        prop_assert!(motion.max_jerk()[0] <= jerk * (1.0 + 1e-9));
+        let end = at(&motion, motion.duration());
+        let (fastest, hardest) = (motion.max_velocity()[0], motion.max_acceleration()[0]);
+        let resolution = 16.0 * f64::EPSILON * motion.duration();
+        prop_assert!((end.q[0] - d).abs() <= 1e-9 * d + resolution * velocity, "{} of {d}", end.q[0]);
+        prop_assert!(end.qd[0].abs() <= 1e-9 * fastest + resolution * hardest, "{}", end.qd[0]);
     }
 }

@@ -309,6 +309,30 @@ fn a_joint_that_stays_needs_no_speed() {
 }
 
 /// Waypoints of up to four joints with limits for each.
+#[test]
+fn waypoints_at_position_limits_are_inside_them() {
+    let bounds = [2.8973, 1.7628, 3.0718, 0.0175, 0.1, 0.3];
+    let fields = [
+        (Field::Lower, bounds.map(|bound| -bound).to_vec()),
+        (Field::Upper, bounds.to_vec()),
+        (Field::Velocity, vec![1.0; 6]),
+        (Field::Acceleration, vec![5.0; 6]),
+    ];
+    let limits = limits(&fields, 6).unwrap();
+    for signs in 0..64_u32 {
+        let corner = |bits: u32| bounds.iter().enumerate().map(move |(j, b)| if bits >> j & 1 == 1 { *b } else { -b });
+        let waypoints: Vec<f64> =
+            corner(signs).chain(bounds.map(|bound| bound / 3.0)).chain(corner(63 - signs)).collect();
+        for blend in [0.0, 0.1] {
+            let path = JointPath::polyline(names(6), &waypoints, blend).unwrap();
+            let motion = time_optimal(&path, &limits, &TimingOptions::default()).unwrap();
+            for ((low, high), bound) in motion.position_range().iter().zip(bounds) {
+                assert!(low.abs().max(*high) <= bound * (1.0 + 1e-12), "{low} and {high}");
+            }
+        }
+    }
+}
+
 fn any_problem() -> impl Strategy<Value = (JointPath, Vec<f64>, Vec<f64>)> {
     let ends = prop::sample::select(vec![SplineEnds::Natural, SplineEnds::NotAKnot, SplineEnds::Clamped]);
     (1..5_usize, 2..8_usize, ends).prop_flat_map(|(n, rows, ends)| {

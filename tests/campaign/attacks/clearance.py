@@ -148,11 +148,16 @@ class ClearSolutions(Clear):
 class ClearPlans(Clear):
     name = "clear_plans"
     promise = "A plan that is called clear keeps its margin and its limits at every instant"
+    # Limits on velocity, acceleration and jerk: in most of them two are reached at once.
+    rates = ((2.0, 5.0), (2.0, 5.0, 50.0), (1.0, 10.0, 100.0), (0.5, 5.0, 50.0), (2.0, 10.0, 50.0), (1.0, 1.0, 1.0))
+
+    def limits(self, case: Case) -> dict[str, float]:
+        """Its limits by name."""
+        return dict(zip(("velocity", "acceleration", "jerk"), self.rates[case["seed"] % len(self.rates)], strict=False))
 
     def program(self, case: Case) -> str:
-        jerk = case["seed"] % 3 == 0
         return (
-            f"{self.made(case)}limits = bik.Limits(velocity=2.0, acceleration=5.0{', jerk=50.0' * jerk})\n"
+            f"{self.made(case)}limits = bik.Limits(**{self.limits(case)})\n"
             f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
             "plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], **given)"
         )
@@ -162,8 +167,7 @@ class ClearPlans(Clear):
         if not plan.success:
             return 1
         motion, robot = plan.trajectory, left["robot"]
-        rates = {"velocity": np.full(robot.dof, 2.0), "acceleration": np.full(robot.dof, 5.0)}
-        check_rates(motion, rates | ({"jerk": np.full(robot.dof, 50.0)} if case["seed"] % 3 == 0 else {}), 1e-6)
+        check_rates(motion, {kind: np.full(robot.dof, rate) for kind, rate in self.limits(case).items()}, 1e-6)
         if np.abs(motion.q[[0, -1]] - left["ends"][:2]).max() > 1e-7:
             raise BrokenError("the plan misses its ends", motion.q[[0, -1]].tolist())
         for q in motion.at(np.linspace(0.0, motion.duration, 150))[0]:

@@ -9,6 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
+from .. import arms, ruckig_apart, typed
 from ..attack import Attack, BrokenError, Case
 
 RELATIVE = 1e-9  # excess over a limit that counts as rounding
@@ -27,12 +28,48 @@ def dense(motion: bik.Trajectory, order: int, samples: int = SAMPLES) -> np.ndar
 
 
 def check_rates(motion: bik.Trajectory, limits: dict[str, np.ndarray], slack: float = RELATIVE) -> None:
-    """Checks velocity, acceleration and jerk of the polynomials at many times."""
-    for order, kind in enumerate(("velocity", "acceleration", "jerk"), 1):
+    """Checks velocity, acceleration and jerk of the polynomials at many times.
+
+    Times are rounded, so that a velocity may be off by what an acceleration changes meanwhile, and so on.
+    """
+    resolution = 2.0 * np.spacing(motion.duration)
+    kinds = ("velocity", "acceleration", "jerk")
+    for order, (kind, rate) in enumerate(zip(kinds, (*kinds[1:], "jerk"), strict=True), 1):
         if kind in limits:
-            excess = (np.abs(dense(motion, order)) / limits[kind]).max(initial=0.0) - 1.0
+            rounding = resolution * limits[rate] if rate in limits and rate != kind else 0.0
+            excess = ((np.abs(dense(motion, order)) - rounding) / limits[kind]).max(initial=0.0) - 1.0
             if not excess <= slack:
                 raise BrokenError(f"the {kind} is beyond its limit", excess)
+
+
+def _real_joint(random: np.random.Generator, hard: bool) -> Case:
+    spread = 3.0 if hard else 0.7
+    velocity, acceleration, jerk = np.exp(random.uniform(-spread, spread, 3)) * (1.5, 5.0, 50.0)
+    at = random.uniform(-2, 2)
+    far = random.uniform(-2, 2) if not hard or random.random() < 0.5 else at + 10.0 ** random.uniform(-9, -1)
+    factor = random.choice([0.0, 1.0, 0.999999, 0.5]) if hard else 0.5
+    signs = random.uniform(-1, 1, 2) if random.random() < 0.8 else random.choice([-1.0, 1.0], 2)
+    speeds = velocity * factor * signs
+    # What an acceleration may be at a speed: it must fade out before the limit.
+    most = np.minimum(acceleration, np.sqrt(2 * jerk * np.maximum(0.0, velocity - np.abs(speeds))))
+    rates = 0.99 * most * random.uniform(-1, 1, 2) * (random.random() < 0.7)
+    return {
+        "from": tuple(map(float, (at, speeds[0], rates[0]))),
+        "to": tuple(map(float, (far, speeds[1], rates[1]))),
+        "limits": tuple(map(float, (velocity, acceleration, jerk))),
+    }
+
+
+def _typed_joint(random: np.random.Generator) -> Case:
+    limits = typed.limits(random)
+    at = float(random.choice([0.0, 0.0, 1.0, -0.5, random.uniform(-2, 2)]))
+    start = typed.rates(random, limits)
+    end = (0.0, 0.0) if random.random() < 0.5 else typed.rates(random, limits, ends=True)
+    return {
+        "from": (at, *start),
+        "to": (at + typed.displacement(random, limits), *end),
+        "limits": limits,
+    }
 
 
 class StateToState(Attack):
@@ -41,30 +78,9 @@ class StateToState(Attack):
     page = "motion"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """Hard states are near each other, at their limits, or limits differ by orders of magnitude."""
-        joints = []
-        for _ in range(int(random.integers(1, 6))):
-            spread = 3.0 if hard else 0.7
-            velocity, acceleration, jerk = np.exp(random.uniform(-spread, spread, 3)) * (1.5, 5.0, 50.0)
-            at = random.uniform(-2, 2)
-            far = random.uniform(-2, 2) if not hard or random.random() < 0.5 else at + 10.0 ** random.uniform(-9, -1)
-            factor = random.choice([0.0, 1.0, 0.999999, 0.5]) if hard else 0.5
-            speeds = (
-                velocity * factor * random.uniform(-1, 1, 2)
-                if random.random() < 0.8
-                else velocity * factor * random.choice([-1.0, 1.0], 2)
-            )
-            # What an acceleration may be at a speed: it must fade out before the limit.
-            most = np.minimum(acceleration, np.sqrt(2 * jerk * np.maximum(0.0, velocity - np.abs(speeds))))
-            rates = 0.99 * most * random.uniform(-1, 1, 2) * (random.random() < 0.7)
-            joints.append(
-                {
-                    "from": tuple(map(float, (at, speeds[0], rates[0]))),
-                    "to": tuple(map(float, (far, speeds[1], rates[1]))),
-                    "limits": tuple(map(float, (velocity, acceleration, jerk))),
-                }
-            )
-        return {"joints": joints}
+        """Half of the joints have round limits that tie. Hard states are near each other, or limits very different."""
+        halves = random.random(int(random.integers(1, 6))) < 0.5
+        return {"joints": [_typed_joint(random) if is_typed else _real_joint(random, hard) for is_typed in halves]}
 
     def program(self, case: Case) -> str:
         columns = [
@@ -82,42 +98,44 @@ class StateToState(Attack):
         start, end, limits = (np.array([joint[key] for joint in case["joints"]]).T for key in ("from", "to", "limits"))
         kinds = dict(zip(("velocity", "acceleration", "jerk"), limits, strict=True))
         check_rates(motion, kinds, 1e-8)
-        scale = np.array([1.0, limits[0].max(), limits[1].max()])[:, None]
+        reach = motion.duration * limits[0].max()  # positions are as exact as those in between
+        scale = np.array([1e-6 * reach, limits[0].max(), limits[1].max()])[:, None]
         for what, state, row in (("start", start, 0), ("end", end, -1)):
             found = np.array([dense(motion, order, 2)[row, row] for order in range(3)])
-            off = np.abs(found - state) / np.maximum(scale, 1.0)
+            resolution = 4.0 * np.spacing(motion.duration) * limits  # of times, see check_rates
+            off = np.maximum(np.abs(found - state) - resolution, 0.0) / np.maximum(scale, 1.0)
             if off.max() > 1e-7:
                 raise BrokenError(f"the motion misses its {what}", off.tolist())
-        theirs = ruckig_duration(start, end, limits)
-        if theirs is not None and motion.duration > theirs * (1 + 1e-6) + 1e-9:
-            raise BrokenError("slower than ruckig", (motion.duration, theirs))
+        check_duration(motion, start, end, limits)
         return 1
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
-        same = all(joint["from"] == joint["to"] for joint in case["joints"])
-        if not same and not isinstance(error, bik.InfeasibleError):
+        joints = case["joints"]  # when a case is made smaller, its numbers become zero
+        right = all(
+            min(joint["limits"]) > 0.0 and typed.stays(joint["limits"], joint["to"][1:], ends=True) for joint in joints
+        )
+        same = all(np.allclose(joint["from"], joint["to"], rtol=1e-14, atol=1e-300) for joint in joints)
+        if right and not same:
             raise BrokenError("a right pair of states is refused", error)
 
 
-def ruckig_duration(start: np.ndarray, end: np.ndarray, limits: np.ndarray) -> float | None:
-    """How long ruckig takes; None if it fails, or returns a motion that misses its end."""
-    import ruckig
-
-    given = ruckig.InputParameter(start.shape[1])
-    given.current_position, given.current_velocity, given.current_acceleration = start.tolist()
-    given.target_position, given.target_velocity, given.target_acceleration = end.tolist()
-    given.max_velocity, given.max_acceleration, given.max_jerk = limits.tolist()
-    theirs = ruckig.Trajectory(start.shape[1])
+def check_duration(motion: bik.Trajectory, start: np.ndarray, end: np.ndarray, limits: np.ndarray) -> None:
+    """Checks that ruckig is not quicker, to where its motion really ends, if that keeps the limits."""
+    theirs = ruckig_apart.motion(start, end, limits)
+    if theirs is None or (np.array(theirs["rates"]) > limits[:2] * (1 + 1e-12)).any():
+        return
+    if motion.duration <= theirs["duration"] * (1 + 1e-6) + 1e-9:
+        return
+    there = np.array(theirs["end"])
+    kinds = dict(zip(("velocity", "acceleration", "jerk"), limits.tolist(), strict=True))
     try:
-        if ruckig.Ruckig(start.shape[1]).calculate(given, theirs) != ruckig.Result.Working:
-            return None
-    except ruckig.RuckigError:
-        return None
-    if np.abs(np.array(theirs.at_time(theirs.duration)) - end).max() > 1e-8:
-        return None
-    times = np.linspace(0.0, theirs.duration, 2000)
-    rates = np.abs(np.array([theirs.at_time(t)[1:] for t in times])).max(axis=0)
-    return theirs.duration if (rates <= limits[:2] * (1 + 1e-9)).all() else None
+        again = bik.state_to_state(
+            start[0], there[0], bik.Limits(**kinds), qd0=start[1], qdd0=start[2], qd1=there[1], qdd1=there[2]
+        )
+    except bik.BeetleIkError:  # it ends outside the limits
+        return
+    if again.duration > theirs["duration"] * (1 + 1e-6) + 1e-9:
+        raise BrokenError("slower than ruckig", (motion.duration, theirs["duration"]))
 
 
 class TimeOptimal(Attack):
@@ -139,6 +157,10 @@ class TimeOptimal(Attack):
             if k > 3 and random.random() < 0.3:
                 points[3] = points[1]
         limits = [tuple((np.exp(random.uniform(-spread, spread, 3)) * (1.5, 5.0, 50.0)).tolist()) for _ in range(n)]
+        if random.random() < 0.5:
+            points = np.round(points, 1)
+            shared = typed.limits(random, -1, 1) if random.random() < 0.5 else None
+            limits = [shared or typed.limits(random, -1, 2) for _ in range(n)]
         return {
             "points": [tuple(row) for row in points.tolist()],
             "limits": limits,
@@ -193,6 +215,77 @@ def toppra_duration(points: np.ndarray, velocity: np.ndarray, acceleration: np.n
         if speeds is None or np.isnan(speeds).any()
         else float(np.sum(2 * np.diff(grid) / (speeds[1:] + speeds[:-1])))
     )
+
+
+class JointPlans(Attack):
+    name = "joint_plans"
+    promise = "Plans between configurations keep limits up to jerk at every instant, with lines at their ends too"
+    page = "planning"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Limits are round and tie; hard configurations are at limits and at zero, or have joints in common."""
+        joints = arms.easy_arm(random, int(random.integers(1, 8)))
+        arms.put(joints, random, hard, 2)
+        shared = [typed.limits(random, -1, 1) for _ in range(2)] if random.random() < 0.6 else None
+        for joint in joints:
+            joint["rates"], joint["slower"] = shared or [typed.limits(random, -1, 2) for _ in range(2)]
+            joint["share"] = float(random.choice([0.0, 0.0, 0.5, 1.0, -1.0]))
+            if hard and random.random() < 0.3:
+                joint["at"] = (joint["at"][0],) * 2
+        begins = ("rest", "rest", "zero", "moving", "line", "free")
+        return {"joints": joints, "orders": int(random.integers(1, 4)), "begin": str(random.choice(begins))}
+
+    def limits(self, case: Case, name: str = "rates") -> dict[str, np.ndarray]:
+        """The limits of the free joints."""
+        rates = np.array([joint[name] for joint in arms.free(case["joints"])])
+        return dict(zip(("velocity", "acceleration", "jerk")[: case["orders"]], rates.T, strict=False))
+
+    def program(self, case: Case) -> str:
+        first, last = arms.configurations(case["joints"])
+        speeds = [joint["share"] * joint["rates"][0] for joint in arms.free(case["joints"])]
+        begin = {
+            "zero": f", start_qd={[0.0] * len(first)}",
+            "moving": f", start_qd={speeds}",
+            "line": ", retreat=0.02, approach=0.01",
+            "free": ", free_start=True",
+        }.get(case["begin"] if case["orders"] > 1 else "rest", "")
+        limits, slower = (
+            ", ".join(f"{kind}={values.tolist()}" for kind, values in self.limits(case, name).items())
+            for name in ("rates", "slower")
+        )
+        return (
+            f"{arms.written(case['joints'])}limits = bik.Limits({limits})\n"
+            f"given = dict(start_q={first.tolist()}, end_q={last.tolist()}, limits=limits{begin})\n"
+            "plan = bik.plan_point_to_point(robot, **given)\n"
+            f"again = plan.retime(bik.Limits({slower})) if plan.success else None"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        ends = arms.configurations(case["joints"])
+        for plan, name in ((left["plan"], "rates"), (left["again"], "slower")):
+            if plan is None or not plan.success:
+                raise BrokenError("a straight motion is not found", getattr(plan, "message", ""))
+            motion, limits = plan.trajectory, self.limits(case, name)
+            check_rates(motion, limits, 1e-8)
+            if np.abs(motion.q[[0, -1]] - ends).max() > ENDS:
+                raise BrokenError("the plan misses its ends", motion.q[[0, -1]].tolist())
+            for order in range(len(limits)):
+                ends_of_segments = dense(motion, order, 2)
+                jump = np.abs(np.diff(ends_of_segments.reshape(-1, len(ends[0])), axis=0)[1::2]).max(initial=0.0)
+                if jump > 1e-6 * max(1.0, np.abs(ends_of_segments).max()):
+                    raise BrokenError(f"derivative {order} jumps", jump)
+        return 2
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        same = np.ptp(arms.configurations(case["joints"]), axis=0).max() == 0.0
+        said = str(error)
+        allowed = {
+            "moving": "would get to" in said,  # too fast to stop before a position limit
+            "line": "no straight line" in said,
+        }.get(case["begin"], False)
+        jumps = "jumps" in said and case["orders"] == 3 and case["begin"] == "moving"  # from a velocity, retimed
+        if not (same or allowed or jumps):
+            raise BrokenError("a right plan is refused", error)
 
 
 class Trajectories(Attack):
@@ -262,4 +355,4 @@ class Trajectories(Attack):
             raise BrokenError("right samples are refused", error)
 
 
-ATTACKS = [StateToState(), TimeOptimal(), Trajectories()]
+ATTACKS = [StateToState(), TimeOptimal(), JointPlans(), Trajectories()]

@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from .. import arms
+from .. import arms, typed
 from ..attack import Attack, BrokenError, Case
 from .motion import check_rates
 from .solving import ROUNDING, TOLERANCE
@@ -122,6 +122,8 @@ class PathsFollowed(Attack):
         joints = arms.easy_arm(random, int(random.integers(4, 8)))
         arms.put(joints, random, hard, 2)
         rates = tuple(np.exp(random.uniform(-1, 1, 2)).tolist())
+        if random.random() < 0.5:
+            rates = typed.number(random, -1, 0), typed.number(random, -1, 1)
         return {
             "joints": joints,
             "points": int(random.integers(3, 40)),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import arms
+from .. import arms, typed
 from ..attack import Attack, BrokenError, Case
 from .solving import refuse_only_locked
 
@@ -43,12 +43,20 @@ class TrackerLives(Attack):
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """A hard life has late, missing and repeated targets, NaN, resets in motion, stops, and jumps out of reach."""
+        """A hard life has late, missing and repeated targets, NaN, resets in motion, stops, and jumps out of reach.
+
+        Limits are real numbers or round ones, which joints share or not.
+        """
         joints = arms.easy_arm(random, int(random.integers(1, 8)))
         arms.put(joints, random, False, 6)
         for joint in joints:
             joint["rates"] = tuple((np.exp(random.uniform(np.log([0.1, 0.5, 5.0]), np.log([4.0, 50.0, 5e3])))).tolist())
             joint["moving"] = tuple(random.uniform(-0.3, 0.3, 2).tolist())
+        if random.random() < 0.5:
+            shared = typed.limits(random, -1, 1) if random.random() < 0.5 else None
+            for joint in joints:
+                joint["rates"] = shared or typed.limits(random, -1, 2)
+                joint["moving"] = tuple(random.choice([0.0, 0.5, -0.5, 1.0, -1.0], 2).tolist())
         kinds = ("target", "none", "late", "jump", "nan", "reset", "stop", "same") if hard else ("target", "none")
         weights = np.array([6, 2, 2, 2, 1, 0.5, 0.5, 3] if hard else [5, 1])
         life = []

@@ -45,7 +45,17 @@ pub fn state_to_state(from: &ArmState, to: &ArmState, limits: &Limits) -> Result
         return Err(Error::InvalidTrajectory { problem });
     }
     require_room(limits, &motion)?;
-    motion.trajectory(joints.to_vec())
+    motion.trajectory(joints.to_vec()).map_err(|_| too_long(&motion))
+}
+
+/// The error of a motion in whose duration rounding hides the shortest phases.
+fn too_long(motion: &Synchronised) -> Error {
+    let duration = number(motion.duration());
+    let problem = format!(
+        "the motion would take {duration} s, and times that long do not resolve its shortest phases: give limits of more \
+         similar size"
+    );
+    Error::Infeasible { problem }
 }
 
 /// Returns a motion from one state to another that lasts `duration` (s); `None` if there is none within constant

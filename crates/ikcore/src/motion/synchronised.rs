@@ -11,7 +11,7 @@ pub(crate) struct Synchronised {
     duration: f64,
 }
 
-/// Knots that are nearer to each other, relative to the duration, count as one.
+/// Durations that are nearer to each other, relative to their size, count as one.
 const ROUNDING: f64 = 1e-12;
 
 impl Synchronised {
@@ -32,18 +32,17 @@ impl Synchronised {
         if duration.is_infinite() {
             return None;
         }
-        Self::of(transfers, duration)
+        Some(Self::of(transfers, duration))
     }
 
     /// A motion of this duration (s); `None` if it is not possible for every joint.
     pub(crate) fn lasting(transfers: &[Transfer], duration: f64) -> Option<Self> {
         let is_possible = |transfer: &Transfer| transfer.duration(duration) <= duration * (1.0 + ROUNDING);
-        if transfers.iter().all(is_possible) { Self::of(transfers, duration) } else { None }
+        transfers.iter().all(is_possible).then(|| Self::of(transfers, duration))
     }
 
-    fn of(transfers: &[Transfer], duration: f64) -> Option<Self> {
-        let profiles = transfers.iter().map(|transfer| transfer.motion(duration)).collect::<Option<Vec<_>>>()?;
-        Some(Self { profiles, duration })
+    fn of(transfers: &[Transfer], duration: f64) -> Self {
+        Self { profiles: transfers.iter().map(|transfer| transfer.motion(duration)).collect(), duration }
     }
 
     /// The stop of each joint as quickly as it can, from `from`; `None` if one cannot stop.
@@ -76,8 +75,6 @@ impl Synchronised {
         let starts = |profile: &JointProfile| profile.segments.iter().map(|segment| segment.time).collect::<Vec<f64>>();
         let mut knots: Vec<f64> = self.profiles.iter().flat_map(starts).collect();
         knots.sort_unstable_by(f64::total_cmp);
-        knots.dedup_by(|later, earlier| *later - *earlier <= ROUNDING * self.duration);
-        knots.retain(|knot| self.duration - knot > ROUNDING * self.duration);
         knots.push(self.duration);
         let mut coefficients = Vec::with_capacity((knots.len() - 1) * joints.len());
         for ends in knots.windows(2) {
@@ -87,6 +84,6 @@ impl Synchronised {
                 coefficients.push(polynomial([state.q, state.v, 0.5 * state.a, segment.jerk / 6.0]));
             }
         }
-        Trajectory::new(joints, knots, coefficients)
+        Trajectory::from_phases(joints, knots, coefficients)
     }
 }

@@ -22,6 +22,7 @@
 //! | `time_optimal` | the fastest timing of a joint path |
 //! | `tpbso` | both problems as published by Wang et al. (2019) |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
+//! | `within_limits` | motions of short phases, slowed to their limits |
 //! | `search` | runs a solver on the cost of a plan and records its progress |
 //! | `deadline` | the wall-clock budget of a plan |
 //! | `deviation` | the distance of the tip from its path |
@@ -50,6 +51,7 @@ mod timed;
 mod tip_path;
 mod tpbso;
 mod violation;
+mod within_limits;
 
 pub use along_path::plan_along_path;
 pub use cost::Cost;

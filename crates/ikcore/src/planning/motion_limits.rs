@@ -93,6 +93,15 @@ impl MotionLimits {
         self.joints.iter().map(|(name, _)| name.clone()).collect()
     }
 
+    /// The position limits of all joints, moved inwards by `inset` (rad, m), at most to the middle.
+    pub(crate) fn inset_positions(&self, inset: f64) -> [Vec<f64>; 2] {
+        let widths = self.lower.iter().zip(&self.upper).map(|(lower, upper)| inset.min(0.5 * (upper - lower)));
+        let widths: Vec<f64> = widths.collect();
+        let moved =
+            |bounds: &[f64], sign: f64| bounds.iter().zip(&widths).map(|(bound, by)| bound + sign * by).collect();
+        [moved(&self.lower, 1.0), moved(&self.upper, -1.0)]
+    }
+
     /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without
     /// them.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {

@@ -4,6 +4,7 @@ use super::collision_checks::{TimedMotion, too_near};
 use super::motion_limits::MotionLimits;
 use super::plan::{Freed, Plan};
 use super::time_optimal::{TimingLimits, time_all};
+use super::within_limits::within_limits;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::obstacle::Sweep;
@@ -91,25 +92,21 @@ pub(super) fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Traje
     if factor == 0.0 {
         return Err(Error::NoPace { joint: limits.joint_name(0).into() });
     }
-    motion.slowed(factor * CAUTION)
+    within_limits(motion.slowed(factor * CAUTION)?, [&limits.velocity, &limits.acceleration, &limits.jerk])
 }
 
 /// Checks that the acceleration does not jump, neither at a knot nor from or to rest.
 fn refuse_jumps(motion: &Trajectory, limits: &MotionLimits) -> Result<()> {
-    let (n, largest) = (limits.dof(), motion.max_acceleration());
-    let [mut q, mut qd, mut before, mut after] = [(); 4].map(|()| vec![0.0; n]);
+    let (n, largest, steepest) = (limits.dof(), motion.max_acceleration(), motion.max_jerk());
+    let [mut before, mut after, mut at_end] = [(); 3].map(|()| vec![0.0; n]);
     for (i, &t) in motion.knots().iter().enumerate() {
-        // At a knot `at` gives the segment that begins there.
-        let just_before = if i == 0 { None } else { Some(t - f64::EPSILON * 4.0 * t) };
-        before.fill(0.0);
         after.fill(0.0);
-        if let Some(t) = just_before {
-            motion.at(t, &mut q, &mut qd, &mut before)?;
-        }
         if i + 1 < motion.knots().len() {
-            motion.at(t, &mut q, &mut qd, &mut after)?;
+            motion.end_accelerations(i, &mut after, &mut at_end);
         }
-        let jump = |j: &usize| (after[*j] - before[*j]).abs() > ROUNDING * largest[*j].max(f64::MIN_POSITIVE);
+        // The end of a short segment late in a motion is rounded with its time.
+        let rounding = |j: usize| ROUNDING * largest[j] + 4.0 * f64::EPSILON * t * steepest[j];
+        let jump = |j: &usize| (after[*j] - before[*j]).abs() > rounding(*j).max(f64::MIN_POSITIVE);
         let limited = (0..n).filter(|j| limits.jerk[*j].is_finite());
         if let Some(j) = limited.filter(|j| largest[*j] > 0.0).find(jump) {
             let (joint, t) = (limits.joint_name(j), time(t));
@@ -120,6 +117,7 @@ fn refuse_jumps(motion: &Trajectory, limits: &MotionLimits) -> Result<()> {
             );
             return Err(Error::Infeasible { problem });
         }
+        std::mem::swap(&mut before, &mut at_end);
     }
     Ok(())
 }

@@ -7,6 +7,18 @@ pub const POWERS: usize = 7;
 /// s^6 (rad or m).
 pub type Coefficients = [f64; POWERS];
 
+/// Returns the polynomial p(s + `by`) of s, for p with these coefficients.
+pub(super) fn shifted(mut coefficients: Coefficients, by: f64) -> Coefficients {
+    if by != 0.0 {
+        for first in 0..POWERS - 1 {
+            for power in (first..POWERS - 1).rev() {
+                coefficients[power] += by * coefficients[power + 1];
+            }
+        }
+    }
+    coefficients
+}
+
 /// Returns the polynomial with these coefficients, at most [`POWERS`] of them in ascending powers, padded with zeros.
 pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
     const { assert!(N <= POWERS) };

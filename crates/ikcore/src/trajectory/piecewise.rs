@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coefficients::{Coefficients, POWERS};
+use super::coefficients::{Coefficients, POWERS, shifted};
 use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::interrupt::checkpoint_at;
@@ -13,6 +13,12 @@ use crate::math::ticks::ticks;
 /// Largest jump of a joint at a knot (rad or m, relative beyond 1); stored or computed coefficients meet only up to
 /// rounding.
 const CONTINUITY_TOLERANCE: f64 = 1e-6;
+
+/// Rounding error of a polynomial, relative to the sum of its terms.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Shortest segment, relative to the duration: times in double precision do not resolve a shorter one.
+const SHORTEST: f64 = 16.0 * f64::EPSILON;
 
 /// The motion of all joints in time: piecewise polynomials between common knots, continuous in position.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,6 +64,33 @@ impl Trajectory {
         let trajectory = Self { joints, knots, coefficients };
         trajectory.check_continuity()?;
         Ok(trajectory)
+    }
+
+    /// The motion of phases, of which some may last no time: as [`new`](Self::new), with knots that need not increase.
+    ///
+    /// A joint that reaches two limits at once has a phase of no length between them, and round limits often coincide. So
+    /// phases that the times cannot resolve are left out here, for all computed motions.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn from_phases(joints: Vec<String>, knots: Vec<f64>, coefficients: Vec<Coefficients>) -> Result<Self> {
+        let duration = knots.last().copied().unwrap_or(0.0);
+        let shortest = SHORTEST * duration;
+        if knots.windows(2).all(|ends| ends[1] - ends[0] > shortest) {
+            return Self::new(joints, knots, coefficients);
+        }
+        let (mut kept_knots, mut kept) = (vec![0.0], Vec::with_capacity(coefficients.len()));
+        for (ends, phase) in knots.windows(2).zip(coefficients.chunks(joints.len().max(1))) {
+            let begin = kept_knots[kept_knots.len() - 1];
+            if ends[1] - begin > shortest {
+                kept_knots.push(ends[1]);
+                kept.extend(phase.iter().map(|polynomial| shifted(*polynomial, begin - ends[0])));
+            }
+        }
+        if let [_, .., last] = &mut kept_knots[..] {
+            *last = duration;
+        }
+        Self::new(joints, kept_knots, kept)
     }
 
     /// The motion through `q` (rad or m, one row of all joints per time) at `times` (s) that start at zero and
@@ -145,6 +178,14 @@ impl Trajectory {
         Ok(())
     }
 
+    /// Writes the accelerations of all joints (rad/s^2 or m/s^2) at both ends of a segment.
+    pub(crate) fn end_accelerations(&self, segment: usize, start: &mut [f64], end: &mut [f64]) {
+        for (joint, polynomial) in self.segment(segment).iter().enumerate() {
+            start[joint] = 2.0 * polynomial[2];
+            end[joint] = evaluate(polynomial, self.knots.span(segment))[2];
+        }
+    }
+
     /// The exact largest speed of each joint (rad/s or m/s).
     pub fn max_velocity(&self) -> Vec<f64> {
         self.largest(|position| derivative(position))
@@ -177,7 +218,7 @@ impl Trajectory {
             }
             slowed
         };
-        Self::new(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
+        Self::from_phases(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
     }
 
     /// The exact lowest and highest position of each joint (rad or m).
@@ -230,7 +271,9 @@ impl Trajectory {
             let polynomials = self.segment(next - 1).iter().zip(self.segment(next));
             for (name, (before, after)) in self.joints.iter().zip(polynomials) {
                 let (left, right) = (value(before, span), after[0]);
-                let meets = (left - right).abs() <= CONTINUITY_TOLERANCE * right.abs().max(1.0);
+                let jump = (left - right).abs();
+                let meets = jump <= CONTINUITY_TOLERANCE * right.abs().max(1.0)
+                    || jump <= ROUNDING * value(&before.map(f64::abs), span);
                 if !meets {
                     let time = self.knots.times()[next];
                     let problem = format!("joint '{name}' jumps from {left} to {right} at t = {time} s");
@@ -239,5 +282,48 @@ impl Trajectory {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::polynomial;
+
+    /// At 1 rad/s, with these knots.
+    fn steady(knots: &[f64]) -> Result<Trajectory> {
+        let coefficients = knots[1..].iter().zip(knots).map(|(_, start)| polynomial([*start, 1.0])).collect();
+        Trajectory::from_phases(vec!["a".into()], knots.to_vec(), coefficients)
+    }
+
+    #[test]
+    fn phases_of_no_length_are_left_out_wherever_they_are() {
+        let tiny = f64::EPSILON;
+        for (knots, kept) in [
+            (vec![0.0, 0.0, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, tiny, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, 1.0, 1.0], vec![0.0, 1.0]),
+            (vec![0.0, 0.5, 0.5, 0.5 + tiny, 0.5, 1.0, 1.0 - tiny, 1.0], vec![0.0, 0.5, 1.0]),
+            (vec![0.0, 0.5, 1.0], vec![0.0, 0.5, 1.0]),
+        ] {
+            let motion = steady(&knots).unwrap();
+            assert_eq!(motion.knots(), kept, "{knots:?}");
+            let range = motion.position_range()[0];
+            assert!(range.0 == 0.0 && (range.1 - 1.0).abs() < 1e-15, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn many_tiny_phases_are_not_left_out_together() {
+        let knots: Vec<f64> = (0..=1000).map(|i| f64::from(i) * f64::EPSILON).chain([1.0]).collect();
+        let motion = steady(&knots).unwrap();
+        assert!(motion.knots().len() > 50, "{}", motion.knots().len());
+        let jump = |i: usize| (motion.coefficients()[i][0] - motion.knots()[i]).abs();
+        assert!((0..motion.knots().len() - 1).all(|i| jump(i) < 1e-14));
+    }
+
+    #[test]
+    fn a_motion_of_no_duration_is_an_error() {
+        assert_eq!(steady(&[0.0, 0.0]).unwrap_err().to_string(), "trajectory times: expected at least 2, got 1");
     }
 }

@@ -29,6 +29,6 @@ impl Trajectory {
         let begin = self.duration() + pause;
         knots.extend(next.knots()[1..].iter().map(|t| begin + t));
         coefficients.extend_from_slice(next.coefficients());
-        Self::new(self.joints().to_vec(), knots, coefficients)
+        Self::from_phases(self.joints().to_vec(), knots, coefficients)
     }
 }

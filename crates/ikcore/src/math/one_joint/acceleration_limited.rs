@@ -17,24 +17,26 @@ impl AccelerationLimited {
         Self { from: from.v, to: to.v, rates }
     }
 
-    /// The phases for the duration `t` (s); `None` if it is too short for the change of velocity.
-    pub(super) fn phases(&self, t: f64) -> Option<Phases> {
+    /// The phases for a possible duration `t` (s).
+    pub(super) fn phases(&self, t: f64) -> Phases {
         let Self { from, to, rates: Rates { velocity, acceleration, .. } } = *self;
         let mut phases = [Phase::default(); 7];
         if acceleration.is_infinite() {
             phases[0].duration = t;
-            return Some(Phases { velocity, phases });
+            return Phases { velocity, phases };
         }
-        let spare = t - (to - from).abs() / acceleration;
-        if spare < 0.0 {
-            return None;
-        }
-        let top = (from.max(to) + 0.5 * acceleration * spare).min(velocity);
-        let (rise, fall) = ((top - from) / acceleration, (top - to) / acceleration);
+        let spare = (t - (to - from).abs() / acceleration).max(0.0);
+        let change_to = |top: f64, v: f64| (top - v) / acceleration;
+        let top = from.max(to);
+        let (rise, fall) = if top + 0.5 * acceleration * spare > velocity {
+            (change_to(velocity, from), change_to(velocity, to))
+        } else {
+            (change_to(top, from) + 0.5 * spare, change_to(top, to) + 0.5 * spare)
+        };
         phases[0] = Phase { duration: rise, acceleration, jerk: 0.0 };
         phases[1] = Phase { duration: (t - rise - fall).max(0.0), acceleration: 0.0, jerk: 0.0 };
         phases[2] = Phase { duration: fall, acceleration: -acceleration, jerk: 0.0 };
-        Some(Phases { velocity: from, phases })
+        Phases { velocity: from, phases }
     }
 
     /// As [`JerkLimited::possible`](super::jerk_limited::JerkLimited::possible).

@@ -22,23 +22,23 @@ impl Extremal {
         }
     }
 
-    /// The phases for the duration `t` (s); `None` if no motion of that duration meets the states.
-    pub(super) fn phases(&self, t: f64) -> Option<Phases> {
+    /// The phases for a possible duration `t` (s).
+    pub(super) fn phases(&self, t: f64) -> Phases {
         match self {
             Self::Jerk(extremal) => extremal.phases(t),
             Self::Acceleration(extremal) => extremal.phases(t),
         }
     }
 
-    /// The distance covered in the duration `t` (s).
-    pub(super) fn displacement(&self, t: f64) -> Option<f64> {
+    /// The distance covered in a possible duration `t` (s).
+    pub(super) fn displacement(&self, t: f64) -> f64 {
         match self {
             Self::Jerk(extremal) => extremal.displacement(t),
-            Self::Acceleration(extremal) => extremal.phases(t).map(|phases| phases.displacement()),
+            Self::Acceleration(extremal) => extremal.phases(t).displacement(),
         }
     }
 
-    /// Intervals of possible durations (s), at most three, in order; the last has no end.
+    /// Intervals of possible durations (s), at most four, in order; the last has no end.
     pub(super) fn possible(&self) -> Possible {
         let mut found = Possible::new();
         match self {

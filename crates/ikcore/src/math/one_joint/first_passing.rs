@@ -3,9 +3,6 @@
 use super::extremal::Extremal;
 use super::phases::Durations;
 
-/// Fraction of the last part of an interval that is left out before its end, where motions cease to exist.
-const INSET: f64 = 1e-13;
-
 /// Most durations that are tried: those where the motion changes its kind, then ever longer ones.
 const TRIES: usize = 400;
 
@@ -15,7 +12,7 @@ const STEPS: usize = 200;
 /// The first duration between `start` and `end` for which the extremal motion gets to `goal`, which it misses by the
 /// `error` at the start.
 pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 2], error: f64) -> Option<f64> {
-    let beyond = |t: f64| extremal.displacement(t).map(|displacement| displacement - goal);
+    let beyond = |t: f64| extremal.displacement(t) - goal;
     let mut pauses = if extremal.rises_from(start) { Durations::new() } else { extremal.critical_durations() };
     pauses.push(extremal.full_speed_duration());
     pauses.sort_unstable_by(f64::total_cmp);
@@ -25,16 +22,11 @@ pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 
     for _ in 0..TRIES {
         let (t, is_last) = match next.next() {
             Some(t) => (t, false),
-            None if end.is_finite() => (end - INSET * (end - last), true),
+            None if end.is_finite() => (end, true),
             None => (last + step.max(last), false),
         };
         step *= 2.0;
-        let Some(error) = beyond(t) else {
-            if is_last {
-                return None;
-            }
-            continue;
-        };
+        let error = beyond(t);
         if error >= 0.0 {
             return Some(root(beyond, [last, t], [before, error]));
         }
@@ -48,7 +40,7 @@ pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 
 
 /// The point between `ends` where `error` with these values at them changes its sign, or the nearest point after it: by
 /// the method of Anderson and Bjoerck, and by bisection where that is slow.
-fn root(error: impl Fn(f64) -> Option<f64>, ends: [f64; 2], values: [f64; 2]) -> f64 {
+fn root(error: impl Fn(f64) -> f64, ends: [f64; 2], values: [f64; 2]) -> f64 {
     let ([mut lower, mut upper], [mut left, mut right]) = (ends, values);
     let (sign, mut last, mut width) = (left.signum(), 0.0, upper - lower);
     for step in 1..=STEPS {
@@ -61,7 +53,7 @@ fn root(error: impl Fn(f64) -> Option<f64>, ends: [f64; 2], values: [f64; 2]) ->
         if !(lower < t && t < upper) || upper - lower <= f64::EPSILON * upper {
             break;
         }
-        let Some(value) = error(t) else { break };
+        let value = error(t);
         if value == 0.0 {
             return t;
         }

@@ -6,11 +6,15 @@
 //! With J the jerk, c = v - a^2 / (2 J) is constant while the acceleration rises. Let c1 be its value at the start and c3
 //! at the end, K = J (c3 - c1), and S = (J T + a0 - a3) / 2 for the duration T. Without holds, the phases last T if
 //! peak - trough = S, and change the velocity as required if peak^2 - trough^2 = K.
+//!
+//! Motions that just exist are met often: states at a limit, a final state on the ramp through the initial one. So a phase
+//! that rounding makes shorter than nothing lasts no time, and no shape fails to exist for a possible duration.
 
 use std::cmp::Ordering;
 
 use super::motion_state::{MotionState, Rates};
-use super::phases::{Durations, Phase, Phases, Possible};
+use super::phases::{Durations, Phase, Phases, Possible, ROUNDING};
+use crate::math::comparison::{larger, smaller};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JerkLimited {
@@ -20,6 +24,8 @@ pub(super) struct JerkLimited {
     c1: f64,
     c3: f64,
     k: f64,
+    /// K of the same motion with the direction of the axis reversed, negated: zero if a falling ramp joins the states.
+    fall: f64,
 }
 
 /// Peak and trough of the acceleration, how long they are held (s), and how long the velocity limit is kept between (s).
@@ -31,39 +37,39 @@ struct Shape {
     trough_hold: f64,
 }
 
-/// Differences of accelerations that count as rounding, relative to their size.
-const ROUNDING: f64 = 1e-13;
-
 impl JerkLimited {
     pub(super) fn new(from: MotionState, to: MotionState, rates: Rates) -> Self {
         let c = |state: &MotionState| state.v - 0.5 * state.a * state.a / rates.jerk;
         let (c1, c3) = (c(&from), c(&to));
         // J (c3 - c1), with fewer roundings.
-        let k = rates.jerk * (to.v - from.v) + 0.5 * (from.a - to.a) * (from.a + to.a);
-        Self { from, to, rates, c1, c3, k }
+        let (change, ramp) = (rates.jerk * (to.v - from.v), 0.5 * (to.a - from.a) * (to.a + from.a));
+        let size = rates.jerk * from.v.abs().max(to.v.abs()) + 0.5 * (from.a * from.a + to.a * to.a);
+        let (k, fall) = match [change - ramp, change + ramp].map(|rest| rest.abs() <= ROUNDING * size) {
+            [true, _] => (0.0, 2.0 * ramp),
+            [_, true] => (-2.0 * ramp, 0.0),
+            _ => (change - ramp, change + ramp),
+        };
+        Self { from, to, rates, c1, c3, k, fall }
     }
 
-    /// The shape for the duration `t` (s); `None` if no motion of that duration meets both velocities and accelerations.
+    /// The shape for a possible duration `t` (s).
     #[inline]
-    fn shape(&self, t: f64) -> Option<Shape> {
-        let shape = self.unlimited(0.5 * (self.rates.jerk * t + self.from.a - self.to.a))?;
-        let rounding = ROUNDING * (shape.peak.abs() + shape.trough.abs() + self.from.a.abs() + self.to.a.abs());
-        if shape.peak < self.from.a - rounding || shape.trough > self.to.a + rounding {
-            return None;
-        }
+    fn shape(&self, t: f64) -> Shape {
+        let shape = self.unlimited(larger(0.5 * (self.rates.jerk * t + self.from.a - self.to.a), 0.0));
         if shape.peak > 0.0 && shape.trough < 0.0 && self.top_speed(&shape) > self.rates.velocity {
-            return Some(self.cruising(t));
+            return self.cruising(t);
         }
-        Some(shape)
+        shape
     }
 
     /// The distance covered in the duration `t` (s).
-    pub(super) fn displacement(&self, t: f64) -> Option<f64> {
+    pub(super) fn displacement(&self, t: f64) -> f64 {
         let Self { from, to, c1, c3, rates: Rates { velocity, jerk, .. }, .. } = *self;
-        let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t)?;
+        let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t);
         // A ramp from x to y along which the velocity is c + a^2 / (2 J).
-        let ramp = |c: f64, x: f64, y: f64| (y - x) * (c + (x * x + x * y + y * y) / (6.0 * jerk)) / jerk;
-        let half = 0.5 / jerk;
+        let inverse = 1.0 / jerk;
+        let [half, sixth] = [0.5 * inverse, inverse / 6.0];
+        let ramp = |c: f64, x: f64, y: f64| (y - x) * inverse * (c + (x * x + x * y + y * y) * sixth);
         let [before_hold, after_hold] = [c1 + half * peak * peak, c3 + half * trough * trough];
         let top = before_hold + peak * peak_hold + half * peak * peak;
         let holds = peak_hold * (before_hold + 0.5 * peak * peak_hold)
@@ -73,73 +79,68 @@ impl JerkLimited {
         } else {
             ramp(-top, peak, trough)
         };
-        Some(ramp(c1, from.a, peak) + holds + fall + ramp(c3, trough, to.a))
+        ramp(c1, from.a, peak) + holds + fall + ramp(c3, trough, to.a)
     }
 
     /// The phases for the duration `t` (s).
-    pub(super) fn phases(&self, t: f64) -> Option<Phases> {
-        let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t)?;
+    pub(super) fn phases(&self, t: f64) -> Phases {
+        let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t);
         let j = self.rates.jerk;
         let ramp = |from: f64, to: f64| Phase {
-            duration: ((to - from).abs() / j).max(0.0),
+            duration: (to - from).abs() / j,
             acceleration: from,
             jerk: if to < from { -j } else { j },
         };
-        let hold = |acceleration: f64, duration: f64| Phase { duration: duration.max(0.0), acceleration, jerk: 0.0 };
-        let between = if cruise > 0.0 {
+        let hold = |acceleration: f64, duration: f64| Phase { duration, acceleration, jerk: 0.0 };
+        let [fall, still, fall_on] = if cruise > 0.0 {
             [ramp(peak, 0.0), hold(0.0, cruise), ramp(0.0, trough)]
         } else {
             [ramp(peak, trough), Phase::default(), Phase::default()]
         };
-        let [fall, still, fall_on] = between;
         let phases = [
-            ramp(self.from.a, peak.max(self.from.a)),
+            ramp(self.from.a, peak),
             hold(peak, peak_hold),
             fall,
             still,
             fall_on,
             hold(trough, trough_hold),
-            ramp(trough.min(self.to.a), self.to.a),
+            ramp(trough, self.to.a),
         ];
-        Some(Phases { velocity: self.from.v, phases })
+        Phases { velocity: self.from.v, phases }
     }
 
-    /// The shape without a velocity limit.
-    fn unlimited(&self, s: f64) -> Option<Shape> {
-        let Self { k, rates: Rates { acceleration: limit, jerk, .. }, .. } = *self;
-        if !(s > 0.0) {
-            return None;
-        }
-        let free =
-            Shape { peak: 0.5 * (k / s + s), peak_hold: 0.0, cruise: 0.0, trough: 0.5 * (k / s - s), trough_hold: 0.0 };
+    /// The shape without a velocity limit. Whatever rounding does to it, its phases last the duration that belongs to `s`.
+    fn unlimited(&self, s: f64) -> Shape {
+        let Self { from, to, k, rates: Rates { acceleration: limit, jerk, .. }, .. } = *self;
+        let between = |x: f64, least: f64, most: f64| larger(smaller(x, most), least);
+        // Of a ramp that rises all the way (s = 0 and k = 0) every point is peak and trough.
+        let ratio = if k == 0.0 { 0.0 } else { k / s };
+        let peak = between(0.5 * (ratio + s), from.a, to.a + s);
+        let free = Shape { peak, peak_hold: 0.0, cruise: 0.0, trough: peak - s, trough_hold: 0.0 };
         if free.peak <= limit && free.trough >= -limit {
-            return Some(free);
+            return free;
         }
         if free.peak > limit {
-            let fall = (2.0 * limit * s - k).max(0.0).sqrt();
+            let fall = between((2.0 * limit * s - k).max(0.0).sqrt(), limit - to.a, s);
             if fall <= 2.0 * limit {
-                return Some(Shape { peak: limit, peak_hold: 2.0 * (s - fall) / jerk, trough: limit - fall, ..free });
+                return Shape { peak: limit, peak_hold: 2.0 * (s - fall) / jerk, trough: limit - fall, ..free };
             }
         }
         if free.trough < -limit {
-            let fall = (2.0 * limit * s + k).max(0.0).sqrt();
+            let fall = between((2.0 * limit * s + k).max(0.0).sqrt(), limit + from.a, s);
             if fall <= 2.0 * limit {
-                return Some(Shape {
-                    peak: fall - limit,
-                    trough: -limit,
-                    trough_hold: 2.0 * (s - fall) / jerk,
-                    ..free
-                });
+                return Shape { peak: fall - limit, trough: -limit, trough_hold: 2.0 * (s - fall) / jerk, ..free };
             }
         }
-        let (sum, difference) = ((2.0 * s - 4.0 * limit) / jerk, k / (limit * jerk));
-        (sum >= difference.abs()).then_some(Shape {
+        let sum = ((2.0 * s - 4.0 * limit) / jerk).max(0.0);
+        let difference = between(k / (limit * jerk), -sum, sum);
+        Shape {
             peak: limit,
             peak_hold: 0.5 * (sum + difference),
             trough: -limit,
             trough_hold: 0.5 * (sum - difference),
             ..free
-        })
+        }
     }
 
     /// The velocity between peak and trough where the acceleration is zero.
@@ -156,11 +157,11 @@ impl JerkLimited {
     /// The shape that just reaches the velocity limit.
     fn at_top_speed(&self) -> Shape {
         let Rates { velocity, acceleration: limit, jerk } = self.rates;
-        let side = |c: f64| {
-            let peak = (jerk * (velocity - c)).max(0.0).sqrt();
-            if peak <= limit { (peak, 0.0) } else { (limit, (velocity - c) / limit - limit / jerk) }
+        let side = |c: f64, least: f64| {
+            let peak = larger(larger(jerk * (velocity - c), 0.0).sqrt(), least);
+            if peak <= limit { (peak, 0.0) } else { (limit, larger((velocity - c) / limit - limit / jerk, 0.0)) }
         };
-        let ((peak, peak_hold), (depth, trough_hold)) = (side(self.c1), side(self.c3));
+        let ((peak, peak_hold), (depth, trough_hold)) = (side(self.c1, self.from.a), side(self.c3, -self.to.a));
         Shape { peak, peak_hold, cruise: 0.0, trough: -depth, trough_hold }
     }
 
@@ -171,15 +172,23 @@ impl JerkLimited {
 
     /// Where motions of this duration begin to exist, or cease to (s): pairs, in order.
     pub(super) fn possible(&self, found: &mut Possible) {
-        let Self { from, to, k, rates: Rates { acceleration: limit, .. }, .. } = *self;
+        let Self { from, to, k, fall, rates: Rates { acceleration: limit, .. }, .. } = *self;
+        let [a0, a1] = [from.a, to.a];
+        // The square root vanishes where the states are on one ramp: with the terms that are smaller then.
+        let [before, after] =
+            if k.abs() < fall.abs() { [a0 * a0 - k, a1 * a1 + k] } else { [a1 * a1 - fall, a0 * a0 + fall] };
         // The peak would be below the initial acceleration, or the trough above the final one.
-        let excluded = |a: f64, k: f64| {
-            let [shorter, longer] = both(a, -k)?;
+        let excluded = |a: f64, k: f64, discriminant: f64| {
+            let [shorter, longer] = sum_and_product(a, k, discriminant)?;
             let longer = if longer - a > limit { 0.5 * ((limit + a) * (limit + a) - k) / limit } else { longer };
-            (longer > 0.0).then_some([shorter.max(0.0), longer])
+            Some([shorter, longer])
         };
-        let mut start = 0.0;
-        let mut excluded = [excluded(from.a, k), excluded(-to.a, -k)];
+        let mut start = (a0 - a1).max(0.0);
+        if a0 < a1 && k == 0.0 || a0 > a1 && fall == 0.0 {
+            // The ramp alone: a little longer there may be nothing.
+            found.push([self.duration_of(start); 2]);
+        }
+        let mut excluded = [excluded(a0, k, before), excluded(-a1, -k, after)];
         excluded
             .sort_unstable_by(|one, two| one.map(|e| e[0]).partial_cmp(&two.map(|e| e[0])).unwrap_or(Ordering::Equal));
         for [from, to] in excluded.into_iter().flatten() {
@@ -229,19 +238,24 @@ impl JerkLimited {
     /// Whether all motions longer than `t` (s) get farther, since they can spend the rest of the time at a velocity that
     /// is not negative.
     pub(super) fn rises_from(&self, t: f64) -> bool {
-        let passes_zero = |shape: &Shape| shape.peak > 0.0 && shape.trough < 0.0;
-        self.shape(t).is_some_and(|shape| passes_zero(&shape) && self.top_speed(&shape) >= 0.0)
+        let passes_zero = |shape: &Shape| shape.peak >= 0.0 && shape.trough <= 0.0;
+        let shape = self.shape(t);
+        passes_zero(&shape) && self.top_speed(&shape) >= 0.0
     }
 }
 
 /// The real solutions of x^2 - 2 half x = rest, the smaller first.
 fn both(half: f64, rest: f64) -> Option<[f64; 2]> {
-    let discriminant = half * half + rest;
+    sum_and_product(half, -rest, half * half + rest)
+}
+
+/// The real numbers of this sum / 2 and product, the smaller first; `discriminant` is half^2 - product.
+fn sum_and_product(half: f64, product: f64, discriminant: f64) -> Option<[f64; 2]> {
     if !(discriminant >= 0.0) {
         return None;
     }
-    // Without cancellation: the product of both is -rest.
+    // Without cancellation.
     let outer = half + discriminant.sqrt().copysign(half);
-    let inner = if outer == 0.0 { 0.0 } else { -rest / outer };
+    let inner = if outer == 0.0 { 0.0 } else { product / outer };
     Some([outer.min(inner), outer.max(inner)])
 }

@@ -47,8 +47,8 @@ impl JointProfile {
         }
     }
 
-    /// The motion of these phases from the position `q`.
-    pub(super) fn of(phases: &Phases, q: f64) -> Self {
+    /// The motion of these phases from the position `q` in `duration` (s), which is theirs but for rounding.
+    pub(super) fn of(phases: &Phases, q: f64, duration: f64) -> Self {
         let mut motion = Self::empty();
         let mut state = MotionState { q, v: phases.velocity, a: 0.0 };
         for phase in &phases.phases {
@@ -56,7 +56,37 @@ impl JointProfile {
             motion.push(state, phase.jerk, phase.duration);
             state = state.after(phase.jerk, phase.duration);
         }
-        motion
+        while motion.segments.last().is_some_and(|segment| segment.time >= duration) {
+            motion.segments.pop();
+        }
+        if motion.segments.is_empty() {
+            motion = Self::still(MotionState { q, ..state });
+        }
+        Self { duration, ..motion }
+    }
+
+    /// The same motion to the position `q`, which it misses by rounding. The longest segment makes up for it by its
+    /// velocity, as far as `rounding` (rad/s or m/s) goes, and then by its position.
+    pub(super) fn ending_at(mut self, q: f64, rounding: f64) -> Self {
+        let error = q - self.at(self.duration).q;
+        let (mut longest, mut longest_span) = (0, 0.0);
+        for i in 0..self.segments.len() {
+            let span = self.end_of(i) - self.segments[i].time;
+            if span > longest_span {
+                (longest, longest_span) = (i, span);
+            }
+        }
+        // The velocities at both ends stay.
+        if 0 < longest && longest + 1 < self.segments.len() {
+            self.segments[longest].state.v += (error / longest_span).clamp(-rounding, rounding);
+        }
+        self.segments[longest + 1..].iter_mut().for_each(|segment| segment.state.q += error);
+        self
+    }
+
+    /// The time at which a segment ends (s).
+    fn end_of(&self, segment: usize) -> f64 {
+        self.segments.get(segment + 1).map_or(self.duration, |next| next.time)
     }
 
     /// JointSegment at time `t` (s), clamped to the motion.
@@ -76,7 +106,7 @@ impl JointProfile {
         let mut range = (f64::INFINITY, f64::NEG_INFINITY);
         let mut visit = |q: f64| range = (range.0.min(q), range.1.max(q));
         for (i, segment) in self.segments.iter().enumerate() {
-            let end = self.segments.get(i + 1).map_or(self.duration, |next| next.time) - segment.time;
+            let end = self.end_of(i) - segment.time;
             let MotionState { v, a, .. } = segment.state;
             let turns = quadratic_roots(v, a, 0.5 * segment.jerk, 0.0, end);
             turns.into_iter().chain([0.0, end]).for_each(|t| visit(segment.state.after(segment.jerk, t).q));
@@ -89,13 +119,14 @@ impl JointProfile {
         let mut mean = Self { segments: SmallVec::new(), duration: self.duration };
         let (mut i, mut k) = (0, 0);
         let start = |motion: &Self, index: usize| motion.segments.get(index).map_or(f64::INFINITY, |s| s.time);
-        let mut time = 0.0;
+        let (mut time, mut q) = (0.0, self.segments[0].state.q);
         loop {
             let (one, two) = (&self.segments[i], &other.segments[k]);
             let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
-            let blend = |x: f64, y: f64| share * x + (1.0 - share) * y;
-            let state = MotionState { q: blend(a.q, b.q), v: blend(a.v, b.v), a: blend(a.a, b.a) };
-            mean.segments.push(JointSegment { time, state, jerk: blend(one.jerk, two.jerk) });
+            let blend = |x: f64, y: f64| y + share * (x - y);
+            let state = MotionState { q, v: blend(a.v, b.v), a: blend(a.a, b.a) };
+            let segment = JointSegment { time, state, jerk: blend(one.jerk, two.jerk) };
+            mean.segments.push(segment);
             let next = start(self, i + 1).min(start(other, k + 1));
             if next == f64::INFINITY {
                 return mean;
@@ -107,6 +138,8 @@ impl JointProfile {
             if start(other, k + 1) <= together {
                 k += 1;
             }
+            // The positions of both may be far away, and their mean near.
+            q = segment.state.after(segment.jerk, next - time).q;
             time = next;
         }
     }
@@ -131,4 +164,4 @@ impl JointProfile {
 }
 
 /// Times that are nearer to each other, relative to the duration, count as the same.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -42,8 +42,11 @@ impl Phases {
     }
 }
 
+/// Rounding error of a sum, relative to its terms.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Durations (s).
 pub(super) type Durations = SmallVec<[f64; 16]>;
 
 /// Intervals of durations (s).
-pub(super) type Possible = SmallVec<[[f64; 2]; 3]>;
+pub(super) type Possible = SmallVec<[[f64; 2]; 4]>;

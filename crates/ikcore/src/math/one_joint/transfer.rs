@@ -5,6 +5,7 @@ use super::extremal::Extremal;
 use super::first_passing::first_passing;
 use super::joint_profile::JointProfile;
 use super::motion_state::{MotionState, Rates};
+use super::phases::{Phases, ROUNDING};
 
 /// A joint that has to get from one state to another within its limits. Outside its limits it first returns inside them,
 /// as quickly as possible.
@@ -13,16 +14,11 @@ pub struct Transfer {
     entry: JointProfile,
     from: MotionState,
     to: MotionState,
+    rates: Rates,
     displacement: f64,
     up: Extremal,
     down: Extremal,
 }
-
-/// Fraction of an interval between critical durations by which its ends are moved inwards until the motion exists there.
-const INSETS: [f64; 5] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9];
-
-/// Differences of positions that count as rounding, relative to their size and to the distances travelled.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Transfer {
     /// From one state to another; the final state is inside the limits and can be reached inside them.
@@ -32,6 +28,7 @@ impl Transfer {
             entry,
             from: inside,
             to,
+            rates: *rates,
             displacement: to.q - inside.q,
             up: Extremal::new(inside, to, *rates),
             down: Extremal::new(inside.mirrored(), to.mirrored(), *rates),
@@ -42,8 +39,8 @@ impl Transfer {
     pub fn to_velocity(from: MotionState, to: MotionState, rates: &Rates) -> Option<JointProfile> {
         let transfer = Self::new(from, to, rates);
         let [shortest, _] = *transfer.up.possible().first()?;
-        let found = INSETS.into_iter().find_map(|inset| transfer.up.phases(shortest + inset * shortest.max(1e-9)))?;
-        let profile = transfer.entry.then(&JointProfile::of(&found, transfer.from.q));
+        let stop = JointProfile::of(&transfer.up.phases(shortest), transfer.from.q, shortest);
+        let profile = transfer.entry.then(&stop);
         Some(if profile.segments.is_empty() { JointProfile::still(transfer.from) } else { profile })
     }
 
@@ -54,26 +51,33 @@ impl Transfer {
     }
 
     /// The motion of a possible duration (s).
-    pub fn motion(&self, duration: f64) -> Option<JointProfile> {
+    pub fn motion(&self, duration: f64) -> JointProfile {
         let t = duration - self.entry.duration;
         if t <= 0.0 {
-            return Some(self.entry.clone());
+            return self.entry.clone();
         }
-        let (up, down) = (self.up.phases(t)?, self.down.phases(t)?.mirrored());
-        let (highest, lowest) = (up.displacement(), down.displacement());
+        let (up, down) = (self.up.phases(t), self.down.phases(t).mirrored());
+        let (highest, lowest, rounding) = (up.displacement(), down.displacement(), self.rounding(t));
         let share = (self.displacement - lowest) / (highest - lowest);
-        let rounding = self.rounding(highest).max(self.rounding(lowest));
+        let profile = |phases: &Phases| JointProfile::of(phases, self.from.q, t);
         let inside = match () {
-            () if !(self.displacement < highest - rounding) => JointProfile::of(&up, self.from.q),
-            () if !(self.displacement > lowest + rounding) => JointProfile::of(&down, self.from.q),
-            () => JointProfile::of(&up, self.from.q).mean(share, &JointProfile::of(&down, self.from.q)),
+            () if !(self.displacement < highest - rounding) => profile(&up),
+            () if !(self.displacement > lowest + rounding) => profile(&down),
+            () => profile(&up).mean(share, &profile(&down)),
         };
-        let inside = JointProfile { duration: t, ..inside };
-        Some(self.entry.clone().then(&inside))
+        self.entry.clone().then(&inside.ending_at(self.to.q, ROUNDING * self.fastest(t)))
     }
 
-    fn rounding(&self, displacement: f64) -> f64 {
-        ROUNDING * (displacement.abs() + self.displacement.abs() + self.from.q.abs())
+    /// Distance from the goal that counts as rounding after `t` (s): relative to the positions, and to the way there.
+    fn rounding(&self, t: f64) -> f64 {
+        ROUNDING * (self.displacement.abs() + self.from.q.abs() + t * self.fastest(t))
+    }
+
+    /// A speed that no motion of the duration `t` (s) exceeds.
+    fn fastest(&self, t: f64) -> f64 {
+        let Self { from, to, rates: Rates { velocity, acceleration, jerk }, .. } = self;
+        let largest = (from.a.abs() + to.a.abs() + t * jerk).min(*acceleration);
+        (from.v.abs() + to.v.abs() + t * largest).min(*velocity)
     }
 
     /// The shortest possible duration of at least `least` (s), from inside the limits.
@@ -91,16 +95,12 @@ impl Transfer {
 
     /// The shortest duration in an interval for which motions exist throughout.
     fn first_in(&self, [start, end]: [f64; 2]) -> Option<f64> {
-        let width = if end.is_finite() { end - start } else { start.max(1e-9) };
-        let (start, up, down) = INSETS.into_iter().find_map(|inset| {
-            let t = start + inset * width;
-            Some((t, self.up.displacement(t)?, self.down.displacement(t)?))
-        })?;
-        let (short, past) = (self.displacement - up, -self.displacement - down);
-        if short > self.rounding(up) {
+        let (up, down) = (self.up.displacement(start), self.down.displacement(start));
+        let (short, past, rounding) = (self.displacement - up, -self.displacement - down, self.rounding(start));
+        if short > rounding {
             return first_passing(&self.up, self.displacement, [start, end], -short);
         }
-        if past > self.rounding(down) {
+        if past > rounding {
             return first_passing(&self.down, -self.displacement, [start, end], -past);
         }
         Some(start)

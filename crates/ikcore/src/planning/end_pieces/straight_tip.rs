@@ -25,6 +25,13 @@ const OFF_LINE: f64 = 1e-4;
 const STEPS: usize = 12;
 /// Longest step of a joint (rad, m) between neighbouring configurations: a longer one is a jump to another branch.
 const LONGEST: f64 = 0.5;
+/// A joint that comes to a limit on the way swings a little beyond it between configurations. These then keep this multiple
+/// of the excess from the limits.
+const OVERSHOOT: f64 = 2.0;
+/// Growth of that distance where it was too small.
+const GROWTH: f64 = 4.0;
+/// Largest distance from the limits (rad, m).
+const LARGEST_INSET: f64 = 0.01;
 /// Instants of each interval at which the distance from the line is measured.
 const MEASURED: usize = 3;
 
@@ -66,15 +73,21 @@ impl<'a> StraightTip<'a> {
     /// Of the trajectory, none in practice.
     pub(super) fn from(&self, q: &[f64], along: [f64; 3], place: &str) -> Result<Result<Trajectory, Hindrance>> {
         let mut intervals = INTERVALS[0];
+        let (mut inset, mut beyond) = (0.0, None);
         loop {
-            let rows = match self.solved(q, along, intervals, place) {
+            let rows = match self.solved(q, along, intervals, (place, inset)) {
                 Ok(rows) => rows,
-                Err(hindrance) => return Ok(Err(hindrance)),
+                Err(hindrance) => return Ok(Err(beyond.unwrap_or(hindrance))),
             };
             let motion = scaled(&self.timed(&rows)?, self.limits)?;
             let violations = self.limits.violations(&motion);
             if let Some(violation) = violations.first() {
-                return Ok(Err(violation.to_string()));
+                let (excess, hindrance) = (self.excess(&motion), beyond.get_or_insert_with(|| violation.to_string()));
+                inset = (OVERSHOOT * excess).max(GROWTH * inset);
+                if excess <= 0.0 || inset > LARGEST_INSET {
+                    return Ok(Err(hindrance.clone()));
+                }
+                continue;
             }
             if self.is_straight(&motion, along, intervals)? {
                 return Ok(Ok(motion));
@@ -84,6 +97,14 @@ impl<'a> StraightTip<'a> {
                 return Ok(Err("the tip cannot keep to the line".into()));
             }
         }
+    }
+
+    /// How far a joint gets beyond its position limits between configurations inside them (rad, m).
+    fn excess(&self, motion: &Trajectory) -> f64 {
+        let ranges = motion.position_range().into_iter().enumerate();
+        let of_joint =
+            |(j, (low, high)): (usize, (f64, f64))| (self.limits.lower[j] - low).max(high - self.limits.upper[j]);
+        ranges.map(of_joint).fold(0.0, f64::max)
     }
 
     /// The target at a share of the line.
@@ -101,8 +122,15 @@ impl<'a> StraightTip<'a> {
         }
     }
 
-    /// Configurations at even distances along the line, row by row.
-    fn solved(&self, q: &[f64], along: [f64; 3], intervals: usize, place: &str) -> Result<Vec<f64>, Hindrance> {
+    /// Configurations at even distances along the line, row by row; all but the first keep `inset` (rad, m) from the limits.
+    fn solved(
+        &self,
+        q: &[f64],
+        along: [f64; 3],
+        intervals: usize,
+        (place, inset): (&str, f64),
+    ) -> Result<Vec<f64>, Hindrance> {
+        let [lower, upper] = self.limits.inset_positions(inset);
         let mut rows = q.to_vec();
         let mut here = q.to_vec();
         let mut linearization = TaskBlock::default();
@@ -118,9 +146,8 @@ impl<'a> StraightTip<'a> {
                 }
                 let TaskBlock { columns, residual } = &linearization;
                 let lambda = least_damping(&columns[..here.len()]);
-                let (lower, upper) = (&self.limits.lower, &self.limits.upper);
                 let from = here.clone();
-                BoxStep { columns, residual, lambda, x: &from, lower, upper }.write(&mut here);
+                BoxStep { columns, residual, lambda, x: &from, lower: &lower, upper: &upper }.write(&mut here);
             }
             let longest = before.iter().zip(&here).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if !solved || longest > LONGEST {

@@ -1,8 +1,9 @@
 //! The quickest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
 use crate::planning::MotionLimits;
+use crate::planning::within_limits::within_limits;
 use crate::trajectory::{Coefficients, Trajectory, polynomial};
 
 /// Largest speed of a quintic from rest to rest, relative to displacement / duration.
@@ -81,7 +82,7 @@ impl JointPolyline {
             knots.push(time);
             coefficients.extend((0..limits.dof()).map(|j| quintic(line[0][j], displacement(j), h)));
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
     }
 
     /// Moves from rest to rest along each line as fast as the limits up to jerk allow.
@@ -89,7 +90,7 @@ impl JointPolyline {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         for line in self.0.windows(2) {
             let begin = knots[knots.len() - 1];
-            let shares = line_profile(line, limits)?;
+            let shares = line_profile(line, limits);
             let starts = shares.segments.iter().skip(1).map(|segment| begin + segment.time);
             knots.extend(starts.chain([begin + shares.duration]));
             for segment in &shares.segments {
@@ -101,7 +102,8 @@ impl JointPolyline {
                 }));
             }
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        let motion = Trajectory::from_phases(limits.joint_names(), knots, coefficients)?;
+        within_limits(motion, [&limits.velocity, &limits.acceleration, &limits.jerk])
     }
 
     /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
@@ -195,7 +197,7 @@ impl JointPolyline {
                 }));
             }
         }
-        Trajectory::new(limits.joint_names(), knots, coefficients)
+        Trajectory::from_phases(limits.joint_names(), knots, coefficients)
     }
 }
 
@@ -214,7 +216,7 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
 }
 
 /// The fastest motion from 0 to 1 along a line, as a fraction of it.
-fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> Result<JointProfile> {
+fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
     let share = |all: &[f64]| {
         let of_joint = |j: usize| {
             let size = (line[1][j] - line[0][j]).abs();
@@ -228,8 +230,7 @@ fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> Result<JointProfile
         jerk: share(&limits.jerk),
     };
     let transfer = Transfer::new(MotionState::rest(0.0), MotionState::rest(1.0), &rates);
-    let too_long = || Error::Infeasible { problem: "the limits let no motion end".into() };
-    transfer.motion(transfer.duration(0.0)).ok_or_else(too_long)
+    transfer.motion(transfer.duration(0.0))
 }
 
 /// The quintic from rest to rest over `displacement` in `h` (s).
@@ -252,6 +253,13 @@ mod tests {
         MotionLimits::new(&robot, Some(&limits), "this test").unwrap()
     }
 
+    impl MotionLimits {
+        fn with_jerk(mut self, jerk: f64) -> Self {
+            self.jerk = vec![jerk; self.dof()];
+            self
+        }
+    }
+
     fn corner() -> JointPolyline {
         JointPolyline(vec![vec![0.0, 0.0], vec![1.0, 0.2], vec![1.2, 1.4], vec![0.3, 1.0]])
     }
@@ -262,6 +270,30 @@ mod tests {
         let [q, qd, qdd] = &mut state;
         motion.at(t, q, qd, qdd).unwrap();
         state
+    }
+
+    /// One, two and five times powers of ten.
+    fn round_numbers() -> impl Iterator<Item = f64> + Clone {
+        (-3..=3).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10.0_f64.powi(power)))
+    }
+
+    #[test]
+    fn round_limits_that_tie_are_kept_and_reached() {
+        for velocity in round_numbers() {
+            for acceleration in round_numbers() {
+                for tie in [1.0, 0.5, 2.0] {
+                    let jerk = tie * acceleration * acceleration / velocity;
+                    let limits = limits(velocity, acceleration).with_jerk(jerk);
+                    let motion = corner().with_stops(&limits).unwrap();
+                    let reached = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
+                    let parts = reached.map(|reached| reached.into_iter().fold(0.0, f64::max));
+                    for (part, limit) in parts.iter().zip([velocity, acceleration, jerk]) {
+                        assert!(*part <= limit * (1.0 + 1e-8), "{part} of {limit}: {velocity}, {acceleration}, {jerk}");
+                    }
+                    assert!(parts[2] > 0.999 * jerk, "{}: {velocity}, {acceleration}, {jerk}", parts[2]);
+                }
+            }
+        }
     }
 
     #[test]

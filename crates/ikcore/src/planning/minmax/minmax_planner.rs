@@ -26,15 +26,16 @@ pub(crate) fn point_to_point(
     require_pace(robot, &limits)?;
     let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
-        return match moving_start::begin(&mut search, velocity, options, monitor)? {
-            Beginning::Whole(plan) => Ok(*plan),
+        match moving_start::begin(&mut search, velocity, options, monitor)? {
+            Beginning::Whole(plan) => return Ok(*plan),
             Beginning::Stop(stop) => {
                 let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };
                 let rest = point_to_point(robot, &at_rest, ends, &options, monitor)?;
-                moving_start::followed_by(stop, rest, robot, &options)
+                return moving_start::followed_by(stop, rest, robot, &options);
             }
-        };
+            Beginning::Rest => {}
+        }
     }
     if can_collide(robot, options) {
         among_obstacles::plan(&mut search, options, monitor)

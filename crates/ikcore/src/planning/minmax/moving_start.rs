@@ -14,12 +14,17 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
+/// Relative excess over a velocity limit that counts as rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// How a motion with an initial velocity goes on.
 pub(super) enum Beginning {
     /// Directly to the end.
     Whole(Box<Plan>),
     /// To a stop, because no direct motion was found to be free.
     Stop(Trajectory),
+    /// From rest: the velocity is zero, and no direct motion was found to be free.
+    Rest,
 }
 
 /// Plans the quickest motion from the given configuration and `velocity` directly to the end, or to a stop.
@@ -88,6 +93,9 @@ pub(super) fn begin(
             trajectory,
         })));
     }
+    if velocity.iter().all(|v| *v == 0.0) {
+        return Ok(Beginning::Rest);
+    }
     let braking = stop(&from, &limits)?;
     if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
@@ -114,7 +122,7 @@ fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
             ),
         });
     }
-    match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j]) {
+    match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j] * (1.0 + ROUNDING)) {
         None => Ok(()),
         Some(j) => {
             let what = format!("start_qd of joint '{}'", limits.joint_name(j));

@@ -22,7 +22,7 @@ pub(super) fn compose(path: &JointPath, profile: &SpeedProfile) -> Result<Trajec
         coefficients
             .extend((0..joints.len()).map(|j| cubic_of_parabola(powers.map(|power| power[j]), segment.from, motion)));
     }
-    Trajectory::new(joints.to_vec(), times, coefficients)
+    Trajectory::from_phases(joints.to_vec(), times, coefficients)
 }
 
 /// The coefficients in t of c(from + v t + w t^2).

@@ -8,6 +8,7 @@ use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
 use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
+use crate::planning::within_limits::within_limits;
 use crate::trajectory::Trajectory;
 
 /// Options of [`time_optimal`]. The default is from rest to rest on an adaptively refined grid.
@@ -55,7 +56,7 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
         None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
     };
     match &limits.jerk {
-        None => within_limits(compose(path, &profile)?, limits),
+        None => within_limits(compose(path, &profile)?, [&limits.velocity, &limits.acceleration, &[]]),
         Some(_) if options.start_speed != 0.0 || options.end_speed != 0.0 => {
             let problem =
                 "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
@@ -78,40 +79,6 @@ pub(crate) fn time_all(paths: &[JointPath], limits: &TimingLimits) -> Result<Tra
     let mut motions = paths.iter().map(|path| time(path, limits, &rest_to_rest));
     let first = motions.next().ok_or_else(none)??;
     motions.try_fold(first, |all, next| all.then(&next?, 0.0))
-}
-
-/// Below this fraction of the duration, the rounding of times may make a span exceed its limits.
-const SHORT: f64 = 1e-8;
-
-/// Relative excess of a limit that rounding may leave.
-const EXCESS: f64 = 1e-9;
-
-/// Times that a motion is slowed, because slower times are rounded anew.
-const SLOWINGS: usize = 20;
-
-/// The motion, slowed where the rounding of its times makes it exceed a limit.
-fn within_limits(mut motion: Trajectory, limits: &TimingLimits) -> Result<Trajectory> {
-    let shortest = motion.knots().windows(2).map(|ends| ends[1] - ends[0]).fold(f64::INFINITY, f64::min);
-    if shortest > SHORT * motion.duration() {
-        return Ok(motion);
-    }
-    for _ in 0..SLOWINGS {
-        let [faster, harder] =
-            [(motion.max_velocity(), &limits.velocity), (motion.max_acceleration(), &limits.acceleration)].map(
-                |(largest, limits)| largest.iter().zip(limits).map(|(x, limit)| excess(*x, *limit)).fold(1.0, f64::max),
-            );
-        let factor = faster.max(harder.sqrt());
-        if factor <= 1.0 + EXCESS {
-            break;
-        }
-        motion = motion.slowed(factor)?;
-    }
-    Ok(motion)
-}
-
-/// `largest` as a multiple of its limit; 1 for a joint that may not move and does not.
-fn excess(largest: f64, limit: f64) -> f64 {
-    if limit > 0.0 { largest / limit } else { 1.0 }
 }
 
 /// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick

@@ -4,6 +4,9 @@ use super::joint_path::JointPath;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 
+/// Excess over a position limit that counts as rounding (rad or m, relative beyond 1).
+const ROUNDING: f64 = 1e-9;
+
 /// Constant limits of each joint (n,). Position limits are not included: they depend on the path alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimingLimits {
@@ -62,11 +65,11 @@ impl TimingLimits {
         }
         for (j, joint) in joints.iter().enumerate() {
             let [lowest, highest] = path.range(j);
-            for (place, outside, bound, limit) in [
-                (lowest, lowest < self.lower[j], self.lower[j], "lower"),
-                (highest, highest > self.upper[j], self.upper[j], "upper"),
+            for (place, excess, bound, limit) in [
+                (lowest, self.lower[j] - lowest, self.lower[j], "lower"),
+                (highest, highest - self.upper[j], self.upper[j], "upper"),
             ] {
-                if outside {
+                if excess > ROUNDING * bound.abs().max(1.0) {
                     let problem =
                         format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
                     return Err(Error::Infeasible { problem });

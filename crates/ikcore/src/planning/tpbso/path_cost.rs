@@ -121,7 +121,7 @@ impl<'a> PathCost<'a> {
                 polynomial([value, slope / t, curvature / (2.0 * t2), third / (6.0 * t3)])
             }));
         }
-        Some(Trajectory::new(self.limits.joint_names(), knots, coefficients))
+        Some(Trajectory::from_phases(self.limits.joint_names(), knots, coefficients))
     }
 
     /// The free orientations of decision vector `x` at every point of the path; points without a configuration are left

@@ -82,7 +82,7 @@ impl<'a> ViaPointCost<'a> {
         }
         first.append(&mut second);
         let knots = vec![0.0, decision.t1, decision.t1 + decision.t2];
-        Some(Trajectory::new(self.limits.joint_names(), knots, first))
+        Some(Trajectory::from_phases(self.limits.joint_names(), knots, first))
     }
 
     fn take_apart<'x>(&self, x: &'x [f64]) -> Decision<'x> {
