@@ -176,6 +176,7 @@ def test_what_holds_an_arm_is_never_clear_of_it(size: float) -> None:
         assert bik.obstacles.clearance(arm, [0.0], [shape]) < 0.0
         found = bik.solve(arm, arm.fk([0.0]), obstacles=[shape])
         assert found.status == bik.Status.IN_COLLISION
+        assert ("perhaps (its numbers are too large to tell) inside" in found.message) == (found.clearance == -np.inf)
 
 
 @pytest.mark.parametrize(

@@ -333,7 +333,7 @@ mod tests {
         let (mut closed, mut cavities) = (0, 0);
         for case in 0..600 {
             let round = case % 2 == 0;
-            let mut place = |rng: &mut LazyRng| if round { rng.below(5) as f64 } else { rng.uniform_in(0.0, 4.0) };
+            let place = |rng: &mut LazyRng| if round { rng.below(5) as f64 } else { rng.uniform_in(0.0, 4.0) };
             let mut parts: Vec<(Block, bool)> = vec![];
             let mut triangles = vec![];
             for _ in 0..=rng.below(4) {
