@@ -342,6 +342,11 @@ mod tests {
                     let ends = [place(&mut rng), place(&mut rng)];
                     (lower[k], upper[k]) = (ends[0].min(ends[1]), ends[0].max(ends[1]) + if round { 1.0 } else { 0.1 });
                 }
+                if let Some((last, _)) = parts.last().filter(|_| rng.below(2) == 0) {
+                    // Within the one before.
+                    lower = std::array::from_fn(|k| 0.8 * last.lower[k] + 0.2 * last.upper[k]);
+                    upper = std::array::from_fn(|k| 0.2 * last.lower[k] + 0.8 * last.upper[k]);
+                }
                 let (block, outward) = (Block { lower, upper }, rng.below(2) == 0);
                 parts.push((block, outward));
                 let mut own = block.triangles(rng.below(2) == 0);

@@ -94,7 +94,7 @@ fn block(body: &PlacedBody) -> BodyBlock {
 fn what_contains_a_body_is_near_at_every_size_and_place() {
     let mut rng = rng::stream(1, 0);
     let mut count = 0;
-    for case in 0..2500 {
+    for case in 0..700 {
         let far = if case % 4 == 0 { 0.0 } else { length(&mut rng) };
         let way =
             [Vector3::x(), Vector3::repeat(-1.0), Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0))][rng.below(3)];
@@ -119,14 +119,14 @@ fn what_contains_a_body_is_near_at_every_size_and_place() {
             });
         }
     }
-    assert!(count > 150_000, "{count}");
+    assert!(count > 40_000, "{count}");
 }
 
 #[test]
 fn no_distance_is_above_the_true_one_at_any_scale() {
     let mut rng = rng::stream(2, 0);
     let (mut finite, mut useful) = (0, 0);
-    for case in 0..3000 {
+    for case in 0..1200 {
         let aside = if case % 2 == 0 { 0.0 } else { length(&mut rng) };
         let (half, own, gap) = (length(&mut rng), length(&mut rng), length(&mut rng));
         let center = [half + own + gap, aside, -aside];
@@ -157,5 +157,5 @@ fn no_distance_is_above_the_true_one_at_any_scale() {
             });
         }
     }
-    assert!(finite > 150_000 && useful > 50_000, "{finite} {useful}");
+    assert!(finite > 80_000 && useful > 10_000, "{finite} {useful}");
 }
