@@ -2731,8 +2731,13 @@ class ConvexMesh(Obstacle):
 
 @final
 class Mesh(Obstacle):
-    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. If it is closed,
-    its inside counts too; else it is a surface without thickness.
+    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. What its closed parts
+    enclose counts too; the others are surfaces without thickness.
+
+    A part is a set of triangles connected along edges; vertices at one place count as one. It is closed if each edge belongs to two
+    triangles, in any orientation, or if the orientations of the triangles along each edge cancel. Parts that overlap, or are inside
+    out, all have an inside. A part is the wall of a cavity if it lies inside another one, apart from all others, and its triangles
+    are turned the other way.
     """
 
     def __new__(cls, vertices: ArrayLike, faces: ArrayLike, *, touch: Sequence[str] | None = None) -> Mesh: ...
@@ -2744,7 +2749,10 @@ class Mesh(Obstacle):
         """The faces (t, 3): indices of vertices."""
     @property
     def closed(self) -> bool:
-        """Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions."""
+        """Whether all that the mesh encloses is known: all its parts are closed, and none has the outside on both sides of a triangle, by
+        winding numbers, as have two layers of opposite orientation that coincide but are not halved alike. Of large parts some 128
+        triangles are examined.
+        """
 
 @final
 class PointCloud(Obstacle):
@@ -2865,7 +2873,8 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
     Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
     the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
-    voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
+    voxels of a grid, in the nearest ball of a point cloud. Where `Mesh.closed` is False, not all of the inside is known. Of coordinates
+    above a kilometre 1e-12 is lost; beyond 1e30 m whatever may be near gives -inf.
 
     Args:
         robot: an arm with bodies.

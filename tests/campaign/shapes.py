@@ -16,7 +16,8 @@ Shape = dict[str, Any]
 Placed = tuple[Any, coal.Transform3s]
 
 CONVEX = ("sphere", "box", "capsule", "cylinder", "ellipsoid", "hull")
-KINDS = (*CONVEX, "soup", "cloud", "grid")
+KINDS = (*CONVEX, "box_mesh", "soup", "cloud", "grid")
+SQUARES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))  # of a box
 SOUP = ((0, 1, 2), (3, 5, 6), (4, 1, 7))  # triangles of three corners of a hull each
 OCCUPIED = np.array([[[True, False], [False, True]], [[False, False], [True, True]]])
 REQUEST = coal.DistanceRequest()
@@ -30,12 +31,24 @@ def shape(random: np.random.Generator, center: Any, extent: float, hard: bool, k
         size[random.integers(3)] *= 10.0 ** random.uniform(-4, 1)
     rpy = (0.0, 0.0, 0.0) if hard and random.random() < 0.3 else arms.triple(random.uniform(-3, 3, 3))
     kind = str(random.choice(kinds))
-    return {
+    drawn = {
         "kind": kind,
         "center": arms.triple(center),
         "rpy": rpy,
         "size": arms.triple(np.maximum(size, 1e-4)),
     }
+    return drawn | ({"faces": disordered(random)} if kind == "box_mesh" else {})
+
+
+def disordered(random: np.random.Generator) -> list[tuple[int, int, int]]:
+    """Draws the triangles of a box as files have them: turned, in both orientations, partly turned, some twice."""
+    squares = [np.roll(square, random.integers(2)) for square in SQUARES]
+    faces = [triangle for a, b, c, d in squares for triangle in ((a, b, c), (a, c, d))]
+    turned = [(a, c, b) for a, b, c in faces]
+    mixed = [pair[random.integers(2)] for pair in zip(faces, turned, strict=True)]
+    some = turned[: random.integers(12)]
+    drawn = [faces, turned, faces + turned, mixed, mixed + faces, faces + some][random.integers(6)]
+    return [tuple(int(i) for i in np.roll(drawn[k], random.integers(3))) for k in random.permutation(len(drawn))]
 
 
 def rotation(given: Shape) -> np.ndarray:
@@ -53,8 +66,9 @@ def corners(given: Shape) -> np.ndarray:
     return signs * given["size"]
 
 
-def written(given: Shape) -> str:
-    """The expression that makes the obstacle."""
+def written(given: Shape, power: int = 0) -> str:
+    """The expression that makes the obstacle, magnified by 2**power."""
+    given = given | {key: arms.triple(2.0**power * np.array(given[key])) for key in ("center", "size")}
     center, (x, y, z), turn = given["center"], given["size"], rotation(given)
     match given["kind"]:
         case "sphere":
@@ -68,6 +82,11 @@ def written(given: Shape) -> str:
             return f"bik.obstacles.Cylinder({center}, {turn[:, 2].tolist()}, {x}, {y})"
         case "ellipsoid":
             return f"bik.obstacles.Ellipsoid({center}, {(x, y, z)}, {turn.tolist()})"
+        case "box_mesh":
+            at = (
+                0.5 * np.array([[i >> k & 1 or -1 for k in range(3)] for i in range(8)]) * (x, y, z)
+            ) @ turn.T + center
+            return f"bik.obstacles.Mesh({at.tolist()}, {given['faces']})"
         case "soup":
             return f"bik.obstacles.Mesh({(corners(given) @ turn.T + center).tolist()}, {SOUP})"
         case "cloud":
@@ -98,7 +117,7 @@ def _single(given: Shape) -> Any:
     match given["kind"]:
         case "sphere":
             return coal.Sphere(x)
-        case "box":
+        case "box" | "box_mesh":
             return coal.Box(x, y, z)
         case "capsule":
             return coal.Capsule(x, y)

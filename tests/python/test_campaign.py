@@ -114,6 +114,10 @@ SPOILED = {
         "distance += 1e-5",
         "the distance is above the true one",
     ),
+    "any_size": (
+        "distance = 2.0 * abs(distance) + 1.0",
+        "the distance is above the true one",
+    ),
     "clear_solutions": (
         "every = [Changed(found[0], success=True, q=q) for q in robot.random_configurations(300)]",
         "a solution is called clear",

@@ -1,5 +1,7 @@
 """Obstacles, link capsules and plans among them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -129,6 +131,54 @@ def test_a_closed_mesh_has_an_inside_and_an_open_one_has_none() -> None:
     assert bik.obstacles.clearance(arm, [0.0], [open_]) == pytest.approx(0.1, abs=1e-9)
 
 
+def test_an_arm_inside_a_two_sided_mesh_is_in_collision(tmp_path: Path) -> None:
+    corners, faces = BOX.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)
+    turned, arm = faces[:, ::-1], ball_at(0.3, 0.0, 0.0)
+    # Two-sided, inside out, partly turned, some triangles twice.
+    for given in (
+        np.vstack([faces, turned]),
+        turned,
+        np.vstack([faces[:5], turned[5:]]),
+        np.vstack([faces, faces[:3]]),
+    ):
+        bik.Scene([bik.obstacles.Mesh(corners, given)]).save(tmp_path / "scene.json")
+        read = bik.Scene.load(tmp_path / "scene.json")
+        assert read[0].closed
+        assert bik.obstacles.clearance(arm, [0.0], read) == pytest.approx(-0.3, abs=1e-9)
+        assert bik.solve(arm, arm.fk([0.0]), obstacles=read).status == bik.Status.IN_COLLISION
+
+
+def test_layers_without_a_certain_inside_are_said_to_be_open() -> None:
+    # Both sides of a square, halved along other diagonals: all edges cancel, and nothing is inside.
+    corners = [[2, 0, 0], [2, 1, 0], [2, 1, 1], [2, 0, 1]]
+    sheet = bik.obstacles.Mesh(corners, [[0, 1, 2], [0, 2, 3], [3, 1, 0], [3, 2, 1]])
+    assert not sheet.closed
+    found = bik.solve(PANDA, PANDA.fk([0.1] * 7), obstacles=[sheet], self_collision=False)
+    assert found.success
+    assert found.message.endswith("; the mesh of obstacle 0 is open, so that its inside is unknown")
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e3, 1e40, 1e60, 1e100, 1e155, 1e300])
+def test_what_holds_an_arm_is_never_clear_of_it(size: float) -> None:
+    cube = size * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    triangles = bik.obstacles.Box((0, 0, 0), (2, 2, 2)).triangles.reshape(-1, 3)
+    arm, middle = ball_at(0.0, 0.0, 0.0), np.array([-0.6, 0.3, 0.7]) * size
+    for shape in (
+        bik.obstacles.Sphere(middle, 1.1 * size),
+        bik.obstacles.Box(0.4 * middle, (2 * size, 2 * size, 2 * size)),
+        bik.obstacles.Capsule(-middle, middle, size),
+        bik.obstacles.Cylinder(0.4 * middle, (0, 0, 1), size, 2 * size),
+        bik.obstacles.Mesh(size * triangles, np.arange(36).reshape(12, 3)),
+        bik.obstacles.PointCloud(cube, 2 * size),
+        bik.obstacles.Grid(-size * np.ones(3), size, np.ones((2, 2, 2), bool)),
+        bik.obstacles.HalfSpace(middle, size),
+    ):
+        assert bik.obstacles.clearance(arm, [0.0], [shape]) < 0.0
+        found = bik.solve(arm, arm.fk([0.0]), obstacles=[shape])
+        assert found.status == bik.Status.IN_COLLISION
+        assert ("perhaps (its numbers are too large to tell) inside" in found.message) == (found.clearance == -np.inf)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -144,6 +194,10 @@ def test_a_closed_mesh_has_an_inside_and_an_open_one_has_none() -> None:
         (
             lambda: bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0]]),
             "a convex mesh needs at least 4 points that do not lie in a plane, got 2",
+        ),
+        (
+            lambda: bik.obstacles.ConvexMesh(1e-90 * np.eye(4, 3)),
+            "a convex mesh must measure 1e-75 to 1e75 m, got 1e-90",
         ),
         (
             lambda: bik.obstacles.Cylinder([0, 0, 0], [0, 0, 0], 0.1, 1),

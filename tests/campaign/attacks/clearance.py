@@ -40,6 +40,8 @@ class Distances(Attack):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         own = shapes.shape(random, random.uniform(-0.5, 0.5, 3), 0.4, hard, shapes.CONVEX)
         near = 0.0 if hard and random.random() < 0.2 else random.uniform(0.2, 1.5)
+        if near == 0.0 and random.random() < 0.5:  # deep inside
+            own["size"] = shapes.arms.triple(0.1 * np.array(own["size"]))
         return {
             "own": own,
             "other": shapes.shape(random, np.array(own["center"]) + random.normal(size=3) * near, 0.4, hard),
@@ -66,6 +68,41 @@ class Distances(Attack):
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
         """Shapes too thin for their size are refused."""
+
+
+class AnySize(Attack):
+    """Two shapes as in `Distances`, magnified by a power of two, which changes nothing but the exponents."""
+
+    name = "any_size"
+    promise = "No shape of any size and at any place is called clear of what it is not clear of"
+    page = "scenes"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Hard ones are so small or large that squares of their coordinates vanish or overflow."""
+        case = Distances().draw(random, hard=False)
+        return case | {"power": int(random.integers(-1060, 1020) if hard else random.integers(-40, 333))}
+
+    def program(self, case: Case) -> str:
+        return (
+            "robot = bik.Robot.planar([1.0])\nframe = robot.link_poses([0.0])[-1]\n"
+            f"own = {shapes.written(case['own'], case['power'])}\n"
+            f"other = {shapes.written(case['other'], case['power'])}\n"
+            "robot = robot.with_base(bik.pose(-frame[:3, 3])).with_attached(robot.link_names[-1], own)\n"
+            "robot = robot.with_collision_pairs([])\ndistance = bik.obstacles.clearance(robot, [0.0], [other])\n"
+            "found = bik.solve(robot, robot.fk([0.0]), obstacles=[other], margin=0.0)"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        unit = 2.0 ** case["power"]
+        exact, said = nearest(case["own"], case["other"]), left["distance"]
+        if not said <= max(exact, 0.0) * unit + EXACT * unit + 1e-15:
+            raise BrokenError("the distance is above the true one", (said, exact * unit))
+        if left["found"].success and exact < -EXACT and unit > 1e-9:
+            raise BrokenError("a solution that overlaps is called clear", (said, exact * unit))
+        return 1
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        """Sizes that no shape can have are refused."""
 
 
 class Clear(Attack):
@@ -212,4 +249,4 @@ class ClearTicks(Clear):
         return len(left["ways"])
 
 
-ATTACKS = [Distances(), ClearSolutions(), ClearPlans(), ClearTicks()]
+ATTACKS = [Distances(), AnySize(), ClearSolutions(), ClearPlans(), ClearTicks()]

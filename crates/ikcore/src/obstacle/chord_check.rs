@@ -162,7 +162,10 @@ impl ChordCheck {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from).norm());
             scene.others.obstacles.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
-                if scene.others.obstacles[obstacle].distance_to_segment(&[from, to], needed + reach) < needed + reach {
+                // What is not a number is near.
+                if !(scene.others.obstacles[obstacle].distance_to_segment(&[from, to], needed + reach)
+                    >= needed + reach)
+                {
                     let tested = bodies.iter().filter(|body| !scene.others.allowed.allow(**body, obstacle));
                     pending.extend(tested.map(|body| BodyPair::Obstacle { body: *body, obstacle }));
                 }

@@ -44,6 +44,9 @@ impl Contact {
     /// How deep the link is in the other body, or how little of `kept` (m) is left: "0.01 m inside", "only 0.1 m (of a margin of
     /// 0.2 m) from".
     pub(crate) fn depth(&self, kept: f64) -> String {
+        if self.distance == f64::NEG_INFINITY {
+            return "perhaps (its numbers are too large to tell) inside".into();
+        }
         if self.distance < 0.0 {
             return format!("{} m inside", number(-self.distance));
         }

@@ -8,7 +8,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
-use crate::shape::{EightCapsules, EightShape, below_square};
+use crate::shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, below_square};
 
 /// What single precision may take off a distance, for coordinates of 1 m and angles of a few rad (m): a few units in the last place
 /// for each of the operations that lead to it.
@@ -78,9 +78,10 @@ impl<'a> EightScene<'a> {
         });
         let pairs = pairs.collect();
         let levers = groups.iter().map(|(_, levers)| levers.sum()).fold(0.0, f64::max);
+        let reach = (0..bodies.groups.count()).map(|group| elements.reach(&ball(group))).fold(0.0, f64::max);
         let obstacles = (0..scene.others.obstacles.len()).map(|obstacle| {
             let (center, radius) = scene.others.obstacles.ball(obstacle);
-            if radius.is_finite() { center.norm() + radius } else { 0.0 }
+            center.norm() + if radius.is_finite() { radius } else { 0.0 }
         });
         Self {
             scene,
@@ -88,7 +89,7 @@ impl<'a> EightScene<'a> {
             groups,
             pairs,
             ranges: (0..robot.dof()).map(|j| elements.range(robot, j)).collect(),
-            extent: levers + obstacles.fold(1.0, f64::max),
+            extent: levers.max(reach) + obstacles.filter(|far| *far <= LARGEST_IN_SINGLE).fold(1.0, f64::max),
             placement: bodies.eight.placement(),
             qs: vec![F32x8::ZERO; robot.dof()],
         }
@@ -100,9 +101,11 @@ impl<'a> EightScene<'a> {
         joints.all(|((lower, upper), (q, off_line))| *lower <= q - off_line && q + off_line <= *upper)
     }
 
-    /// What rounding may take off a distance (m), for joint values of up to `largest` (rad, m).
+    /// What rounding may take off a distance (m), for joint values of up to `largest` (rad, m). Not a number, which makes everything
+    /// near, if coordinates are too large for single precision.
     pub fn rounding(&self, largest: f64) -> f64 {
-        ROUNDING * self.extent * (1.0 + 0.1 * largest)
+        let rounding = ROUNDING * self.extent * (1.0 + 0.1 * largest);
+        if rounding <= ROUNDING * LARGEST_IN_SINGLE { rounding } else { f64::NAN }
     }
 
     /// A bound on how far any body moves (m) while the joints move by `reach` (rad, m).

@@ -47,6 +47,18 @@ impl MovingElements {
         if slides { robot.joints()[j].sampling_range() } else { (f64::NEG_INFINITY, f64::INFINITY) }
     }
 
+    /// The largest distance of the points of `ball` from the origin (m).
+    pub fn reach(&self, ball: &CarriedBall) -> f64 {
+        let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+        let (mut at, mut far) = (ball.frame, length(ball.center) + ball.radius);
+        while at > 0 {
+            let (parent, Frame { origin, .. }, _) = &self.stages[at - 1];
+            far += length(*origin) + self.slides[at - 1];
+            at = *parent;
+        }
+        far
+    }
+
     /// Adds to `levers` how far the joints move `ball` relative to frame number `below`, which carries it.
     pub fn add(&self, ball: &CarriedBall, below: usize, levers: &mut Levers) {
         let CarriedBall { frame: mut at, center: [x, y, z], radius } = *ball;

@@ -22,7 +22,7 @@ pub struct Obstacles(Arc<Prepared>);
 #[derive(Debug)]
 struct Prepared {
     shapes: Vec<Shape>,
-    /// Centre and radius, infinite for a half-space.
+    /// Centre and radius, infinite for a half-space and for what is too large for squares.
     balls: Vec<(Vector3<f64>, f64)>,
     index: Option<ShapeIndex>,
     /// Those that some links may touch.
@@ -48,7 +48,8 @@ impl Obstacles {
             Some(index) => index.near_ball(center, radius, visit),
             None => {
                 for (obstacle, (middle, own)) in self.0.balls.iter().enumerate() {
-                    if (middle - center).norm() <= radius + own + ROUNDING {
+                    // What is not a number is near.
+                    if !((middle - center).norm() > radius + own + ROUNDING) {
                         visit(obstacle);
                     }
                 }
@@ -77,6 +78,7 @@ impl From<Vec<Shape>> for Obstacles {
         let ball = |shape: &Shape| {
             let BoundingBall { center, radius } = shape.bounding_ball();
             let center = Vector3::from(center);
+            let radius = if shape.is_huge() { f64::INFINITY } else { radius };
             (center, radius + RELATIVE_ROUNDING * (radius + center.amax()))
         };
         Self(Arc::new(Prepared {

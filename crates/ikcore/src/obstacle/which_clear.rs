@@ -62,3 +62,42 @@ by_instructions! {
         near.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::math::Pose;
+    use crate::rng;
+    use crate::robot::Robot;
+    use crate::shape::Shape;
+
+    #[test]
+    fn what_is_seen_to_be_clear_is_so_wherever_the_robot_stands() {
+        let mut rng = rng::stream(1, 0);
+        let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.07).unwrap();
+        let (mut clear, mut near) = (0, 0);
+        for case in 0..240 {
+            let far = [0.0, 10.0_f64.powf(rng.uniform_in(0.0, 12.0))][case % 2];
+            let place = Vector3::from_fn(|_, _| far * rng.uniform_in(-1.0, 1.0));
+            let robot = panda.with_base(Pose::translation(place.x, place.y, place.z)).unwrap();
+            let size = 10.0_f64.powf(rng.uniform_in(-12.0, 12.0));
+            let beside: [f64; 3] = (place + Vector3::new(0.5 + size, 0.3, 0.4)).into();
+            let obstacles = match case % 6 {
+                0 | 1 => vec![],
+                2 | 3 => vec![Shape::sphere(beside, size).unwrap()],
+                _ => vec![Shape::half_space([0.0, 0.0, 1.0], place.z - 0.1).unwrap()],
+            };
+            let scene = Scene::new(&robot, &obstacles).unwrap();
+            let qs = robot.random_configurations(40, &mut rng).unwrap();
+            let margin = rng.uniform_in(0.0, 0.02);
+            let found = scene.which_are_clear(&qs, margin).unwrap();
+            for (q, found) in qs.chunks(robot.dof()).zip(found) {
+                assert!(!found || scene.clearance(q).unwrap() >= margin - 1e-9 - 1e-11 * far, "{far:e} {size:e}");
+                *(if found { &mut clear } else { &mut near }) += 1;
+            }
+        }
+        assert!(clear > 1000 && near > 1000, "{clear} {near}");
+    }
+}

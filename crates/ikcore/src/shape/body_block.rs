@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::checked_shape::{ROUNDING, Shape};
+use super::checked_shape::{LARGEST, ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{to_point, to_segment};
 use super::solid_lanes::{BoxLanes, CylinderLanes, SolidLanes, segment_bound};
@@ -70,9 +70,12 @@ impl Shape {
     pub(crate) fn clear_lanes<A: Arithmetic>(&self, block: &BodyBlock, margin: f64) -> F64x4 {
         let start = Vec3::<Four<A>>::of(&block.start);
         let along = Vec3::<Four<A>>::of(&block.along);
-        let far = largest::<A>(start).larger(largest::<A>(start + along)) * Four::splat(ROUNDING);
+        let far = rounded::<A>(largest::<A>(start).larger(largest::<A>(start + along)));
         let rounding = Four::splat(self.rounding(0.0)).larger(far);
         let enough = Four::of(block.radius) + Four::splat(margin) + rounding;
+        if self.is_huge() {
+            return self.clear_one_by_one(block, &enough.stored());
+        }
         let bounds = self.bounding_ball();
         if block.spheres {
             // Most bodies are clear of the ball around the shape.
@@ -138,7 +141,7 @@ pub(crate) fn clear_of_each_other<A: Arithmetic>(one: &BodyBlock, other: &BodyBl
     let [p, q] = [Vec3::<Four<A>>::of(&one.start), Vec3::of(&other.start)];
     let [u, v] = [Vec3::<Four<A>>::of(&one.along), Vec3::of(&other.along)];
     let squared = if one.spheres && other.spheres { (p - q).dot(p - q) } else { to_segment(p, u, q, v).squared };
-    let rounding = (largest::<A>(p) + largest::<A>(q) + Four::splat(2.0)) * Four::splat(ROUNDING);
+    let rounding = rounded::<A>(largest::<A>(p) + largest::<A>(q) + Four::splat(2.0));
     beyond_square(squared, Four::of(one.radius) + Four::of(other.radius) + Four::splat(margin) + rounding)
 }
 
@@ -165,9 +168,16 @@ fn beyond_square<A: Arithmetic>(squared: Four<A>, enough: Four<A>) -> F64x4 {
 
 #[inline(always)]
 fn at_least<A: Arithmetic>(value: Four<A>, enough: Four<A>) -> F64x4 {
-    // NaN counts as too near.
-    let near = value.choose_below(enough, Four::splat(0.0), Four::splat(1.0));
-    value.choose_equal(value, near, Four::splat(0.0)).stored()
+    let clear = value.choose_below(enough, Four::splat(0.0), Four::splat(1.0));
+    // What is no finite number counts as too near.
+    value.choose_below(Four::splat(f64::INFINITY), clear, Four::splat(0.0)).stored()
+}
+
+/// What distances lose to rounding, for coordinates up to `largest`; infinite if products of them would overflow.
+#[inline(always)]
+fn rounded<A: Arithmetic>(largest: Four<A>) -> Four<A> {
+    let infinite = Four::splat(f64::INFINITY);
+    largest.choose_below(Four::splat(LARGEST), largest * Four::splat(ROUNDING), infinite)
 }
 
 /// The largest coordinate, without its sign.

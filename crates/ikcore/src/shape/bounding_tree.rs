@@ -34,6 +34,8 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// This bit of a child marks a leaf.
 const LEAF: u32 = 1 << 31;
+/// Shorter segments (m) have no direction.
+const SHORTEST: f64 = 1e-100;
 /// Three children per level wait, and a tree of 2^31 pieces has at most 16 levels.
 const STACK: usize = 64;
 
@@ -77,7 +79,8 @@ impl SegmentQuery {
             normal.try_normalize(1e-9 * along.norm()).unwrap_or_default().into()
         });
         let center = (0.5 * (a + b)).into();
-        Self { center, half: (0.5 * along.abs()).into(), across, is_point: along == Vector3::zeros() }
+        // A direction from lengths that vanish when squared would be anything.
+        Self { center, half: (0.5 * along.abs()).into(), across, is_point: along.amax() < SHORTEST }
     }
 }
 

@@ -27,10 +27,12 @@ pub struct Shape {
 
 /// What distances lose to rounding, for coordinates of 1 m (m).
 pub(super) const ROUNDING: f64 = 1e-12;
+/// Coordinates beyond this (m) are not computed with: products of six of them would overflow.
+pub(super) const LARGEST: f64 = 1e30;
 
 impl Shape {
     fn made(geometry: Geometry, bounds: BoundingBall) -> Self {
-        let reach = if bounds.radius.is_finite() { bounds.radius } else { 0.0 };
+        let reach = if matches!(geometry, Geometry::HalfSpace { .. }) { 0.0 } else { bounds.radius };
         let scale = bounds.center.iter().fold(1.0 + reach, |largest, x| largest.max(reach + x.abs()));
         Self { geometry, bounds, rounding: ROUNDING * scale, touch: None }
     }
@@ -149,8 +151,8 @@ impl Shape {
         Ok(Self::made(Geometry::ConvexMesh(Arc::new(hull)), bounds))
     }
 
-    /// A mesh of triangles, each given by three indices of `vertices` (m). It need not be convex. If every edge belongs to
-    /// exactly two triangles that run along it in opposite directions, the mesh is closed and its inside counts too.
+    /// A mesh of triangles, each given by three indices of `vertices` (m). It need not be convex. What a connected part without
+    /// boundary encloses counts too, whatever the orientation of its triangles; see [`Mesh::is_closed`].
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for no triangles, or an index that is not of a vertex.
@@ -239,12 +241,17 @@ impl Shape {
         self.rounding.max(ROUNDING * reach)
     }
 
+    /// Whether its coordinates are too large for products of them. It counts as near to all that a ball around it does not exclude.
+    pub(crate) fn is_huge(&self) -> bool {
+        !(self.rounding <= ROUNDING * LARGEST || matches!(self.geometry, Geometry::HalfSpace { .. }))
+    }
+
     /// Whether it is flat, in the plane z = 0, and so undefined for an arm that leaves that plane.
     pub fn is_flat(&self) -> bool {
         matches!(self.geometry, Geometry::Ellipse { .. })
     }
 
-    /// Whether it is a mesh that is not closed: its inside is not known.
+    /// Whether it is a mesh that is not closed: not all of its inside is known.
     pub fn is_open_mesh(&self) -> bool {
         matches!(&self.geometry, Geometry::Mesh(mesh) if !mesh.is_closed())
     }
@@ -281,11 +288,13 @@ fn checked_pose(center: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Pose
 fn checked_direction(what: &str, direction: [f64; 3]) -> Result<Vector3<f64>> {
     require_point(what, &direction)?;
     let direction = Vector3::from(direction);
-    let length = direction.norm();
+    // Squares of very large or small entries would overflow or vanish.
+    let largest = direction.amax();
+    let length = largest * direction.unscale(if largest > 0.0 { largest } else { 1.0 }).norm();
     require_positive(&format!("length of the {what}"), length)?;
     // A direction of unit length keeps its bits when a shape is made again from its parts.
     let is_unit = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
-    Ok(if is_unit { direction } else { direction / length })
+    Ok(if is_unit { direction } else { direction.unscale(largest).normalize() })
 }
 
 fn require_point(what: &str, point: &[f64]) -> Result<()> {

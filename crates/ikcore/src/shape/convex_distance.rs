@@ -27,8 +27,6 @@ const CLIMBS: usize = 30;
 const FIRST_ANGLE: f64 = 1e-3;
 /// A gradient shorter than this (m) is none.
 const SHORTEST: f64 = 1e-12;
-/// Coordinates beyond this (m) would overflow on the way.
-const FARTHEST: f64 = 1e30;
 
 impl Gap {
     /// Nothing within `distance`.
@@ -41,9 +39,6 @@ impl Gap {
 pub(super) fn gap(own: &Convex, other: &Convex, enough: f64) -> Gap {
     let radii = own.radius() + other.radius();
     let (here, there) = (own.support(&Vector3::x()), other.support(&Vector3::x()));
-    if !(here.amax() < FARTHEST && there.amax() < FARTHEST) {
-        return Gap::beyond(f64::NEG_INFINITY);
-    }
     let towards = (here - there).try_normalize(0.0).unwrap_or(Vector3::x());
     let (support, other_support) = (|n: &Vector3<f64>| own.support(n), |n: &Vector3<f64>| other.support(n));
     match nearest(&support, &other_support, &towards, enough + radii) {

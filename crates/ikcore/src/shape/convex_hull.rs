@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use super::bounding_ball::BoundingBall;
+use super::bounding_tree::Aabb;
 use super::collision_crate::Polyhedron;
 use super::tangent::Tangent;
 
@@ -26,6 +27,9 @@ impl PartialEq for Hull {
 /// A body thinner than this, seen against its size, is flat.
 const THINNEST: f64 = 1e-6;
 
+/// Products of smaller or larger extents (m) would vanish or overflow.
+const EXTENTS: [f64; 2] = [1e-75, 1e75];
+
 /// Points outside by less than this, seen against the size, are outside by rounding.
 const STICKING_OUT: f64 = 1e-9;
 
@@ -38,6 +42,12 @@ impl Hull {
                 "a convex mesh needs at least 4 points that do not lie in a plane, got {}",
                 points.len()
             ));
+        }
+        let Aabb { lower, upper } = Aabb::around(points.iter().map(|point| Vector3::from(*point)));
+        let extent = (upper - lower).amax();
+        let [smallest, largest] = EXTENTS;
+        if extent > 0.0 && !(smallest..=largest).contains(&extent) {
+            return Err(format!("a convex mesh must measure {smallest:e} to {largest:e} m, got {extent:e}"));
         }
         let stretch = stretch(points).ok_or_else(flat)?;
         let polyhedron = Polyhedron::hull_of(points, &stretch).ok_or_else(flat)?;

@@ -13,8 +13,8 @@ use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::vec3::Vec3;
 
-/// Shapes with larger coordinates (m) are left to double precision: their squares overflow.
-const LARGEST: f64 = 1e15;
+/// Shapes with larger coordinates (m) are left to double precision: products of four of them would overflow.
+pub(crate) const LARGEST_IN_SINGLE: f64 = 1e8;
 
 /// A vector, the same in all lanes or one per lane.
 pub(crate) type Vectors = [F32x8; 3];
@@ -97,7 +97,7 @@ impl EightShape {
         let number = |x: f64| F32x8::splat(x as f32);
         let ball = shape.bounding_ball();
         let farthest = ball.center.iter().fold(ball.radius, |most, x| most.max(x.abs()));
-        if farthest.is_finite() && farthest > LARGEST {
+        if farthest > LARGEST_IN_SINGLE && !matches!(shape.geometry(), Geometry::HalfSpace { .. }) {
             return Self { center: splat(&[0.0; 3]), radius: number(f64::INFINITY), form: Form::Other(shape.clone()) };
         }
         let form = match shape.geometry() {

@@ -70,7 +70,7 @@ pub enum Geometry {
     },
     /// The convex hull of some points.
     ConvexMesh(Arc<Hull>),
-    /// A surface of triangles; if it is closed, also what it encloses.
+    /// A surface of triangles, with what its closed parts enclose.
     Mesh(Arc<Mesh>),
     /// Balls of one radius about many points.
     PointCloud(Arc<PointCloud>),

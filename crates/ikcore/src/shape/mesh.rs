@@ -6,21 +6,22 @@ use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
-use super::inside_mesh::{is_closed, winding};
+use super::enclosure::Enclosure;
 use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
+use super::winding::winding;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
 
-/// A triangle mesh; if it is closed, also what it encloses.
+/// A triangle mesh, with what its closed pieces enclose.
 #[derive(Clone)]
 pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
-    closed: bool,
+    enclosure: Enclosure,
     tree: BoundingTree,
     leaves: Vec<Leaf>,
 }
@@ -62,7 +63,7 @@ impl fmt::Debug for Mesh {
     /// Without the pieces, of which there may be thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (vertices, faces) = (self.vertices.len(), self.faces.len());
-        write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.closed)
+        write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.is_closed())
     }
 }
 
@@ -82,8 +83,9 @@ impl Mesh {
         let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(face.map(corner))).collect();
         let (tree, blocks) = BoundingTree::new(&boxes);
         let leaves = blocks.into_iter().map(|block| Leaf::new(block, &vertices, &faces)).collect();
-        let closed = is_closed(&vertices, &faces);
-        Ok(Self { vertices, faces, closed, tree, leaves })
+        let mut mesh = Self { vertices, faces, enclosure: Enclosure::NOTHING, tree, leaves };
+        mesh.enclosure = Enclosure::of(&mesh);
+        Ok(mesh)
     }
 
     /// Corners of the triangles (m).
@@ -96,19 +98,25 @@ impl Mesh {
         &self.faces
     }
 
-    /// Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions.
+    /// Whether all that the mesh encloses is known: it has no boundary, and no two layers of it coincide. A triangle may have either
+    /// orientation where each edge belongs to two.
     pub fn is_closed(&self) -> bool {
-        self.closed
+        self.enclosure.certain
     }
 
-    /// The volume that a closed mesh encloses (m^3); negative if its triangles are inside out.
+    /// The volume of what its closed pieces enclose (m^3); where they overlap it counts for each.
     pub fn volume(&self) -> f64 {
         let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
-        let cone = |i: usize| {
+        let cone = |(i, turn): (usize, &i8)| {
             let [a, b, c] = self.triangle(i).map(|corner| corner - origin);
-            a.dot(&b.cross(&c)) / 6.0
+            f64::from(*turn) * a.dot(&b.cross(&c)) / 6.0
         };
-        (0..self.faces.len()).map(cone).sum()
+        self.enclosure.turns.iter().enumerate().map(cone).sum()
+    }
+
+    /// The box around it.
+    pub(super) fn bounds(&self) -> &Aabb {
+        self.tree.bounds()
     }
 
     /// The corners of face `i`.
@@ -116,20 +124,26 @@ impl Mesh {
         self.faces[i].map(|corner| self.vertices[corner as usize].into())
     }
 
-    /// Whether the mesh is closed and `point` inside.
+    /// Whether a closed piece encloses `point`.
     pub(super) fn encloses(&self, point: &Vector3<f64>) -> bool {
+        let Enclosure { turns, .. } = &self.enclosure;
+        !turns.is_empty() && self.winding_number(point, |face| turns[face].into()) != 0
+    }
+
+    /// How often the mesh encloses `point`, if `count` says how often each triangle counts.
+    pub(super) fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32 {
         let bounds = self.tree.bounds();
-        let within = (0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k]));
-        if !(self.closed && within) {
-            return false;
+        if !(0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k])) {
+            return 0;
         }
         let mut turns = 0;
         self.tree.along_x(point, |leaf| {
             let faces = self.leaves[leaf].faces;
-            let real = faces.into_iter().filter(|face| *face != NONE);
-            turns += real.map(|face| winding(point, &self.triangle(face as usize))).sum::<i32>();
+            for face in faces.into_iter().filter(|face| *face != NONE) {
+                turns += count(face as usize) * winding(point, &self.triangle(face as usize));
+            }
         });
-        turns != 0
+        turns
     }
 
     /// The nearest point of the surface within the square root of `bound`.
@@ -154,12 +168,12 @@ impl Mesh {
         Tangent { value: sign * distance, normal }
     }
 
-    /// Signed distance of a segment: negative by the depth of its deepest point, if the mesh is closed. Outside exact up
-    /// to `enough`, inside at most the truth.
+    /// Signed distance of a segment: negative by the depth of its deepest point in a closed piece. Outside exact up to
+    /// `enough`, inside at most the truth.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
         let touches = surface.face.is_some() && surface.squared <= TOUCHING;
-        if self.closed && (touches || self.encloses(&segment[0])) {
+        if (touches && !self.enclosure.turns.is_empty()) || self.encloses(&segment[0]) {
             return self.depth(segment);
         }
         SegmentDistance { distance: surface.squared.sqrt(), share: surface.share }

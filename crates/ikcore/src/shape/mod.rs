@@ -19,7 +19,8 @@
 //! | `segment_lanes`, `solid_lanes` | the same, for one number, or several in the lanes of a register |
 //! | `body_block`, `eight_shape` | "nearer than m?" for four capsules at once, and for one at eight configurations |
 //! | `shape_index` | finds the shapes near a ball, among many |
-//! | `mesh`, `inside_mesh`, `triangle` | triangle meshes, closed or not |
+//! | `mesh`, `triangle` | triangle meshes, closed or not |
+//! | `mesh_pieces`, `enclosure`, `winding` | connected pieces of a mesh, and what they enclose |
 //! | `mesh_hull` | convex hulls of meshes |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
 //! | `cover` | covers of meshes by few spheres and capsules |
@@ -43,14 +44,17 @@ mod cover;
 mod eight_shape;
 mod ellipsoid;
 mod enclosing_capsule;
+mod enclosure;
 mod extent;
 mod geometry;
 mod grid;
-mod inside_mesh;
 mod mesh;
 mod mesh_hull;
+mod mesh_pieces;
 mod placed_body;
 mod point_cloud;
+#[cfg(test)]
+mod scale_tests;
 mod segment_distance;
 mod segment_lanes;
 mod separation;
@@ -61,6 +65,7 @@ mod stored_shape;
 mod tangent;
 mod triangle;
 mod triangles;
+mod winding;
 
 pub(crate) use along_segment::LineSegment;
 pub(crate) use body_block::{BodyBlock, clear_of_each_other};
@@ -68,7 +73,7 @@ pub use bounding_ball::BoundingBall;
 pub use checked_shape::Shape;
 pub use convex_hull::Hull;
 pub use cover::Cover;
-pub(crate) use eight_shape::{EightCapsules, EightShape, Vectors, below_square, splat};
+pub(crate) use eight_shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, Vectors, below_square, splat};
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::along_segment::LineSegment;
-use super::checked_shape::Shape;
+use super::checked_shape::{LARGEST, Shape};
 use super::convex::Convex;
 use super::convex_distance::{Gap, gap};
 use super::geometry::Geometry;
@@ -28,6 +28,11 @@ impl<'a> PlacedBody<'a> {
         solid.unwrap_or_else(|| Convex::capsule(*self.axis, self.radius))
     }
 
+    /// Whether its coordinates are too large for products of them.
+    fn is_huge(&self) -> bool {
+        !(self.axis[0].amax().max(self.axis[1].amax()).max(self.radius) <= LARGEST)
+    }
+
     /// Signed distance (m) from another body: never more than the truth, and exact where it is below `enough`.
     #[inline]
     pub fn distance_to(&self, other: &PlacedBody, enough: f64) -> f64 {
@@ -35,7 +40,14 @@ impl<'a> PlacedBody<'a> {
         if by_capsules >= enough || (self.solid.is_none() && other.solid.is_none()) {
             return by_capsules;
         }
-        gap(&self.convex(), &other.convex(), enough).distance
+        self.gap_to_body(other, enough).distance
+    }
+
+    fn gap_to_body(&self, other: &PlacedBody, enough: f64) -> Gap {
+        if self.is_huge() || other.is_huge() {
+            return Gap::beyond(f64::NEG_INFINITY);
+        }
+        gap(&self.convex(), &other.convex(), enough)
     }
 
     /// The point that is nearest to another body (m), and the unit normal from the other.
@@ -43,7 +55,7 @@ impl<'a> PlacedBody<'a> {
         if self.solid.is_none() && other.solid.is_none() {
             return capsules_nearest((self.axis, self.radius), (other.axis, other.radius));
         }
-        let Gap { point, normal, .. } = gap(&self.convex(), &other.convex(), f64::INFINITY);
+        let Gap { point, normal, .. } = self.gap_to_body(other, f64::INFINITY);
         (point, normal)
     }
 }
@@ -72,6 +84,9 @@ impl Shape {
     }
 
     fn gap_to(&self, body: &PlacedBody, enough: f64) -> Gap {
+        if self.is_huge() || body.is_huge() {
+            return Gap::beyond(f64::NEG_INFINITY);
+        }
         let own = body.convex();
         let mut nearest = Gap::beyond(enough);
         // The boxes of a cloud hold its points, not the balls about them.

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::along_segment::{LineSegment, SegmentDistance, by_tangents};
-use super::checked_shape::{ROUNDING, Shape};
+use super::checked_shape::{LARGEST, ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{TOUCHING, to_box};
 use super::tangent::{nearest_on_segment, nearest_share};
@@ -13,19 +13,27 @@ use crate::math::vec3::Vec3;
 
 impl Shape {
     /// Signed distance (m) of the segment, negative by the depth of its deepest point. Never more than the truth; where it is
-    /// below `enough` it is exact to 1e-9 m, inside a closed mesh to 0.1 mm or 1 %.
+    /// below `enough` it is exact to 1e-9 m, inside a closed mesh to 0.1 mm or 1 %; beyond [`LARGEST`] it is only a bound.
     pub(crate) fn distance_to_segment(&self, segment: &LineSegment, enough: f64) -> f64 {
         let [a, b] = segment;
         let bounds = self.bounding_ball();
         let center = Vector3::from(bounds.center);
-        let rounding = self.rounding(a.amax().max(b.amax()));
+        let reach = a.amax().max(b.amax());
+        let rounding = self.rounding(reach);
+        if self.is_huge() || !(reach <= LARGEST) {
+            // Along one axis nothing overflows.
+            let beyond = (0..3).map(|k| (a[k].min(b[k]) - center[k]).max(center[k] - a[k].max(b[k])));
+            let distance = beyond.fold(f64::NEG_INFINITY, f64::max) - bounds.radius - rounding;
+            return if distance > 0.0 && distance.is_finite() { distance } else { f64::NEG_INFINITY };
+        }
         // A little more, so that what is enough is still enough after rounding.
         let enough = enough + 1.01 * rounding + 4.0 * f64::EPSILON * enough.abs();
         let from_ball = (nearest_on_segment(a, b, &center) - center).norm() - bounds.radius;
         if from_ball >= enough {
             return from_ball - rounding;
         }
-        self.geometry().approach(segment, enough).distance - rounding
+        // What is not a number is as near as can be.
+        (self.geometry().approach(segment, enough).distance - rounding).max(f64::NEG_INFINITY)
     }
 }
 
@@ -72,7 +80,10 @@ impl Geometry {
 /// Distance between two segments, less an allowance for rounding.
 pub(crate) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     let reach = [one, other].into_iter().flatten().fold(1.0, |reach, end| f64::max(reach, end.amax()));
-    between(one, other).distance - ROUNDING * reach
+    if !(reach <= LARGEST) {
+        return f64::NEG_INFINITY;
+    }
+    (between(one, other).distance - ROUNDING * reach).max(f64::NEG_INFINITY)
 }
 
 /// Where `one` is nearest to `other`.

@@ -23,7 +23,7 @@ impl ShapeIndex {
     /// `None` for few shapes.
     pub fn of_many(shapes: &[Shape]) -> Option<Self> {
         let (bounded, unbounded): (Vec<usize>, Vec<usize>) =
-            (0..shapes.len()).partition(|i| shapes[*i].bounding_ball().radius.is_finite());
+            (0..shapes.len()).partition(|i| shapes[*i].bounding_ball().radius.is_finite() && !shapes[*i].is_huge());
         if bounded.len() < FEW {
             return None;
         }

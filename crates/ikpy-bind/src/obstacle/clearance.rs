@@ -17,7 +17,8 @@ const ROWS: usize = 128;
 ///
 /// Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
 /// the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
-/// voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
+/// voxels of a grid, in the nearest ball of a point cloud. Where `Mesh.closed` is False, not all of the inside is known. Of coordinates
+/// above a kilometre 1e-12 is lost; beyond 1e30 m whatever may be near gives -inf.
 ///
 /// Args:
 ///     robot: an arm with bodies.

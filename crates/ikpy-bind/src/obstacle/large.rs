@@ -10,8 +10,13 @@ use super::touch::{Touch, read_touch};
 use crate::convert::{Array, point, table};
 use crate::monitor::on_a_thread;
 
-/// A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. If it is closed,
-/// its inside counts too; else it is a surface without thickness.
+/// A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. What its closed parts
+/// enclose counts too; the others are surfaces without thickness.
+///
+/// A part is a set of triangles connected along edges; vertices at one place count as one. It is closed if each edge belongs to two
+/// triangles, in any orientation, or if the orientations of the triangles along each edge cancel. Parts that overlap, or are inside
+/// out, all have an inside. A part is the wall of a cavity if it lies inside another one, apart from all others, and its triangles
+/// are turned the other way.
 #[pyclass(name = "Mesh", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyMesh;
 
@@ -47,7 +52,9 @@ impl PyMesh {
         }
     }
 
-    /// Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions.
+    /// Whether all that the mesh encloses is known: all its parts are closed, and none has the outside on both sides of a triangle, by
+    /// winding numbers, as have two layers of opposite orientation that coincide but are not halved alike. Of large parts some 128
+    /// triangles are examined.
     #[getter]
     fn closed(this: PyRef<'_, Self>) -> bool {
         matches!(this.as_super().core.geometry(), Geometry::Mesh(mesh) if mesh.is_closed())

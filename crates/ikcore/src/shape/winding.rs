@@ -1,32 +1,10 @@
-//! Whether a mesh is closed, and whether a point is inside.
+//! Winding numbers: how often a mesh encloses a point.
 //!
 //! A ray from the point along x crosses the surface; crossings outward and inward are counted with opposite signs. Seen
 //! along x, a triangle covers the point if its edges pass on the same side of it. An edge is always compared from its lower
 //! to its upper end, so that both triangles of an edge agree to the bit, and a point on an edge counts for exactly one.
 
-use std::collections::HashMap;
-
 use nalgebra::Vector3;
-
-/// Whether the triangles run along every edge as often in one direction as in the other. Vertices at one place count
-/// as one: STL files repeat them.
-pub(super) fn is_closed(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
-    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
-    let place: Vec<u32> = (0..vertices.len())
-        // Adding zero makes -0 the same place as 0.
-        .map(|i| *places.entry(vertices[i].map(|x| (x + 0.0).to_bits())).or_insert(i as u32))
-        .collect();
-    let mut surplus: HashMap<(u32, u32), i32> = HashMap::new();
-    for face in faces {
-        let [a, b, c] = face.map(|i| place[i as usize]);
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            if from != to {
-                *surplus.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
-            }
-        }
-    }
-    surplus.values().all(|count| *count == 0)
-}
 
 /// +1 or -1 if the ray from `point` along x crosses the triangle out of or into the surface, else 0.
 pub(super) fn winding(point: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> i32 {
