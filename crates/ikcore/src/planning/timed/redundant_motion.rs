@@ -10,9 +10,9 @@ use nalgebra::DMatrix;
 use super::elastic_band::ElasticBand;
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
+use super::path_walk::PathWalk;
 use super::projection::project;
-use super::unreachable::unreachable_points;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::interrupt::checkpoint;
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
@@ -20,8 +20,6 @@ use crate::objective::{Bounds, Linearization};
 use crate::planning::tip_path::{Borders, PathTarget, TipPath};
 use crate::rng;
 use crate::robot::Robot;
-use crate::task::Target;
-use crate::wording::number;
 
 /// Nodes of the offsets along the path: as many as the published planner has knots.
 pub(super) const NODES: usize = 5;
@@ -32,9 +30,8 @@ const INTERVALS: usize = 25;
 /// Starts tried for the nominal motion.
 const STARTS: usize = 16;
 
-/// Largest motion of a joint (rad, m) from one point of the nominal motion to the next; more is a jump to another
-/// branch.
-const JUMP: f64 = 1.5;
+/// A step from one of these points to the next that fails is halved this often, at the most.
+const HALVINGS: usize = 10;
 
 /// The arm on its path.
 pub(in crate::planning) struct RedundantMotion<'a> {
@@ -56,24 +53,27 @@ pub(in crate::planning) struct RedundantMotion<'a> {
 }
 
 impl<'a> RedundantMotion<'a> {
-    /// The arm on `path`.
+    /// The arm on `path`, around the shortest of the motions that follow it; `None` where each of these ends on the way.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] names the points that no configuration reaches, or else the first place that no motion from
-    /// any start reached.
-    pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
+    /// [`Error::Interrupted`].
+    pub(super) fn new(
+        robot: &'a Robot,
+        tip_path: &'a TipPath,
+        start: Option<&[f64]>,
+        seed: u64,
+    ) -> Result<Option<Self>> {
         let knots = tip_path.knots(INTERVALS);
         let mut motion = Self::unplaced(robot, tip_path, JointWaypoints { knots, rows: vec![] }, start.is_some());
-        motion.nominal.rows = match start {
-            Some(q) => match motion.begun_at(q) {
-                Ok(nominal) => nominal,
-                Err(lost) => return Err(motion.error(&lost, seed)?),
-            },
+        let nominal = match start {
+            Some(q) => motion.begun_at(q),
             None => motion.shortest(seed)?,
         };
+        let Some(nominal) = nominal else { return Ok(None) };
+        motion.replace(nominal);
         motion.tighten()?;
         motion.place_nodes();
-        Ok(motion)
+        Ok(Some(motion))
     }
 
     /// The arm on `path`, with this nominal motion.
@@ -110,10 +110,14 @@ impl<'a> RedundantMotion<'a> {
 
     /// Replaces the nominal motion by another one on the same path.
     pub(super) fn take(&mut self, nominal: JointWaypoints) {
+        self.replace(nominal);
+        self.place_nodes();
+    }
+
+    fn replace(&mut self, nominal: JointWaypoints) {
         self.targets = nominal.knots.iter().map(|knot| self.tip_path.path_target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
         self.nominal = nominal;
-        self.place_nodes();
     }
 
     /// Shortens the nominal motion.
@@ -184,95 +188,51 @@ impl<'a> RedundantMotion<'a> {
         missed
     }
 
-    /// The nominal motion of least joint travel, over several starts: one on the path itself, or else within the leeway.
-    fn shortest(&mut self, seed: u64) -> Result<Vec<f64>> {
+    /// The motion of least joint travel, over several starts: one on the path itself, or else within the leeway.
+    fn shortest(&mut self, seed: u64) -> Result<Option<JointWaypoints>> {
         let mut rng = rng::stream(seed, 0);
         let starts = self.robot.random_configurations(STARTS, &mut rng)?;
-        let mut farthest: Option<DeadEnd> = None;
-        for leading in [Leading::OnPath, Leading::WithinLeeway] {
-            let mut best: Option<(f64, Vec<f64>)> = None;
+        let leeway = self.tip_path.has_leeway().then_some(Leading::WithinLeeway);
+        for leading in [Leading::OnPath].into_iter().chain(leeway) {
+            let mut best: Option<(f64, JointWaypoints)> = None;
             for start in starts.chunks_exact(self.dof()) {
                 checkpoint()?;
-                match self.follow(start, leading) {
-                    Ok(nominal) => {
-                        let travel = travel(&nominal, self.dof());
-                        if best.as_ref().is_none_or(|(least, _)| travel < *least) {
-                            best = Some((travel, nominal));
-                        }
-                    }
-                    Err(lost) => {
-                        if farthest.as_ref().is_none_or(|other| lost.is_farther_than(other)) {
-                            farthest = Some(lost);
-                        }
-                    }
+                let Some(nominal) = self.follow(start, leading) else { continue };
+                let travel = travel(&nominal.rows, self.dof());
+                if best.as_ref().is_none_or(|(least, _)| travel < *least) {
+                    best = Some((travel, nominal));
                 }
             }
             if let Some((_, nominal)) = best {
-                return Ok(nominal);
-            }
-            if !self.tip_path.has_leeway() {
-                break;
+                return Ok(Some(nominal));
             }
         }
-        match farthest {
-            Some(lost) => Err(self.error(&lost, seed)?),
-            None => Err(Error::InvalidPath { problem: "no start was tried".into() }),
-        }
+        Ok(None)
     }
 
-    /// The nominal motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
-    fn begun_at(&mut self, q: &[f64]) -> Result<Vec<f64>, DeadEnd> {
+    /// The motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
+    fn begun_at(&mut self, q: &[f64]) -> Option<JointWaypoints> {
         let excess = self.targets[0].excess(|| self.robot.tip(q));
-        if excess.is_none_or(|excess| excess == [0.0; 2])
-            && let Ok(nominal) = self.follow(q, Leading::InParallel)
-        {
-            return Ok(nominal);
-        }
-        self.follow(q, Leading::WithinLeeway)
-    }
-
-    /// Names the points that cannot be reached at all; where there are none, the place where the best motion ended.
-    fn error(&self, lost: &DeadEnd, seed: u64) -> Result<Error> {
-        if let Some(error) = unreachable_points(self.robot, self.tip_path, seed)? {
-            return Ok(error);
-        }
-        let problem = if lost.missed > 0.0 {
-            let unit = match self.targets[lost.point].target {
-                Target::Position(_) => "m",
-                _ => "(m and rad)",
-            };
-            format!("the nearest configuration found within the limits misses it by {} {unit}", number(lost.missed))
-        } else {
-            "only another branch of configurations does, and the arm cannot jump to it".into()
-        };
-        Ok(Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem })
+        let in_parallel = excess.is_none_or(|excess| excess == [0.0; 2]);
+        let parallel = if in_parallel { self.follow(q, Leading::InParallel) } else { None };
+        parallel.or_else(|| self.follow(q, Leading::WithinLeeway))
     }
 
     /// Follows all points from `start`, each from the previous one.
-    fn follow(&mut self, start: &[f64], leading: Leading) -> Result<Vec<f64>, DeadEnd> {
-        let n = self.dof();
+    fn follow(&mut self, start: &[f64], leading: Leading) -> Option<JointWaypoints> {
         let place = match leading {
             Leading::OnPath => self.targets[0].on_path().place,
             Leading::InParallel => self.targets[0].held_at(|| self.robot.tip(start)).place,
             Leading::WithinLeeway => None,
         };
-        let mut nominal = vec![0.0; self.points() * n];
-        let mut q = [0.0; MAX_DOF];
-        q[..n].copy_from_slice(start);
-        for (point, target) in self.targets.iter().enumerate() {
-            let before = q;
-            let target = PathTarget { place, ..*target };
-            let missed = match point {
-                0 if self.starts_as_given => 0.0,
-                _ => project(self.robot, &target, &self.bounds, &mut q[..n], &mut self.linearization),
-            };
-            let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
-            if missed > 0.0 || (point > 0 && jump > JUMP) {
-                return Err(DeadEnd { point, missed });
-            }
-            nominal[point * n..(point + 1) * n].copy_from_slice(&q[..n]);
+        let Self { robot, tip_path, bounds, nominal, starts_as_given, linearization, .. } = self;
+        let mut walk = PathWalk { robot, tip_path, bounds, place, scratch: linearization };
+        let first = if *starts_as_given { start.to_vec() } else { walk.begun_near(start)? };
+        let mut walked = JointWaypoints { knots: vec![nominal.knots[0]], rows: first };
+        for knot in &nominal.knots[1..] {
+            walk.on_to(*knot, HALVINGS, &mut walked)?;
         }
-        Ok(nominal)
+        Some(walked)
     }
 
     /// Returns the null space of the task Jacobian at each node, each basis aligned with the previous one.
@@ -304,18 +264,6 @@ enum Leading {
     InParallel,
     /// The nearest pose within the leeway.
     WithinLeeway,
-}
-
-/// Knot at which a nominal motion ended, and its distance to the point (m, rad).
-struct DeadEnd {
-    point: usize,
-    missed: f64,
-}
-
-impl DeadEnd {
-    fn is_farther_than(&self, other: &Self) -> bool {
-        self.point > other.point || (self.point == other.point && self.missed < other.missed)
-    }
 }
 
 /// Total travel of all joints.

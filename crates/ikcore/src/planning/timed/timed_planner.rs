@@ -7,10 +7,7 @@ use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 use crate::planning::deviation::TipDeviation;
 use crate::planning::search::{Search, SearchResult};
-use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, Plan};
-use crate::robot::Robot;
-use crate::solver::Stopwatch;
 use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
 
 /// Evaluations of the search; more shorten the motion by less than 1 %.
@@ -19,31 +16,28 @@ const EVALUATIONS: usize = 2000;
 /// Population size of the search.
 const POPULATION: usize = 30;
 
-/// Plans along a path.
+/// Plans along a path, around the shortest motion that follows it from a few starts; `None` where each of these ends on the way.
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
-pub(crate) fn along_path(
-    robot: &Robot,
-    tip_path: &TipPath,
-    options: &AlongPathOptions,
-    monitor: &mut dyn Monitor,
-) -> Result<Plan> {
-    let stopwatch = Stopwatch::start();
-    let problem = PathProblem::new(robot, tip_path, options)?;
-    let mut motion = RedundantMotion::new(&problem.robot, tip_path, options.start.as_deref(), options.seed)?;
+pub(in crate::planning) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
+    let PathProblem { robot, tip_path, options, .. } = problem;
+    let Some(mut motion) = RedundantMotion::new(robot, tip_path, options.start.as_deref(), options.seed)? else {
+        return Ok(None);
+    };
     let (interpolation, waypoints) = problem.corners_of(motion.nominal(), problem.accuracy)?;
     motion.take(waypoints);
-    let mut cost = TimedCost::new(&problem, motion, interpolation);
+    let mut cost = TimedCost::new(problem, motion, interpolation);
     let found = search(&mut cost, options, EVALUATIONS, monitor)?;
     let mut plan_of = |z: &[f64]| {
         let (waypoints, _) = cost.waypoints(z);
         let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
-        Ok(problem.plan(motion, found.clone(), stopwatch))
+        Ok::<_, Error>(problem.plan(motion, found.clone()))
     };
+    let nominal = plan_of(&vec![0.0; found.as_ref().map_or(0, |found| found.x.len())])?;
     match &found {
-        None => plan_of(&[]),
-        Some(found) => Ok(better(plan_of(&found.x)?, plan_of(&vec![0.0; found.x.len()])?)),
+        None => Ok(Some(nominal)),
+        Some(found) => Ok(Some(better(plan_of(&found.x)?, nominal))),
     }
 }
 
@@ -59,7 +53,6 @@ impl PathProblem<'_> {
         &self,
         motion: PathMotion,
         found: Option<SearchResult>,
-        stopwatch: Stopwatch,
     ) -> Plan {
         let Self { robot, tip_path, options, .. } = self;
         let PathMotion { waypoints, stretches, path, trajectory } = motion;
@@ -90,7 +83,7 @@ impl PathProblem<'_> {
             },
             evaluations: found.as_ref().map_or(1, |found| found.evaluations),
             history: found.map_or_else(Vec::new, |found| found.history),
-            elapsed: stopwatch.elapsed(),
+            elapsed: self.stopwatch.elapsed(),
             trajectory,
         }
     }
