@@ -26,6 +26,7 @@ CASES = {
     "out_of_reach": 6,
     "self_motions": 3,
     "paths_followed": 3,
+    "looser_paths": 3,
     "plants": 5,
     "complete_sets": 6,
     "arguments": 12,
@@ -100,6 +101,10 @@ SPOILED = {
     "time_optimal": (
         "motion = bik.Trajectory(motion.time, 1.1 * motion.coefficients)",
         "the velocity is beyond its limit",
+    ),
+    "looser_paths": (
+        "tolerances += [(False, inf, '')]",
+        "no plan with wider tolerances",
     ),
     "trajectories": (
         "most = [0.5 * rate for rate in most]",

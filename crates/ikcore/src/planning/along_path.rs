@@ -70,7 +70,7 @@ fn free_motion(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<P
     }
     match (clear_path::along_path(problem, None, monitor), followed) {
         (Ok(plan), Some(followed)) => Ok(if plan.violations.is_empty() { plan } else { followed }),
-        (Err(Error::NotFound { .. }), Some(followed)) => Ok(followed),
+        (Err(Error::NotFound { .. } | Error::Unreachable { .. }), Some(followed)) => Ok(followed),
         (Err(not_found @ Error::NotFound { .. }), None) => Err(missed.unwrap_or(not_found)),
         (result, _) => result,
     }

@@ -7,7 +7,6 @@ use crate::interrupt::checkpoint;
 use crate::robot::Robot;
 use crate::solver::{Status, Stop, Unattended};
 use crate::task::TipError;
-use crate::wording::number;
 
 /// Points that are tried at the most; of a longer path every second, third, ... point.
 const MOST_POINTS: usize = 400;
@@ -49,7 +48,7 @@ pub(super) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
     let numbered = tip_path.numbered_points();
     let in_time = if numbered.is_empty() { tip_path.knots(POINTS_IN_TIME) } else { vec![] };
     let shares = if numbered.is_empty() { &in_time } else { numbered };
-    let options = SolveOptions { seed, task: tip_path.task().copied(), ..SolveOptions::default() };
+    let options = options(tip_path, seed);
     let (mut proven, mut open, mut searches) = (Missed::default(), Missed::default(), 0);
     let stride = shares.len().div_ceil(MOST_POINTS).max(1);
     for (point, share) in shares.iter().enumerate().step_by(stride) {
@@ -71,18 +70,43 @@ pub(super) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
         true => tip_path.place(shares[missed.ranges[0][0]]),
         false => format!("{} of the path", words(&missed.ranges)),
     };
-    if let Some(farthest) = &proven.farthest {
-        let problem = format!("the nearest configurations found within the limits stay up to {farthest} away");
-        return Ok(Some(Error::Unreachable { what: name(&proven), problem }));
-    }
-    Ok(open.farthest.as_ref().map(|farthest| Error::NotFound {
-        what: format!("a configuration for {}", name(&open)),
-        problem: format!(
-            "the nearest of {} evaluations from many starts stay up to {farthest} away, which proves nothing: try another seed, or \
-             solve these points with a larger budget",
-            number(Stop::default().max_evaluations as f64)
-        ),
-    }))
+    Ok(match (&proven.farthest, &open.farthest) {
+        (Some(farthest), _) => Some(unreachable(name(&proven), farthest)),
+        (None, Some(farthest)) => Some(not_found(&name(&open), farthest)),
+        (None, None) => None,
+    })
+}
+
+/// The same for one place on the path.
+///
+/// # Errors
+/// As [`missed_points`].
+pub(super) fn missed_at(robot: &Robot, tip_path: &TipPath, share: f64, seed: u64) -> Result<Option<Error>> {
+    let solution = solve(robot, &tip_path.pose(share), &options(tip_path, seed), &mut Unattended)?;
+    let (what, error) = (tip_path.place(share), solution.error);
+    Ok(match solution.status {
+        Status::Solved => None,
+        Status::OutOfReach => Some(unreachable(what, &error)),
+        _ => Some(not_found(&what, &error)),
+    })
+}
+
+fn options(tip_path: &TipPath, seed: u64) -> SolveOptions {
+    SolveOptions { seed, task: tip_path.task().copied(), ..SolveOptions::default() }
+}
+
+fn unreachable(what: String, farthest: &TipError) -> Error {
+    let problem = format!("the nearest configurations found within the limits stay up to {farthest} away");
+    Error::Unreachable { what, problem }
+}
+
+fn not_found(what: &str, farthest: &TipError) -> Error {
+    let evaluations = Stop::default().max_evaluations;
+    let problem = format!(
+        "the nearest of {evaluations} evaluations from many starts stay up to {farthest} away, which proves nothing: try another seed, or \
+         solve it with a larger budget"
+    );
+    Error::NotFound { what: format!("a configuration for {what}"), problem }
 }
 
 /// The ranges in words: "point 3", "points 3 to 5 and 9".

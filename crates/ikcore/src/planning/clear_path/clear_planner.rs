@@ -12,7 +12,7 @@ use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Sweep, TooNear};
 use crate::planning::collision_checks::{TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
-use crate::planning::missed_points::missed_points;
+use crate::planning::missed_points::{missed_at, missed_points};
 use crate::planning::search::SearchResult;
 use crate::planning::timed::{
     Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search,
@@ -34,6 +34,9 @@ const DENSITIES: [usize; 2] = [32, 128];
 
 /// Motions that are tried at the most, each with more clearance where the one before came too near.
 const ROUNDS: usize = 10;
+
+/// Rounds in which a motion that leaves the path is made to follow it more closely.
+const CLOSER_ROUNDS: usize = 2;
 
 /// Evaluations of the search for a better motion around a clear one.
 const EVALUATIONS: usize = 600;
@@ -77,7 +80,7 @@ pub(in crate::planning) fn along_path(
     match (planner.first_sequence()?, space) {
         (Ok(sequence), _) => planner.certified(sequence, monitor),
         (Err(dead_end), Some(space)) => planner.least_deep(space, dead_end),
-        (Err(dead_end), None) => Err(planner.not_found(dead_end)),
+        (Err(dead_end), None) => Err(planner.not_found(dead_end)?),
     }
 }
 
@@ -105,6 +108,7 @@ struct ClearPlanner<'p> {
 enum Fault {
     TooNear(Box<TooNear>),
     OutsideLimits,
+    OffPath,
 }
 
 impl ClearPlanner<'_> {
@@ -162,6 +166,11 @@ impl ClearPlanner<'_> {
                     self.passage.stay_inside();
                     None
                 }
+                Some(Fault::OffPath) if round == CLOSER_ROUNDS => return self.finished(smooth, found, None),
+                Some(Fault::OffPath) => {
+                    self.accuracy *= 0.5;
+                    None
+                }
             };
             round += 1;
             let next = if round < ROUNDS { self.clear_sequence()?.ok() } else { None };
@@ -198,8 +207,13 @@ impl ClearPlanner<'_> {
             let (whole, kept) = ([0.0, trajectory.duration()], space.margin() + SPARE);
             Sweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
         });
-        let leaves_limits = || !self.problem.limits.violations(trajectory).is_empty();
-        too_near.map(Fault::TooNear).or_else(|| leaves_limits().then_some(Fault::OutsideLimits))
+        if let Some(near) = too_near {
+            return Some(Fault::TooNear(near));
+        }
+        if !self.problem.limits.violations(trajectory).is_empty() {
+            return Some(Fault::OutsideLimits);
+        }
+        self.problem.leaves_path(motion).then_some(Fault::OffPath)
     }
 
     /// Keeps more clearance, and the path more closely, where a motion comes too near.
@@ -243,7 +257,7 @@ impl ClearPlanner<'_> {
             Err(dead_end) => {
                 let PathProblem { robot, tip_path, options, .. } = self.problem;
                 let missed = missed_points(robot, tip_path, options.seed)?;
-                return Err(missed.unwrap_or_else(|| self.not_found(dead_end)));
+                return Err(missed.map_or_else(|| self.not_found(dead_end), Ok)?);
             }
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
@@ -254,14 +268,20 @@ impl ClearPlanner<'_> {
     }
 
     /// The error where no sequence follows the path, clear or not.
-    fn not_found(&self, Unreached(layer): Unreached) -> Error {
-        let place = self.problem.tip_path.place(self.shares[layer]);
+    fn not_found(&self, Unreached(layer): Unreached) -> Result<Error> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        if self.postures[layer].is_empty()
+            && let Some(error) = missed_at(robot, tip_path, self.shares[layer], options.seed)?
+        {
+            return Ok(error);
+        }
+        let place = tip_path.place(self.shares[layer]);
         let problem = match self.postures[layer].len() {
             0 => "none of the motions tried reached it".into(),
             1 => "the one configuration tried there is on another branch than those before".into(),
             count => format!("all {count} configurations tried there are on other branches than those before"),
         };
-        Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") }
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") })
     }
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.

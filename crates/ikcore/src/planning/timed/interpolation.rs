@@ -1,9 +1,10 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
-use super::projection::project;
+use super::projection::{NEAR_ENOUGH, approach, project, strays};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
+use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::deviation::TipDeviation;
 use crate::planning::tip_path::TipPath;
@@ -140,7 +141,7 @@ impl Interpolation<'_> {
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
             }
-            let finer = self.halved(&waypoints, &coarse, &path);
+            let finer = self.halved(&waypoints, &coarse, &path, NEAR_ENOUGH * accuracy);
             if finer.knots.len() == waypoints.knots.len() {
                 break;
             }
@@ -182,9 +183,9 @@ impl Interpolation<'_> {
         Ok(())
     }
 
-    /// Returns the waypoints with a knot added in the middle of each of these intervals, if the path can be reached
-    /// there.
-    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath) -> JointWaypoints {
+    /// Returns the waypoints with a knot added in the middle of each of these intervals, if a configuration near the spline has the tip
+    /// there, or `within` this distance (m, rad).
+    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath, within: f64) -> JointWaypoints {
         let n = self.robot.dof();
         let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
         let mut scratch = Linearization::default();
@@ -197,11 +198,22 @@ impl Interpolation<'_> {
                 continue;
             }
             let middle = 0.5 * (knot + waypoints.knots[i + 1]);
+            let mut spline = [0.0; MAX_DOF];
+            let spline = &mut spline[..n];
+            path.position(middle, spline);
+            bounds.clip(spline);
             let mut q = [0.0; MAX_DOF];
             let q = &mut q[..n];
-            path.position(middle, q);
-            bounds.clip(q);
-            if project(self.robot, &self.tip_path.path_target(middle), &bounds, q, &mut scratch) == 0.0 {
+            q.copy_from_slice(spline);
+            let target = self.tip_path.path_target(middle);
+            let ends = &waypoints.rows[i * n..(i + 2) * n];
+            let apart = largest_difference(&ends[..n], &ends[n..]);
+            let mut is_met = project(self.robot, &target, &bounds, q, &mut scratch) == 0.0;
+            if !is_met || strays(q, spline, apart) {
+                q.copy_from_slice(spline);
+                is_met = approach(self.robot, &target, &bounds, q, &mut scratch, within);
+            }
+            if is_met {
                 finer.knots.push(middle);
                 finer.rows.extend_from_slice(q);
             }

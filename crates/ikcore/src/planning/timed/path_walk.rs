@@ -15,9 +15,17 @@ pub(super) struct PathWalk<'w> {
     pub robot: &'w Robot,
     pub tip_path: &'w TipPath,
     pub bounds: &'w Bounds,
-    /// Where in its leeway the tip is to be; `None`: anywhere.
-    pub place: Option<Displacement>,
+    pub aim: Aim,
     pub scratch: &'w mut Linearization,
+}
+
+/// What a walk meets at each point of its path.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Aim {
+    /// The target, with the tip at this place in its leeway; `None`: anywhere.
+    Place(Option<Displacement>),
+    /// The whole pose, whatever the task leaves free.
+    WholePose,
 }
 
 impl PathWalk<'_> {
@@ -45,7 +53,10 @@ impl PathWalk<'_> {
     }
 
     fn is_met(&mut self, share: f64, q: &mut [f64]) -> bool {
-        let target = PathTarget { place: self.place, ..self.tip_path.path_target(share) };
+        let target = match self.aim {
+            Aim::Place(place) => PathTarget { place, ..self.tip_path.path_target(share) },
+            Aim::WholePose => PathTarget { target: self.tip_path.pose(share), leeway: None, place: None },
+        };
         project(self.robot, &target, self.bounds, q, self.scratch) == 0.0
     }
 }

@@ -1,5 +1,7 @@
 //! The planner: corners, the search for postures, the timing of the best.
 
+use super::interpolation::{Interpolation, JointWaypoints};
+use super::nominal_motions::NominalMotions;
 use super::path_problem::{PathMotion, PathProblem};
 use super::redundant_motion::RedundantMotion;
 use super::timed_cost::TimedCost;
@@ -16,38 +18,45 @@ const EVALUATIONS: usize = 2000;
 /// Population size of the search.
 const POPULATION: usize = 30;
 
-/// Plans along a path, around the shortest motion that follows it from a few starts; `None` where each of these ends on the way.
+/// Plans along a path, around the best of a few motions that follow it; `None` where each of these ends on the way.
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(in crate::planning) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
     let PathProblem { robot, tip_path, options, .. } = problem;
-    let Some(mut motion) = RedundantMotion::new(robot, tip_path, options.start.as_deref(), options.seed)? else {
-        return Ok(None);
-    };
-    let (interpolation, waypoints) = problem.corners_of(motion.nominal(), problem.accuracy)?;
-    motion.take(waypoints);
-    let mut cost = TimedCost::new(problem, motion, interpolation);
-    let found = search(&mut cost, options, EVALUATIONS, monitor)?;
-    let mut plan_of = |z: &[f64]| {
-        let (waypoints, _) = cost.waypoints(z);
-        let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
-        Ok::<_, Error>(problem.plan(motion, found.clone()))
-    };
-    let nominal = plan_of(&vec![0.0; found.as_ref().map_or(0, |found| found.x.len())])?;
-    match &found {
-        None => Ok(Some(nominal)),
-        Some(found) => Ok(Some(better(plan_of(&found.x)?, nominal))),
+    let mut nominal: Option<(Plan, Interpolation<'_>, JointWaypoints)> = None;
+    for waypoints in NominalMotions::new(problem).all()? {
+        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy)?;
+        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?, None);
+        if nominal.as_ref().is_none_or(|(best, ..)| is_better(&plan, best)) {
+            nominal = Some((plan, interpolation, waypoints));
+        }
     }
+    let Some((nominal, interpolation, waypoints)) = nominal else { return Ok(None) };
+    let motion = RedundantMotion::around(robot, tip_path, waypoints, options.start.is_some());
+    let mut cost = TimedCost::new(problem, motion, interpolation);
+    let Some(found) = search(&mut cost, options, EVALUATIONS, monitor)? else { return Ok(Some(nominal)) };
+    let (waypoints, _) = cost.waypoints(&found.x);
+    let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
+    let nominal = problem.after(found.clone(), nominal);
+    let plan = problem.plan(motion, Some(found));
+    Ok(Some(if is_better(&nominal, &plan) { nominal } else { plan }))
 }
 
-/// The plan of the search, or the nominal one where that is quicker after all: the search times a motion only roughly.
-fn better(found: Plan, nominal: Plan) -> Plan {
-    let is_better = nominal.violations.is_empty() && (!found.violations.is_empty() || nominal.cost < found.cost);
-    if is_better { nominal } else { found }
+/// Whether a plan keeps everything, and the other one does not or costs more.
+fn is_better(plan: &Plan, other: &Plan) -> bool {
+    plan.violations.is_empty() && (!other.violations.is_empty() || plan.cost < other.cost)
 }
 
 impl PathProblem<'_> {
+    /// Whether the tip of a motion is farther off the path than its accuracy.
+    pub(in crate::planning) fn leaves_path(&self, motion: &PathMotion) -> bool {
+        let PathMotion { waypoints, path, .. } = motion;
+        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let tip = TipDeviation { robot: &self.robot, tip_path: self.tip_path, configurations };
+        tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
+    }
+
     /// The plan of a motion that a search has `found`; `None` if there was nothing to search.
     pub(in crate::planning) fn plan(
         &self,
@@ -61,7 +70,7 @@ impl PathProblem<'_> {
         let mut violations = self.limits.violations(&trajectory);
         violations.extend(deviation.violations(tip_path, self.accuracy));
         let keeps_everything = violations.is_empty();
-        Plan {
+        let plan = Plan {
             objective: options.objective,
             cost: options.objective.of(robot, &trajectory),
             clearance: None,
@@ -76,15 +85,26 @@ impl PathProblem<'_> {
             path: stretches,
             peak: None,
             violations,
-            status: match &found {
-                Some(found) => found.status(keeps_everything),
-                None if keeps_everything => Status::Solved,
-                None => Status::Stalled,
-            },
-            evaluations: found.as_ref().map_or(1, |found| found.evaluations),
-            history: found.map_or_else(Vec::new, |found| found.history),
+            status: if keeps_everything { Status::Solved } else { Status::Stalled },
+            evaluations: 1,
+            history: vec![],
             elapsed: self.stopwatch.elapsed(),
             trajectory,
+        };
+        match found {
+            Some(found) => self.after(found, plan),
+            None => plan,
+        }
+    }
+
+    /// A plan after a search that may have found it.
+    fn after(&self, found: SearchResult, plan: Plan) -> Plan {
+        Plan {
+            status: found.status(plan.violations.is_empty()),
+            evaluations: found.evaluations,
+            history: found.history,
+            elapsed: self.stopwatch.elapsed(),
+            ..plan
         }
     }
 }

@@ -1,0 +1,149 @@
+//! Motions along a path to search around: those of a few starts that follow it from point to point.
+
+use super::elastic_band::ElasticBand;
+use super::interpolation::JointWaypoints;
+use super::path_problem::PathProblem;
+use super::path_walk::{Aim, PathWalk};
+use super::redundant_motion::travel;
+use crate::error::Result;
+use crate::interrupt::checkpoint;
+use crate::math::vector::largest_difference;
+use crate::objective::{Bounds, Linearization};
+use crate::planning::tip_path::PathTarget;
+use crate::rng;
+
+/// Intervals between the points of a motion, apart from corners: half of the published planner's.
+const INTERVALS: usize = 25;
+
+/// Starts tried.
+const STARTS: usize = 16;
+
+/// Parts of the leeway that a motion may use (m, rad): a wide one is not always used well.
+const RUNGS: [f64; 2] = [1e-2, 1e-3];
+
+/// Motions that differ by less (rad, m) are the same.
+const SAME: f64 = 1e-6;
+
+/// A step from one of the points to the next that fails is halved this often, at the most.
+const HALVINGS: usize = 10;
+
+/// What a motion follows.
+#[derive(Debug, Clone, Copy)]
+enum Leading {
+    /// The path itself.
+    OnPath,
+    /// The path, displaced as the start is.
+    InParallel,
+    /// The nearest pose within the leeway.
+    WithinLeeway,
+    /// The path with what the task ignores.
+    WholePose,
+}
+
+/// Makes the motions.
+pub(super) struct NominalMotions<'a> {
+    problem: &'a PathProblem<'a>,
+    bounds: Bounds,
+    scratch: Linearization,
+}
+
+impl<'a> NominalMotions<'a> {
+    pub fn new(problem: &'a PathProblem<'a>) -> Self {
+        let bounds = Bounds::from_ranges(problem.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
+        Self { problem, bounds, scratch: Linearization::default() }
+    }
+
+    /// The shortest of the motions that follow the path, shortened as far as the leeway lets it, then as far as parts of the leeway do,
+    /// then as it is; and one that keeps what the task ignores. None if each ends on the way.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted).
+    pub fn all(mut self) -> Result<Vec<JointWaypoints>> {
+        let PathProblem { tip_path, options, .. } = self.problem;
+        if let Some(start) = &options.start {
+            return self.begun_at(start).map_or(Ok(vec![]), |nominal| self.shortened(nominal, &[]));
+        }
+        let mut motions = if let Some(nominal) = self.shortest(Leading::OnPath)? {
+            self.shortened(nominal, &RUNGS)?
+        } else if let Some(nominal) = self.shortest_within_leeway()? {
+            self.shortened(nominal, &[])?
+        } else {
+            vec![]
+        };
+        if tip_path.ignores_a_part() {
+            motions.extend(self.shortest(Leading::WholePose)?);
+        }
+        Ok(motions)
+    }
+
+    /// A motion, shortened as far as the leeway and these parts of it let it, and as it is.
+    fn shortened(&mut self, nominal: JointWaypoints, rungs: &[f64]) -> Result<Vec<JointWaypoints>> {
+        let mut motions = vec![self.tightened(nominal.clone(), f64::INFINITY)?];
+        for most in rungs.iter().filter(|most| **most < self.problem.tip_path.largest_leeway()) {
+            motions.push(self.tightened(nominal.clone(), *most)?);
+        }
+        if largest_difference(&motions[0].rows, &nominal.rows) > SAME {
+            motions.push(nominal);
+        }
+        Ok(motions)
+    }
+
+    /// A motion, shortened as far as the leeway lets it, or `most` of it (m, rad).
+    fn tightened(&self, mut nominal: JointWaypoints, most: f64) -> Result<JointWaypoints> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        let due = |knot: &f64| tip_path.path_target(*knot).at_most(most);
+        let targets: Vec<PathTarget> = nominal.knots.iter().map(due).collect();
+        let starts_as_given = options.start.is_some();
+        ElasticBand { robot, bounds: &self.bounds, targets: &targets, starts_as_given }.tighten(&mut nominal)?;
+        Ok(nominal)
+    }
+
+    fn shortest_within_leeway(&mut self) -> Result<Option<JointWaypoints>> {
+        if self.problem.tip_path.has_leeway() { self.shortest(Leading::WithinLeeway) } else { Ok(None) }
+    }
+
+    /// The motion of least joint travel that follows the path, over several starts.
+    fn shortest(&mut self, leading: Leading) -> Result<Option<JointWaypoints>> {
+        let PathProblem { robot, options, .. } = self.problem;
+        let starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
+        let mut best: Option<(f64, JointWaypoints)> = None;
+        for start in starts.chunks_exact(robot.dof()) {
+            checkpoint()?;
+            let Some(nominal) = self.follow(start, leading) else { continue };
+            let travel = travel(&nominal.rows, robot.dof());
+            if best.as_ref().is_none_or(|(least, _)| travel < *least) {
+                best = Some((travel, nominal));
+            }
+        }
+        Ok(best.map(|(_, nominal)| nominal))
+    }
+
+    /// The motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
+    fn begun_at(&mut self, q: &[f64]) -> Option<JointWaypoints> {
+        let PathProblem { robot, tip_path, .. } = self.problem;
+        let excess = tip_path.path_target(0.0).excess(|| robot.tip(q));
+        let in_parallel = excess.is_none_or(|excess| excess == [0.0; 2]);
+        let parallel = if in_parallel { self.follow(q, Leading::InParallel) } else { None };
+        parallel.or_else(|| self.follow(q, Leading::WithinLeeway))
+    }
+
+    /// Follows the path from `start`, each configuration from the one before.
+    fn follow(&mut self, start: &[f64], leading: Leading) -> Option<JointWaypoints> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        let first = tip_path.path_target(0.0);
+        let aim = match leading {
+            Leading::OnPath => Aim::Place(first.on_path().place),
+            Leading::InParallel => Aim::Place(first.held_at(|| robot.tip(start)).place),
+            Leading::WithinLeeway => Aim::Place(None),
+            Leading::WholePose => Aim::WholePose,
+        };
+        let mut walk = PathWalk { robot, tip_path, bounds: &self.bounds, aim, scratch: &mut self.scratch };
+        let first = if options.start.is_some() { start.to_vec() } else { walk.begun_near(start)? };
+        let knots = tip_path.knots(INTERVALS);
+        let mut walked = JointWaypoints { knots: vec![knots[0]], rows: first };
+        for knot in &knots[1..] {
+            walk.on_to(*knot, HALVINGS, &mut walked)?;
+        }
+        Some(walked)
+    }
+}
