@@ -146,7 +146,13 @@ fn only_what_is_proven_is_called_out_of_reach() {
     assert!(said.starts_with("the path at t = 0 s cannot be reached: the nearest configurations"), "{said}");
     // Each point is in reach, with the elbow on one side first and on the other at last.
     let robot = Robot::planar(&[1.0, 1.0]).unwrap();
-    let robot = robot.with_limits(|j, joint| if j == 0 { (joint.lower, joint.upper) = (-0.5, 0.5) }).unwrap();
+    let robot = robot
+        .with_limits(|j, joint| {
+            if j == 0 {
+                (joint.lower, joint.upper) = (-0.5, 0.5)
+            }
+        })
+        .unwrap();
     let at = |i: usize| {
         let angle = -0.7 + 1.4 * i as f64 / (POINTS - 1) as f64;
         [1.9 * angle.cos(), 1.9 * angle.sin(), 0.0]

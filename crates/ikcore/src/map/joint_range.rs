@@ -41,7 +41,8 @@ mod tests {
     #[test]
     fn a_value_is_brought_inside_by_whole_turns_or_to_a_limit() {
         let joint = JointRange { lower: -1.0, upper: 2.0, period: Some(4.0) };
-        for (value, inside) in [(0.5, 0.5), (4.5, 0.5), (-7.5, 0.5), (2.0, 2.0), (-1.0, -1.0), (3.0, -1.0), (6.5, 2.0)] {
+        for (value, inside) in [(0.5, 0.5), (4.5, 0.5), (-7.5, 0.5), (2.0, 2.0), (-1.0, -1.0), (3.0, -1.0), (6.5, 2.0)]
+        {
             assert_eq!(joint.brought_inside(value), inside, "{value}");
         }
         let slides = JointRange { period: None, ..joint };

@@ -1,7 +1,7 @@
 //! Whether the tip reaches a pose, at several azimuths of its place together.
 
-use super::map_chunk::RingResult;
 use super::joint_range::JointRange;
+use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
 use super::rings::Ring;
@@ -12,7 +12,6 @@ use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
 use crate::kinematics::Reach;
 use crate::manipulability::{Manipulability, Motion};
 use crate::math::Frame;
-use crate::objective::Point;
 use crate::robot::{Joint, Robot, UprightAxis};
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::{Target, Tolerance};
@@ -204,7 +203,7 @@ pub(super) struct Seen {
     /// The azimuths at which it is reached, a bit for each.
     pub reached: u64,
     /// Some of its solutions.
-    pub solutions: Vec<Point>,
+    pub solutions: Vec<Vec<f64>>,
     /// It is proven that there are none.
     pub is_excluded: bool,
 }
@@ -281,7 +280,7 @@ impl Found<'_, '_> {
     /// Keeps `q`, a solution at azimuth 0 but for its first joint, as one at these azimuths.
     fn keep(&mut self, q: &[f64], at: u64) {
         if at & !self.seen.reached != 0 && self.seen.solutions.len() < KEPT {
-            self.seen.solutions.push(Point::from_slice(q));
+            self.seen.solutions.push(q.to_vec());
         }
         self.seen.reached |= at;
         if self.test.options.quality {
@@ -319,13 +318,14 @@ impl Found<'_, '_> {
             if self.seen.reached >> place & 1 == 0
                 && let Some(solution) = searched(own, &axis.turned(pose, self.azimuths[place]), stream, monitor)
             {
-                self.take_at(place, solution.q);
+                self.take_at(place, &solution.q);
             }
         }
     }
 
     /// Takes a solution at one azimuth.
-    pub fn take_at(&mut self, place: usize, mut q: Point) {
+    pub fn take_at(&mut self, place: usize, q: &[f64]) {
+        let mut q = q.to_vec();
         if let Some((axis, _)) = &self.test.turning {
             q[axis.joint] -= self.azimuths[place] * axis.per_turn;
         }

@@ -11,7 +11,6 @@ use super::rings::Ring;
 use crate::error::Result;
 use crate::ik::{Query, SolveContext, SolveOptions, solve_query};
 use crate::math::Frame;
-use crate::objective::Point;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::Target;
@@ -115,14 +114,14 @@ impl Look<'_, '_> {
         }
         for (place, azimuth) in ring.azimuths.iter().enumerate() {
             let range = test.ranges[axis.joint];
-            let holds = |start: &&Point| range.holds(start[axis.joint] + azimuth * axis.per_turn);
+            let holds = |start: &&Vec<f64>| range.holds(start[axis.joint] + azimuth * axis.per_turn);
             for start in self.starts(all).filter(holds).take(DESCENTS) {
                 if found.seen.reached >> place & 1 == 1 {
                     break;
                 }
                 let turned = axis.turned(&pose, *azimuth);
                 if let Some(q) = descended(&self.second.own, &turned, &self.inside(start, Some(*azimuth)), monitor) {
-                    found.take_at(place, q);
+                    found.take_at(place, &q);
                 }
             }
         }
@@ -130,12 +129,12 @@ impl Look<'_, '_> {
     }
 
     /// The solutions of the orientations near this one.
-    fn starts<'s>(&self, all: &'s [Seen]) -> impl Iterator<Item = &'s Point> {
+    fn starts<'s>(&self, all: &'s [Seen]) -> impl Iterator<Item = &'s Vec<f64>> {
         self.second.near[self.i].iter().flat_map(move |other| &all[*other as usize].solutions)
     }
 
     /// A start within the limits; the first joint is free to turn where there is no azimuth.
-    fn inside(&self, start: &Point, azimuth: Option<f64>) -> Point {
+    fn inside(&self, start: &[f64], azimuth: Option<f64>) -> Vec<f64> {
         let turning = self.test.turning.as_ref().map(|(axis, _)| *axis);
         let bring = |(j, value): (usize, &f64)| match (turning, azimuth) {
             (Some(axis), None) if axis.joint == j => *value,
@@ -149,11 +148,11 @@ impl Look<'_, '_> {
 }
 
 /// The solution of a pose to which a descent from `start` leads, if it does.
-fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &mut dyn Monitor) -> Option<Point> {
+fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
     let targets = context.read(&[Target::Pose(*pose)]).ok()?;
     let query = Query { targets: &targets, start: Some(start), stream: 0, stopwatch: Stopwatch::start() };
     let solution = solve_query(context, &query, monitor);
-    (solution.status == Status::Solved).then_some(solution.q)
+    (solution.status == Status::Solved).then(|| solution.q.to_vec())
 }
 
 /// For each orientation of a grid the numbers of those near it, the nearest first.

@@ -11,6 +11,7 @@ use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Sweep, TooNear};
+use crate::planning::Plan;
 use crate::planning::collision_checks::{TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
 use crate::planning::missed_points::{missed_at, missed_points};
 use crate::planning::search::SearchResult;
@@ -18,8 +19,7 @@ use crate::planning::timed::{
     Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search,
 };
 use crate::planning::tip_path::TipPath;
-use crate::planning::Plan;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, Stop};
 
 /// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
 const SPACING: f64 = 0.03;
@@ -195,7 +195,8 @@ impl ClearPlanner<'_> {
         let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
         cost.space = *space;
-        let found = search(&mut cost, problem.options, EVALUATIONS, monitor)?;
+        let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
+        let found = search(&mut cost, problem.options, problem.options.stop.unwrap_or(budget), monitor)?;
         let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
         let (waypoints, _) = cost.waypoints(z);
         Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
@@ -286,7 +287,7 @@ impl ClearPlanner<'_> {
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.
     fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
-        let mut plan = self.problem.plan(motion, found);
+        let mut plan = self.problem.after(found, self.problem.plan(motion));
         let Some(space) = self.space else { return Ok(plan) };
         let (scene, margin) = (space.scene(), space.margin());
         plan.surroundings = Some(self.problem.options.surroundings.clone());

@@ -19,7 +19,7 @@ const INTERVALS: usize = 25;
 const STARTS: usize = 16;
 
 /// Parts of the leeway that a motion may use (m, rad): a wide one is not always used well.
-const RUNGS: [f64; 2] = [1e-2, 1e-3];
+const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
 /// Motions that differ by less (rad, m) are the same.
 const SAME: f64 = 1e-6;

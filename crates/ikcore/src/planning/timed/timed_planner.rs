@@ -18,29 +18,65 @@ const EVALUATIONS: usize = 2000;
 /// Population size of the search.
 const POPULATION: usize = 30;
 
-/// Plans along a path, around the best of a few motions that follow it; `None` where each of these ends on the way.
+/// Plans along a path, around motions that follow it; `None` where each of these ends on the way.
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(in crate::planning) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
-    let PathProblem { robot, tip_path, options, .. } = problem;
-    let mut nominal: Option<(Plan, Interpolation<'_>, JointWaypoints)> = None;
+    let mut candidates = vec![];
     for waypoints in NominalMotions::new(problem).all()? {
         let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy)?;
-        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?, None);
-        if nominal.as_ref().is_none_or(|(best, ..)| is_better(&plan, best)) {
-            nominal = Some((plan, interpolation, waypoints));
+        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?);
+        candidates.push(Candidate { plan, interpolation, waypoints });
+    }
+    let mut candidates = candidates.into_iter();
+    let Some(widest) = candidates.next() else { return Ok(None) };
+    // What the leeway lets be shorter is not always quicker after the search.
+    match candidates.reduce(|first, other| if is_better(&other.plan, &first.plan) { other } else { first }) {
+        Some(other) if problem.tip_path.has_leeway() => {
+            let (plan, found) = widest.improved(problem, 2, monitor)?;
+            let (another, later) = other.improved(problem, 2, monitor)?;
+            let found = found.zip(later).map(|(found, later)| found.then(later));
+            Ok(Some(problem.after(found, if is_better(&another, &plan) { another } else { plan })))
+        }
+        other => {
+            let (plan, found) = widest.improved(problem, 1, monitor)?;
+            let plan = other.map(|other| other.plan).filter(|other| is_better(other, &plan)).unwrap_or(plan);
+            Ok(Some(problem.after(found, plan)))
         }
     }
-    let Some((nominal, interpolation, waypoints)) = nominal else { return Ok(None) };
-    let motion = RedundantMotion::around(robot, tip_path, waypoints, options.start.is_some());
-    let mut cost = TimedCost::new(problem, motion, interpolation);
-    let Some(found) = search(&mut cost, options, EVALUATIONS, monitor)? else { return Ok(Some(nominal)) };
-    let (waypoints, _) = cost.waypoints(&found.x);
-    let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
-    let nominal = problem.after(found.clone(), nominal);
-    let plan = problem.plan(motion, Some(found));
-    Ok(Some(if is_better(&nominal, &plan) { nominal } else { plan }))
+}
+
+/// A motion along the path to search around, and its plan.
+struct Candidate<'p> {
+    plan: Plan,
+    interpolation: Interpolation<'p>,
+    waypoints: JointWaypoints,
+}
+
+impl<'p> Candidate<'p> {
+    /// The best plan that a search around this one finds with a budget for one of so many `searches`.
+    fn improved(
+        self,
+        problem: &'p PathProblem<'p>,
+        searches: usize,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Plan, Option<SearchResult>)> {
+        let PathProblem { robot, tip_path, options, .. } = problem;
+        let motion = RedundantMotion::around(robot, tip_path, self.waypoints, options.start.is_some());
+        let mut cost = TimedCost::new(problem, motion, self.interpolation);
+        let of_one = |stop: Stop| Stop {
+            max_evaluations: stop.max_evaluations.div_ceil(searches),
+            max_time: stop.max_time.map(|time| time / searches as u32),
+            ..stop
+        };
+        let stop = options.stop.map_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() }, of_one);
+        let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
+        let (waypoints, _) = cost.waypoints(&found.x);
+        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints, problem.accuracy)?);
+        // The search times a motion only roughly.
+        Ok((if is_better(&self.plan, &plan) { self.plan } else { plan }, Some(found)))
+    }
 }
 
 /// Whether a plan keeps everything, and the other one does not or costs more.
@@ -57,12 +93,8 @@ impl PathProblem<'_> {
         tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
     }
 
-    /// The plan of a motion that a search has `found`; `None` if there was nothing to search.
-    pub(in crate::planning) fn plan(
-        &self,
-        motion: PathMotion,
-        found: Option<SearchResult>,
-    ) -> Plan {
+    /// The plan of a motion.
+    pub(in crate::planning) fn plan(&self, motion: PathMotion) -> Plan {
         let Self { robot, tip_path, options, .. } = self;
         let PathMotion { waypoints, stretches, path, trajectory } = motion;
         let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
@@ -70,7 +102,7 @@ impl PathProblem<'_> {
         let mut violations = self.limits.violations(&trajectory);
         violations.extend(deviation.violations(tip_path, self.accuracy));
         let keeps_everything = violations.is_empty();
-        let plan = Plan {
+        Plan {
             objective: options.objective,
             cost: options.objective.of(robot, &trajectory),
             clearance: None,
@@ -90,33 +122,33 @@ impl PathProblem<'_> {
             history: vec![],
             elapsed: self.stopwatch.elapsed(),
             trajectory,
-        };
-        match found {
-            Some(found) => self.after(found, plan),
-            None => plan,
         }
     }
 
-    /// A plan after a search that may have found it.
-    fn after(&self, found: SearchResult, plan: Plan) -> Plan {
-        Plan {
-            status: found.status(plan.violations.is_empty()),
-            evaluations: found.evaluations,
-            history: found.history,
-            elapsed: self.stopwatch.elapsed(),
-            ..plan
+    /// A plan after the search that found it, if there was one.
+    pub(in crate::planning) fn after(&self, found: Option<SearchResult>, plan: Plan) -> Plan {
+        let elapsed = self.stopwatch.elapsed();
+        match found {
+            None => Plan { elapsed, ..plan },
+            Some(found) => Plan {
+                status: found.status(plan.violations.is_empty()),
+                evaluations: found.evaluations,
+                history: found.history,
+                elapsed,
+                ..plan
+            },
         }
     }
 }
 
-/// Runs the search, with a default budget of `evaluations`; `None` if the arm is not redundant.
+/// Runs the search; `None` if the arm is not redundant.
 ///
 /// # Errors
 /// [`Error::Contradiction`] for a solver without anything to search; those of the solver's options.
 pub(in crate::planning) fn search(
     cost: &mut TimedCost<'_>,
     options: &AlongPathOptions,
-    evaluations: usize,
+    stop: Stop,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<SearchResult>> {
     let Some(bounds) = cost.bounds() else {
@@ -132,7 +164,7 @@ pub(in crate::planning) fn search(
     let evolution = || AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
     let search = Search {
         solver: options.solver.clone().unwrap_or_else(evolution),
-        stop: options.stop.unwrap_or(Stop { max_evaluations: evaluations, ..Stop::default() }),
+        stop,
         seed: options.seed,
         // The nominal motion: nothing worse is returned.
         start: Some(Point::from_elem(0.0, cost.dimension())),
