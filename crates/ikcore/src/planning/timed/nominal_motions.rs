@@ -21,6 +21,10 @@ const STARTS: usize = 16;
 /// Parts of the leeway that a motion may use (m, rad): a wide one is not always used well.
 const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
+/// Motions kept of those that follow the path, and how far apart they begin (rad, m): the shortest is not always the quickest.
+const BRANCHES: usize = 3;
+const APART: f64 = 0.5;
+
 /// Motions that differ by less (rad, m) are the same.
 const SAME: f64 = 1e-6;
 
@@ -53,8 +57,8 @@ impl<'a> NominalMotions<'a> {
         Self { problem, bounds, scratch: Linearization::default() }
     }
 
-    /// The shortest of the motions that follow the path, shortened as far as the leeway lets it, then as far as parts of the leeway do,
-    /// then as it is; and one that keeps what the task ignores. None if each ends on the way.
+    /// The shortest motions that follow the path, each shortened as far as the leeway lets it, the first as far as parts of the leeway do
+    /// too, then as it is; and those that keep what the task ignores. None if each ends on the way.
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted).
@@ -63,13 +67,16 @@ impl<'a> NominalMotions<'a> {
         if let Some(start) = &options.start {
             return self.begun_at(start).map_or(Ok(vec![]), |nominal| self.shortened(nominal, &[]));
         }
-        let mut motions = if let Some(nominal) = self.shortest(Leading::OnPath)? {
-            self.shortened(nominal, &RUNGS)?
-        } else if let Some(nominal) = self.shortest_within_leeway()? {
-            self.shortened(nominal, &[])?
-        } else {
-            vec![]
-        };
+        let mut bases = self.shortest(Leading::OnPath)?;
+        let mut rungs = &RUNGS[..];
+        if bases.is_empty() && tip_path.has_leeway() {
+            (bases, rungs) = (self.shortest(Leading::WithinLeeway)?, &[]);
+        }
+        let mut motions = vec![];
+        for base in bases {
+            motions.extend(self.shortened(base, rungs)?);
+            rungs = &[];
+        }
         if tip_path.ignores_a_part() {
             motions.extend(self.shortest(Leading::WholePose)?);
         }
@@ -98,24 +105,26 @@ impl<'a> NominalMotions<'a> {
         Ok(nominal)
     }
 
-    fn shortest_within_leeway(&mut self) -> Result<Option<JointWaypoints>> {
-        if self.problem.tip_path.has_leeway() { self.shortest(Leading::WithinLeeway) } else { Ok(None) }
-    }
-
-    /// The motion of least joint travel that follows the path, over several starts.
-    fn shortest(&mut self, leading: Leading) -> Result<Option<JointWaypoints>> {
+    /// The motions of least joint travel that follow the path, each on another branch, from several starts.
+    fn shortest(&mut self, leading: Leading) -> Result<Vec<JointWaypoints>> {
         let PathProblem { robot, options, .. } = self.problem;
         let starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
-        let mut best: Option<(f64, JointWaypoints)> = None;
+        let mut found: Vec<(f64, JointWaypoints)> = vec![];
         for start in starts.chunks_exact(robot.dof()) {
             checkpoint()?;
-            let Some(nominal) = self.follow(start, leading) else { continue };
-            let travel = travel(&nominal.rows, robot.dof());
-            if best.as_ref().is_none_or(|(least, _)| travel < *least) {
-                best = Some((travel, nominal));
+            let nominal = self.follow(start, leading);
+            found.extend(nominal.map(|nominal| (travel(&nominal.rows, robot.dof()), nominal)));
+        }
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut kept: Vec<JointWaypoints> = vec![];
+        for (_, nominal) in found {
+            let begin = |motion: &JointWaypoints| motion.rows[..robot.dof()].to_vec();
+            let is_known = |other: &JointWaypoints| largest_difference(&begin(other), &begin(&nominal)) < APART;
+            if kept.len() < BRANCHES && !kept.iter().any(is_known) {
+                kept.push(nominal);
             }
         }
-        Ok(best.map(|(_, nominal)| nominal))
+        Ok(kept)
     }
 
     /// The motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
