@@ -26,7 +26,7 @@ CASES = {
     "out_of_reach": 6,
     "self_motions": 3,
     "paths_followed": 3,
-    "looser_paths": 3,
+    "looser_paths": 2,
     "plants": 5,
     "complete_sets": 6,
     "arguments": 12,
@@ -103,8 +103,8 @@ SPOILED = {
         "the velocity is beyond its limit",
     ),
     "looser_paths": (
-        "tolerances += [(False, inf, '')]",
-        "no plan with wider tolerances",
+        "plans += [(False, inf, '')]",
+        "no plan with a wider tolerance",
     ),
     "trajectories": (
         "most = [0.5 * rate for rate in most]",

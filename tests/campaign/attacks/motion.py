@@ -276,7 +276,7 @@ class LooserPaths(Attack):
     refusals = ()
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """The path is that of a line in joint space; a hard one passes round places, rests in joints and touches limits."""
+        """A line in joint space makes the path; a hard one passes round places, rests in joints and touches limits."""
         joints = None if random.random() < 0.7 else arms.easy_arm(random, int(random.integers(4, 8)))
         name = str(random.choice(self.names))
         robot = bik.Robot.named(name) if joints is None else bik.Robot.from_urdf(arms.urdf(joints))
@@ -297,9 +297,8 @@ class LooserPaths(Attack):
             "line": tuple(zip(first.tolist(), last.tolist(), strict=True)),
             "points": int(random.choice([40, 80])),
             "widened": tuple(map(bool, widened)),
-            "tolerances": [1e-4, 1e-3, 1e-2, 1e-1],
-            "windows": [float(10.0 ** random.uniform(-3, -1)), 0.3, np.inf],
-            "speeds": [1.0, 2.0],
+            "ladder": str(random.choice(["tolerance", "tolerance", "window", "speed"])),
+            "tightest": float(10.0 ** random.uniform(-3, -1)),
         }
 
     def program(self, case: Case) -> str:
@@ -307,8 +306,11 @@ class LooserPaths(Attack):
         if case["joints"] is not None:
             made = arms.written(list(case["joints"]))
         first, last = (list(ends) for ends in zip(*case["line"], strict=True))
-        windows, speeds = sorted(case["windows"]), sorted(case["speeds"])
-        tolerances = [[max(t, 1e-4) if wide else 1e-4 for wide in case["widened"]] for t in sorted(case["tolerances"])]
+        ladder = {
+            "tolerance": [[t if wide else 1e-4 for wide in case["widened"]] for t in (1e-4, 1e-3, 1e-2, 1e-1)],
+            "window": [case["tightest"], 0.3, np.inf],
+            "speed": [1.0, 2.0],
+        }[case["ladder"]]
         return (
             f"{made}first, last = np.array({first}), np.array({last})\n"
             f"line = np.linspace(first, last, {case['points']})\n"
@@ -323,25 +325,20 @@ class LooserPaths(Attack):
             "    except bik.InvalidInputError as error:\n"
             "        return False, inf, str(error)\n"
             "    return plan.success, plan.cost, plan.message\n\n\n"
-            f"tolerances = [planned(tolerance) for tolerance in {tolerances}]\n"
-            f"windows = [planned(window=window) for window in {windows}]\n"
-            f"speeds = [planned(speed=speed) for speed in {speeds}]"
+            f"plans = [planned({case['ladder']}=value) for value in {ladder}]"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
-        tried = 0
-        for what in ("tolerances", "windows", "speeds"):
-            least = np.inf
-            for success, cost, message in left[what]:
-                tried += 1
-                if "cannot be reached" in message and "between points" not in message:
-                    raise BrokenError("a point that has a configuration is called unreachable", message)
-                if not success and least < np.inf:
-                    raise BrokenError(f"no plan with wider {what}", message)
-                if cost > SLOWER * least:
-                    raise BrokenError(f"slower with wider {what}", (cost, least))
-                least = min(least, cost if success else np.inf)
-        return tried
+        least = np.inf
+        for success, cost, message in left["plans"]:
+            if "cannot be reached" in message and "between points" not in message:
+                raise BrokenError("a point that has a configuration is called unreachable", message)
+            if not success and least < np.inf:
+                raise BrokenError(f"no plan with a wider {case['ladder']}", message)
+            if success and cost > SLOWER * least:
+                raise BrokenError(f"slower with a wider {case['ladder']}", (cost, least))
+            least = min(least, cost if success else np.inf)
+        return len(left["plans"])
 
 
 ATTACKS = [StateToState(), TimeOptimal(), Trajectories(), LooserPaths()]
