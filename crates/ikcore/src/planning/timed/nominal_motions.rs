@@ -6,11 +6,14 @@ use super::path_problem::PathProblem;
 use super::path_walk::{Aim, PathWalk};
 use super::redundant_motion::travel;
 use crate::error::Result;
+use crate::ik::{AllOptions, SolveOptions, solve_all};
 use crate::interrupt::checkpoint;
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::tip_path::PathTarget;
 use crate::rng;
+use crate::solver::Unattended;
+use crate::task::Target;
 
 /// Intervals between the points of a motion, apart from corners: half of the published planner's.
 const INTERVALS: usize = 25;
@@ -21,8 +24,11 @@ const STARTS: usize = 16;
 /// Parts of the leeway that a motion may use (m, rad): a wide one is not always used well.
 const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
+/// Values of the redundancy at which the closed form gives further starts.
+const REDUNDANCY: usize = 4;
+
 /// Motions kept of those that follow the path, and how far apart they begin (rad, m): the shortest is not always the quickest.
-const BRANCHES: usize = 3;
+const BRANCHES: usize = 8;
 const APART: f64 = 0.5;
 
 /// Motions that differ by less (rad, m) are the same.
@@ -72,10 +78,10 @@ impl<'a> NominalMotions<'a> {
         if bases.is_empty() && tip_path.has_leeway() {
             (bases, rungs) = (self.shortest(Leading::WithinLeeway)?, &[]);
         }
-        let mut motions = vec![];
+        let mut bases = bases.into_iter();
+        let mut motions = bases.next().map_or(Ok(vec![]), |base| self.shortened(base, rungs))?;
         for base in bases {
-            motions.extend(self.shortened(base, rungs)?);
-            rungs = &[];
+            motions.push(self.tightened(base, f64::INFINITY)?);
         }
         if tip_path.ignores_a_part() {
             motions.extend(self.shortest(Leading::WholePose)?);
@@ -108,7 +114,8 @@ impl<'a> NominalMotions<'a> {
     /// The motions of least joint travel that follow the path, each on another branch, from several starts.
     fn shortest(&mut self, leading: Leading) -> Result<Vec<JointWaypoints>> {
         let PathProblem { robot, options, .. } = self.problem;
-        let starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
+        let mut starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
+        starts.extend(self.branches()?);
         let mut found: Vec<(f64, JointWaypoints)> = vec![];
         for start in starts.chunks_exact(robot.dof()) {
             checkpoint()?;
@@ -125,6 +132,19 @@ impl<'a> NominalMotions<'a> {
             }
         }
         Ok(kept)
+    }
+
+    /// The configurations of the closed form at the beginning of the path, one after another: where there is one, no branch is to be missed.
+    fn branches(&self) -> Result<Vec<f64>> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        let target = tip_path.target(0.0);
+        if !matches!(target, Target::Pose(_)) || robot.solves_at_once() != Some(true) {
+            return Ok(vec![]);
+        }
+        let each = SolveOptions { seed: options.seed, ..SolveOptions::default() };
+        let all = AllOptions { each, redundancy: REDUNDANCY, ..AllOptions::default() };
+        let found = solve_all(robot, &target, &all, &mut Unattended)?;
+        Ok(found.solutions.iter().flat_map(|solution| solution.q).copied().collect())
     }
 
     /// The motion from a given start: in parallel to the path if the start is within its leeway, or else near it.

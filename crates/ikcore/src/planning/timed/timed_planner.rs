@@ -31,17 +31,16 @@ pub(in crate::planning) fn along_path(problem: &PathProblem<'_>, monitor: &mut d
     }
     let mut candidates = candidates.into_iter();
     let Some(widest) = candidates.next() else { return Ok(None) };
-    // What the leeway lets be shorter is not always quicker after the search.
+    // The shortest motion is not always the quickest, nor the quickest one after the search.
     match candidates.reduce(|first, other| if is_better(&other.plan, &first.plan) { other } else { first }) {
-        Some(other) if problem.tip_path.has_leeway() => {
+        Some(other) if is_better(&other.plan, &widest.plan) => {
             let (plan, found) = widest.improved(problem, 2, monitor)?;
             let (another, later) = other.improved(problem, 2, monitor)?;
             let found = found.zip(later).map(|(found, later)| found.then(later));
             Ok(Some(problem.after(found, if is_better(&another, &plan) { another } else { plan })))
         }
-        other => {
+        _ => {
             let (plan, found) = widest.improved(problem, 1, monitor)?;
-            let plan = other.map(|other| other.plan).filter(|other| is_better(other, &plan)).unwrap_or(plan);
             Ok(Some(problem.after(found, plan)))
         }
     }
@@ -59,18 +58,18 @@ impl<'p> Candidate<'p> {
     fn improved(
         self,
         problem: &'p PathProblem<'p>,
-        searches: usize,
+        searches: u32,
         monitor: &mut dyn Monitor,
     ) -> Result<(Plan, Option<SearchResult>)> {
         let PathProblem { robot, tip_path, options, .. } = problem;
         let motion = RedundantMotion::around(robot, tip_path, self.waypoints, options.start.is_some());
         let mut cost = TimedCost::new(problem, motion, self.interpolation);
-        let of_one = |stop: Stop| Stop {
-            max_evaluations: stop.max_evaluations.div_ceil(searches),
-            max_time: stop.max_time.map(|time| time / searches as u32),
-            ..stop
+        let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
+        let stop = Stop {
+            max_evaluations: budget.max_evaluations.div_ceil(searches as usize),
+            max_time: budget.max_time.map(|time| time / searches),
+            ..budget
         };
-        let stop = options.stop.map_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() }, of_one);
         let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
         let (waypoints, _) = cost.waypoints(&found.x);
         let plan = problem.plan(problem.motion(&cost.interpolation, waypoints, problem.accuracy)?);
