@@ -5,7 +5,6 @@ use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
 use super::rings::Ring;
-use super::second_look::SecondLook;
 use crate::closed_form::{ArmBranches, FamilyLimits, PoseFamily};
 use crate::error::{Error, Result};
 use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
@@ -15,6 +14,9 @@ use crate::math::Frame;
 use crate::robot::{Joint, Robot, UprightAxis};
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::{Target, Tolerance};
+
+/// Most evaluations of a descent from a near solution.
+const DESCENT: usize = 40;
 
 /// Solutions of an orientation that are kept as starts for others, at the most.
 const KEPT: usize = 4;
@@ -34,8 +36,6 @@ pub(crate) struct MapTest<'a> {
     pub(super) ranges: Vec<JointRange>,
     options: &'a MapOptions,
     measure: Manipulability,
-    /// `None` where the first look leaves nothing open.
-    second_look: Option<SecondLook<'a>>,
 }
 
 /// How solutions are found.
@@ -50,11 +50,11 @@ enum Way {
 
 /// The two robots of a [`MapTest`], and the options of their solves.
 pub(crate) struct MapRobots {
-    own: Robot,
-    turning: Option<(UprightAxis, Robot)>,
+    pub(super) own: Robot,
+    pub(super) turning: Option<(UprightAxis, Robot)>,
     each: SolveOptions,
-    /// Of descents from near solutions.
-    brief: SolveOptions,
+    /// Of descents from near solutions. What configurations keep clear of is checked afterwards.
+    pub(super) brief: SolveOptions,
 }
 
 impl MapRobots {
@@ -77,7 +77,8 @@ impl MapRobots {
             stop: Stop { max_evaluations: options.evaluations, ..Stop::default() },
             ..SolveOptions::default()
         };
-        let brief = SecondLook::options(options);
+        let stop = Stop { max_evaluations: DESCENT, ..Stop::default() };
+        let brief = SolveOptions { task: options.task, stop, ..SolveOptions::default() };
         Ok(Self { own: robot.clone(), turning, each, brief })
     }
 }
@@ -114,40 +115,22 @@ impl<'a> MapTest<'a> {
         let ranges = own.robot().joints().iter().enumerate().map(range).collect();
         let reach = robot.reach(&lower, &upper);
         let measure = Manipulability::of(own.robot(), Motion::Pose);
-        let second_look = match way {
-            Way::Branches => None,
-            _ => {
-                let turning = robots.turning.as_ref().map(|(_, robot)| robot);
-                Some(SecondLook::new(grid, &robots.own, turning, &robots.brief)?)
-            }
-        };
-        Ok(Self { grid, own, turning, way, reach, ranges, options, measure, second_look })
+        Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
     }
 
-    /// Finds what is reached in the voxels of a ring.
-    pub fn ring(&self, ring: &Ring, monitor: &mut dyn Monitor) -> RingResult {
-        let bytes = self.grid.bytes();
-        let mut result = RingResult::new(ring, bytes, self.options.quality);
-        if self.reach.excess(&ring.place) > Tolerance::default().position {
-            return result;
-        }
-        let count = self.grid.orientations().len();
-        let mut all: Vec<Seen> = Vec::with_capacity(count);
-        for i in 0..count {
-            if !monitor.keep_going() {
-                return result;
-            }
-            all.push(self.orientation(ring, i, &mut result, monitor));
-        }
-        if let Some(second_look) = &self.second_look {
-            second_look.complete(self, ring, &mut all, &mut result, monitor);
-        }
-        for (i, seen) in all.iter().enumerate() {
-            for (voxel, bits) in result.reached.chunks_exact_mut(bytes).enumerate() {
-                bits[i / 8] |= ((seen.reached >> voxel & 1) as u8) << (i % 8);
-            }
-        }
-        result
+    /// Whether what is not found may be there all the same.
+    pub(super) fn leaves_poses_open(&self) -> bool {
+        !matches!(self.way, Way::Branches)
+    }
+
+    /// Whether the tip gets to the place of a ring at all.
+    pub(super) fn may_reach(&self, ring: &Ring) -> bool {
+        self.reach.excess(&ring.place) <= Tolerance::default().position
+    }
+
+    /// A result of a ring with nothing reached yet.
+    pub(super) fn empty_result(&self, ring: &Ring) -> RingResult {
+        RingResult::new(ring, self.grid.bytes(), self.options.quality)
     }
 
     /// The azimuth at which the orientations of a ring are solved for.
@@ -156,7 +139,7 @@ impl<'a> MapTest<'a> {
     }
 
     /// What the first look at an orientation of a ring finds.
-    fn orientation(&self, ring: &Ring, i: usize, result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
+    pub(super) fn first_look(&self, ring: &Ring, i: usize, result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
         let pose = self.grid.pose(ring.place, self.azimuth(ring), i);
         let mut found = self.found(ring, Seen::default(), result);
         match &self.way {

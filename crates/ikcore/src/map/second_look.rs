@@ -5,14 +5,12 @@
 
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
-use super::map_options::MapOptions;
-use super::map_test::{MapTest, Seen};
+use super::map_test::{MapRobots, MapTest, Seen};
 use super::rings::Ring;
 use crate::error::Result;
-use crate::ik::{Query, SolveContext, SolveOptions, solve_query};
+use crate::ik::{Query, SolveContext, solve_query};
 use crate::math::Frame;
-use crate::robot::Robot;
-use crate::solver::{Monitor, Status, Stop, Stopwatch};
+use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 
 /// Orientations near one, from which starts are taken.
@@ -23,9 +21,6 @@ const WINDOW: usize = 2048;
 
 /// Descents for each orientation and round, at the most.
 const DESCENTS: usize = 8;
-
-/// Most evaluations of a descent.
-const EVALUATIONS: usize = 40;
 
 /// Rounds at the most; each but the first starts from what the one before found.
 const ROUNDS: usize = 4;
@@ -40,16 +35,11 @@ pub(super) struct SecondLook<'a> {
 }
 
 impl<'a> SecondLook<'a> {
-    /// Options of the descents. What configurations keep clear of is checked afterwards.
-    pub fn options(options: &MapOptions) -> SolveOptions {
-        let stop = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
-        SolveOptions { task: options.task, stop, ..SolveOptions::default() }
-    }
-
     /// # Errors
     /// None in practice: the options of the map have been checked.
-    pub fn new(grid: &MapGrid, own: &'a Robot, turning: Option<&'a Robot>, brief: &'a SolveOptions) -> Result<Self> {
-        let turning = turning.map(|robot| SolveContext::new(robot, brief)).transpose()?;
+    pub fn new(robots: &'a MapRobots, grid: &MapGrid) -> Result<Self> {
+        let MapRobots { own, turning, brief, .. } = robots;
+        let turning = turning.as_ref().map(|(_, robot)| SolveContext::new(robot, brief)).transpose()?;
         Ok(Self { own: SolveContext::new(own, brief)?, turning, near: near_orientations(grid) })
     }
 

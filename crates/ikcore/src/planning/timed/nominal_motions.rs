@@ -3,7 +3,7 @@
 use super::elastic_band::ElasticBand;
 use super::interpolation::JointWaypoints;
 use super::path_problem::PathProblem;
-use super::path_walk::{Aim, PathWalk};
+use super::path_walk::{PathWalk, WalkAim};
 use super::redundant_motion::travel;
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, solve_all};
@@ -161,10 +161,10 @@ impl<'a> NominalMotions<'a> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         let first = tip_path.path_target(0.0);
         let aim = match leading {
-            Leading::OnPath => Aim::Place(first.on_path().place),
-            Leading::InParallel => Aim::Place(first.held_at(|| robot.tip(start)).place),
-            Leading::WithinLeeway => Aim::Place(None),
-            Leading::WholePose => Aim::WholePose,
+            Leading::OnPath => WalkAim::Place(first.on_path().place),
+            Leading::InParallel => WalkAim::Place(first.held_at(|| robot.tip(start)).place),
+            Leading::WithinLeeway => WalkAim::Place(None),
+            Leading::WholePose => WalkAim::WholePose,
         };
         let mut walk = PathWalk { robot, tip_path, bounds: &self.bounds, aim, scratch: &mut self.scratch };
         let first = if options.start.is_some() { start.to_vec() } else { walk.begun_near(start)? };

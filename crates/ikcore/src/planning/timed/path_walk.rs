@@ -15,13 +15,13 @@ pub(super) struct PathWalk<'w> {
     pub robot: &'w Robot,
     pub tip_path: &'w TipPath,
     pub bounds: &'w Bounds,
-    pub aim: Aim,
+    pub aim: WalkAim,
     pub scratch: &'w mut Linearization,
 }
 
 /// What a walk meets at each point of its path.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Aim {
+pub(super) enum WalkAim {
     /// The target, with the tip at this place in its leeway; `None`: anywhere.
     Place(Option<Displacement>),
     /// The whole pose, whatever the task leaves free.
@@ -54,8 +54,8 @@ impl PathWalk<'_> {
 
     fn is_met(&mut self, share: f64, q: &mut [f64]) -> bool {
         let target = match self.aim {
-            Aim::Place(place) => PathTarget { place, ..self.tip_path.path_target(share) },
-            Aim::WholePose => PathTarget { target: self.tip_path.pose(share), leeway: None, place: None },
+            WalkAim::Place(place) => PathTarget { place, ..self.tip_path.path_target(share) },
+            WalkAim::WholePose => PathTarget { target: self.tip_path.pose(share), leeway: None, place: None },
         };
         project(self.robot, &target, self.bounds, q, self.scratch) == 0.0
     }
