@@ -1,9 +1,9 @@
 //! Whether the tip reaches a pose, at several azimuths of its place together.
 
-use super::joint_range::JointRange;
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
+use super::mapped_joint::MappedJoint;
 use super::rings::Ring;
 use crate::closed_form::{ArmBranches, FamilyLimits, PoseFamily};
 use crate::error::{Error, Result};
@@ -33,7 +33,7 @@ pub(crate) struct MapTest<'a> {
     pub(super) turning: Option<(UprightAxis, SolveContext<'a>)>,
     way: Way,
     reach: Reach,
-    pub(super) ranges: Vec<JointRange>,
+    pub(super) ranges: Vec<MappedJoint>,
     options: &'a MapOptions,
     measure: Manipulability,
 }
@@ -107,7 +107,7 @@ impl<'a> MapTest<'a> {
             Some(family) => Way::Family(Box::new(family.limits(&low, &high))),
             None => Way::Branches,
         };
-        let range = |(j, joint): (usize, &Joint)| JointRange {
+        let range = |(j, joint): (usize, &Joint)| MappedJoint {
             lower: joint.lower,
             upper: joint.upper,
             period: robot.turn_period(j),
@@ -162,8 +162,13 @@ impl<'a> MapTest<'a> {
     }
 
     /// Goes on from what has been seen of an orientation of a ring.
-    pub(super) fn found<'t>(&'t self, ring: &'t Ring, seen: Seen, result: &'t mut RingResult) -> Found<'t, 'a> {
-        Found { test: self, azimuths: &ring.azimuths, seen, quality: &mut result.quality }
+    pub(super) fn found<'t>(
+        &'t self,
+        ring: &'t Ring,
+        seen: Seen,
+        result: &'t mut RingResult,
+    ) -> OrientationTest<'t, 'a> {
+        OrientationTest { test: self, azimuths: &ring.azimuths, seen, quality: &mut result.quality }
     }
 
     /// The robot that solutions are found for.
@@ -192,7 +197,7 @@ pub(super) struct Seen {
 }
 
 /// Collects the solutions of an orientation of a ring.
-pub(super) struct Found<'t, 'a> {
+pub(super) struct OrientationTest<'t, 'a> {
     test: &'t MapTest<'a>,
     azimuths: &'t [f64],
     pub seen: Seen,
@@ -200,7 +205,7 @@ pub(super) struct Found<'t, 'a> {
     quality: &'t mut [Vec<f32>; 2],
 }
 
-impl Found<'_, '_> {
+impl OrientationTest<'_, '_> {
     pub fn is_everywhere(&self) -> bool {
         self.seen.reached == u64::MAX >> (64 - self.azimuths.len())
     }

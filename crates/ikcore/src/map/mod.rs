@@ -7,12 +7,12 @@
 //! descends from solutions of near orientations; `map_looks` calls both. `map_chunk` holds the results. Threads are
 //! in [`batch`](crate::batch).
 
-mod joint_range;
 mod map_chunk;
 mod map_grid;
 mod map_looks;
 mod map_options;
 mod map_test;
+mod mapped_joint;
 mod orientation_set;
 mod rings;
 mod second_look;

@@ -138,7 +138,7 @@ impl<'a> NominalMotions<'a> {
     fn branches(&self) -> Result<Vec<f64>> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         let target = tip_path.target(0.0);
-        if !matches!(target, Target::Pose(_)) || robot.solves_at_once() != Some(true) {
+        if !matches!(target, Target::Pose(_)) || robot.solves_at_once().is_none() {
             return Ok(vec![]);
         }
         let each = SolveOptions { seed: options.seed, ..SolveOptions::default() };

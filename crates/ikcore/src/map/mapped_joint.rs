@@ -5,13 +5,13 @@ const AT_LIMIT: f64 = 1e-9;
 
 /// The limits of a joint, and the smallest change that leaves the pose unchanged.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct JointRange {
+pub(super) struct MappedJoint {
     pub lower: f64,
     pub upper: f64,
     pub period: Option<f64>,
 }
 
-impl JointRange {
+impl MappedJoint {
     /// Whether a value is inside, whole turns aside.
     #[inline]
     pub fn holds(&self, value: f64) -> bool {
@@ -36,16 +36,16 @@ impl JointRange {
 
 #[cfg(test)]
 mod tests {
-    use super::JointRange;
+    use super::MappedJoint;
 
     #[test]
     fn a_value_is_brought_inside_by_whole_turns_or_to_a_limit() {
-        let joint = JointRange { lower: -1.0, upper: 2.0, period: Some(4.0) };
+        let joint = MappedJoint { lower: -1.0, upper: 2.0, period: Some(4.0) };
         for (value, inside) in [(0.5, 0.5), (4.5, 0.5), (-7.5, 0.5), (2.0, 2.0), (-1.0, -1.0), (3.0, -1.0), (6.5, 2.0)]
         {
             assert_eq!(joint.brought_inside(value), inside, "{value}");
         }
-        let slides = JointRange { period: None, ..joint };
+        let slides = MappedJoint { period: None, ..joint };
         assert_eq!([-5.0, 5.0].map(|value| slides.brought_inside(value)), [-1.0, 2.0]);
     }
 }
