@@ -26,6 +26,7 @@ CASES = {
     "out_of_reach": 6,
     "self_motions": 3,
     "paths_followed": 3,
+    "looser_paths": 2,
     "plants": 5,
     "complete_sets": 6,
     "arguments": 12,
@@ -105,6 +106,10 @@ SPOILED = {
         "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
         "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
         "the plan misses its ends",
+    ),
+    "looser_paths": (
+        "plans += [(False, inf, '')]",
+        "no plan with a wider tolerance",
     ),
     "trajectories": (
         "most = [0.5 * rate for rate in most]",

@@ -5,6 +5,7 @@
 mod common;
 
 mod along_path_clear;
+mod along_path_reach;
 mod along_path_timed;
 mod along_path_tolerance;
 mod apps_paper;

@@ -200,6 +200,14 @@ pub enum Error {
         /// The distance to it, and what would be right.
         problem: String,
     },
+    /// A search found nothing, which proves nothing.
+    #[error("{what} was not found: {problem}")]
+    NotFound {
+        /// What was looked for, such as "a motion past point 3 of the path".
+        what: String,
+        /// How near the search came, and what to try.
+        problem: String,
+    },
     /// Several ends were given for a motion, and none of them can be used.
     #[error("none of the {count} ends can be reached: {problems}")]
     NoUsableEnd {

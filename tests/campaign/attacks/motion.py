@@ -15,6 +15,7 @@ from ..attack import Attack, BrokenError, Case
 RELATIVE = 1e-9  # excess over a limit that counts as rounding
 ENDS = 1e-9  # rad
 SAMPLES = 200  # a segment
+SLOWER = 1.05  # a looser plan may take this much longer
 
 
 def dense(motion: bik.Trajectory, order: int, samples: int = SAMPLES) -> np.ndarray:
@@ -355,4 +356,82 @@ class Trajectories(Attack):
             raise BrokenError("right samples are refused", error)
 
 
-ATTACKS = [StateToState(), TimeOptimal(), JointPlans(), Trajectories()]
+class LooserPaths(Attack):
+    name = "looser_paths"
+    promise = (
+        "A path that is followed is followed with wider tolerances, limits or speeds too, as quickly by an arm of six "
+        "joints, and no point is called unreachable that has a configuration"
+    )
+    page = "planning"
+    names = ("iiwa14", "panda", "ur5e", "kr210", "gen3", "ur10", "fr3")
+    places = (0.0, 0.0, 0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 1 / 3, -1 / 6)  # of pi
+    refusals = ()
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """A line in joint space makes the path; a hard one passes round places, rests in joints and touches limits."""
+        joints = None if random.random() < 0.7 else arms.easy_arm(random, int(random.integers(4, 8)))
+        name = str(random.choice(self.names))
+        robot = bik.Robot.named(name) if joints is None else bik.Robot.from_urdf(arms.urdf(joints))
+        lower, upper = np.maximum(robot.lower, -3.2), np.minimum(robot.upper, 3.2)
+        n = len(lower)
+        first, last = (lower + (upper - lower) * random.random(n) for _ in range(2))
+        if hard:
+            round_ones = np.clip(np.pi * random.choice(self.places, (2, n)), lower, upper)
+            first = np.where(random.random(n) < 0.7, round_ones[0], first)
+            last = np.where(random.random(n) < 0.3, first, np.where(random.random(n) < 0.5, round_ones[1], last))
+        last = first + float(random.choice([0.15, 0.4, 0.7])) * (last - first)
+        if not np.abs(last - first).max() > 1e-3:
+            last[0] = first[0] + (0.3 if first[0] + 0.3 < upper[0] else -0.3)
+        widened = [random.random(6) < 0.5, np.arange(6) >= 3, np.ones(6, bool)][random.integers(3)]
+        return {
+            "name": name,
+            "joints": None if joints is None else tuple(joints),
+            "line": tuple(zip(first.tolist(), last.tolist(), strict=True)),
+            "points": int(random.choice([40, 80])),
+            "widened": tuple(map(bool, widened)),
+            "ladder": str(random.choice(["tolerance", "tolerance", "window", "speed"])),
+            "tightest": float(10.0 ** random.uniform(-3, -1)),
+        }
+
+    def program(self, case: Case) -> str:
+        made = f"robot = bik.Robot.named({case['name']!r})\n"
+        if case["joints"] is not None:
+            made = arms.written(list(case["joints"]))
+        first, last = (list(ends) for ends in zip(*case["line"], strict=True))
+        ladder = {
+            "tolerance": [[t if wide else 1e-4 for wide in case["widened"]] for t in (1e-4, 1e-3, 1e-2, 1e-1)],
+            "window": [case["tightest"], 0.3, np.inf],
+            "speed": [1.0, 2.0],
+        }[case["ladder"]]
+        return (
+            f"{made}first, last = np.array({first}), np.array({last})\n"
+            f"line = np.linspace(first, last, {case['points']})\n"
+            "poses, low, high = robot.fk(line), line.min(axis=0), line.max(axis=0)\n\n\n"
+            "def planned(tolerance=None, window=inf, speed=1.0):\n"
+            "    lower, upper = np.maximum(robot.lower, low - window), np.minimum(robot.upper, high + window)\n"
+            "    limits = bik.Limits(lower=lower, upper=upper, velocity=speed, acceleration=5.0 * speed)\n"
+            "    task = tolerance and bik.tasks.Pose(tolerance=tolerance)\n"
+            "    given = dict(limits=limits, task=task, stop=bik.Stop(max_evaluations=200))\n"
+            "    try:\n"
+            "        plan = bik.plan_along_path(robot, poses, **given)\n"
+            "    except bik.InvalidInputError as error:\n"
+            "        return False, inf, str(error)\n"
+            "    return plan.success, plan.cost, plan.message\n\n\n"
+            f"plans = [planned({case['ladder']}=value) for value in {ladder}]"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        """Plans of redundant arms are searched for, at random, and so not compared by their duration."""
+        least, is_exact = np.inf, case["joints"] is None and len(case["line"]) == 6
+        for success, cost, message in left["plans"]:
+            if "cannot be reached" in message and "between points" not in message:
+                raise BrokenError("a point that has a configuration is called unreachable", message)
+            if not success and least < np.inf:
+                raise BrokenError(f"no plan with a wider {case['ladder']}", message)
+            if success and is_exact and cost > SLOWER * least:
+                raise BrokenError(f"slower with a wider {case['ladder']}", (cost, least))
+            least = min(least, cost if success else np.inf)
+        return len(left["plans"])
+
+
+ATTACKS = [StateToState(), TimeOptimal(), JointPlans(), Trajectories(), LooserPaths()]

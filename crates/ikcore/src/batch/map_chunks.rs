@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{pool, workers};
 use crate::error::{Error, Result};
-use crate::map::{MapChunk, MapGrid, MapOptions, MapRobots, MapTest, rings_of};
+use crate::map::{MapChunk, MapGrid, MapLooks, MapOptions, MapRobots, rings_of};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 
@@ -27,13 +27,13 @@ pub fn map_chunks(
     let ranges = chunks.iter().map(|chunk| grid.voxels().chunk(*chunk)).collect::<Result<Vec<_>>>()?;
     let size = |ranges: &[[usize; 2]; 3]| ranges.iter().map(|[start, end]| end - start).product::<usize>();
     let robots = MapRobots::new(robot, grid, options)?;
-    let test = MapTest::new(&robots, grid, options)?;
+    let looks = MapLooks::new(&robots, grid, options)?;
     let mut computed = Vec::with_capacity(chunks.len());
     workers::run_on(&pool, ranges.iter().map(size).sum(), monitor, |shared| {
         for ranges in &ranges {
             let rings = rings_of(grid, *ranges);
             let results = rings.par_iter().with_max_len(1).map(|ring| {
-                let result = test.ring(ring, &mut shared.monitor());
+                let result = looks.ring(ring, &mut shared.monitor());
                 shared.count_all(ring.voxels.len());
                 result
             });

@@ -72,6 +72,7 @@ pub fn plan_status(result: &Result<Plan>) -> Status {
         Ok(plan) => plan.status,
         Err(Error::Interrupted) => Status::Interrupted,
         Err(Error::Unreachable { .. } | Error::NoUsableEnd { .. }) => Status::OutOfReach,
+        Err(Error::NotFound { .. }) => Status::Stalled,
         Err(Error::InCollision { .. }) => Status::InCollision,
         Err(_) => Status::Invalid,
     }

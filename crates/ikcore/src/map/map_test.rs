@@ -3,6 +3,7 @@
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
+use super::mapped_joint::MappedJoint;
 use super::rings::Ring;
 use crate::closed_form::{ArmBranches, FamilyLimits, PoseFamily};
 use crate::error::{Error, Result};
@@ -14,22 +15,25 @@ use crate::robot::{Joint, Robot, UprightAxis};
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::{Target, Tolerance};
 
-/// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
-const AT_LIMIT: f64 = 1e-9;
+/// Most evaluations of a descent from a near solution.
+const DESCENT: usize = 40;
+
+/// Solutions of an orientation that are kept as starts for others, at the most.
+const KEPT: usize = 4;
 
 /// Values of the parameter of a redundant arm after which it is asked whether the limits exclude all: most poses have a solution before.
 const VALUES_BEFORE_DOUBT: usize = 16;
 
 /// Decides which poses of a map are reached. Shared by all threads.
 pub(crate) struct MapTest<'a> {
-    grid: &'a MapGrid,
+    pub(super) grid: &'a MapGrid,
     /// Within the limits of the robot.
     own: SolveContext<'a>,
     /// With the first joint free to turn, where azimuths are alike.
-    turning: Option<(UprightAxis, SolveContext<'a>)>,
+    pub(super) turning: Option<(UprightAxis, SolveContext<'a>)>,
     way: Way,
     reach: Reach,
-    ranges: Vec<JointRange>,
+    pub(super) ranges: Vec<MappedJoint>,
     options: &'a MapOptions,
     measure: Manipulability,
 }
@@ -44,31 +48,13 @@ enum Way {
     Search,
 }
 
-/// The limits of a joint, and the smallest change that leaves the pose unchanged.
-#[derive(Debug, Clone, Copy)]
-struct JointRange {
-    lower: f64,
-    upper: f64,
-    period: Option<f64>,
-}
-
-impl JointRange {
-    /// Whether a value is inside, whole turns aside.
-    #[inline]
-    fn holds(&self, value: f64) -> bool {
-        let (lower, upper) = (self.lower - AT_LIMIT, self.upper + AT_LIMIT);
-        match self.period {
-            None => lower <= value && value <= upper,
-            Some(period) => upper - lower >= period || value + period * ((lower - value) / period).ceil() <= upper,
-        }
-    }
-}
-
 /// The two robots of a [`MapTest`], and the options of their solves.
 pub(crate) struct MapRobots {
-    own: Robot,
-    turning: Option<(UprightAxis, Robot)>,
+    pub(super) own: Robot,
+    pub(super) turning: Option<(UprightAxis, Robot)>,
     each: SolveOptions,
+    /// Of descents from near solutions. What configurations keep clear of is checked afterwards.
+    pub(super) brief: SolveOptions,
 }
 
 impl MapRobots {
@@ -91,7 +77,9 @@ impl MapRobots {
             stop: Stop { max_evaluations: options.evaluations, ..Stop::default() },
             ..SolveOptions::default()
         };
-        Ok(Self { own: robot.clone(), turning, each })
+        let stop = Stop { max_evaluations: DESCENT, ..Stop::default() };
+        let brief = SolveOptions { task: options.task, stop, ..SolveOptions::default() };
+        Ok(Self { own: robot.clone(), turning, each, brief })
     }
 }
 
@@ -119,7 +107,7 @@ impl<'a> MapTest<'a> {
             Some(family) => Way::Family(Box::new(family.limits(&low, &high))),
             None => Way::Branches,
         };
-        let range = |(j, joint): (usize, &Joint)| JointRange {
+        let range = |(j, joint): (usize, &Joint)| MappedJoint {
             lower: joint.lower,
             upper: joint.upper,
             period: robot.turn_period(j),
@@ -130,43 +118,57 @@ impl<'a> MapTest<'a> {
         Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
     }
 
-    /// Finds what is reached in the voxels of a ring.
-    pub fn ring(&self, ring: &Ring, monitor: &mut dyn Monitor) -> RingResult {
-        let bytes = self.grid.bytes();
-        let mut result = RingResult::new(ring, bytes, self.options.quality);
-        if self.reach.excess(&ring.place) > Tolerance::default().position {
-            return result;
+    /// Whether what is not found may be there all the same.
+    pub(super) fn leaves_poses_open(&self) -> bool {
+        !matches!(self.way, Way::Branches)
+    }
+
+    /// Whether the tip gets to the place of a ring at all.
+    pub(super) fn may_reach(&self, ring: &Ring) -> bool {
+        self.reach.excess(&ring.place) <= Tolerance::default().position
+    }
+
+    /// A result of a ring with nothing reached yet.
+    pub(super) fn empty_result(&self, ring: &Ring) -> RingResult {
+        RingResult::new(ring, self.grid.bytes(), self.options.quality)
+    }
+
+    /// The azimuth at which the orientations of a ring are solved for.
+    pub(super) fn azimuth(&self, ring: &Ring) -> f64 {
+        if self.turning.is_some() { 0.0 } else { ring.azimuths[0] }
+    }
+
+    /// What the first look at an orientation of a ring finds.
+    pub(super) fn first_look(&self, ring: &Ring, i: usize, result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
+        let pose = self.grid.pose(ring.place, self.azimuth(ring), i);
+        let mut found = self.found(ring, Seen::default(), result);
+        match &self.way {
+            Way::Branches => {
+                if let Some(branches) = self.robot().branches(&pose) {
+                    found.take_branches(&branches);
+                }
+            }
+            Way::Family(limits) => {
+                if let Some(family) = self.robot().family(&pose) {
+                    found.take_family(&family, limits, self.options.evaluations);
+                }
+            }
+            Way::Search => {
+                let stream = ring.stream.wrapping_mul(self.grid.orientations().len() as u64).wrapping_add(i as u64);
+                found.search(&pose, stream, monitor);
+            }
         }
-        let azimuth = if self.turning.is_some() { 0.0 } else { ring.azimuths[0] };
-        let count = self.grid.orientations().len();
-        for i in 0..count {
-            if !monitor.keep_going() {
-                break;
-            }
-            let pose = self.grid.pose(ring.place, azimuth, i);
-            let mut found = Found { test: self, azimuths: &ring.azimuths, reached: 0, quality: &mut result.quality };
-            match &self.way {
-                Way::Branches => {
-                    if let Some(branches) = self.robot().branches(&pose) {
-                        found.take_branches(&branches);
-                    }
-                }
-                Way::Family(limits) => {
-                    if let Some(family) = self.robot().family(&pose) {
-                        found.take_family(&family, limits, self.options.evaluations);
-                    }
-                }
-                Way::Search => {
-                    let stream = ring.stream.wrapping_mul(count as u64).wrapping_add(i as u64);
-                    found.search(&pose, stream, monitor);
-                }
-            }
-            let reached = found.reached;
-            for (voxel, bits) in result.reached.chunks_exact_mut(bytes).enumerate() {
-                bits[i / 8] |= ((reached >> voxel & 1) as u8) << (i % 8);
-            }
-        }
-        result
+        found.seen
+    }
+
+    /// Goes on from what has been seen of an orientation of a ring.
+    pub(super) fn found<'t>(
+        &'t self,
+        ring: &'t Ring,
+        seen: Seen,
+        result: &'t mut RingResult,
+    ) -> OrientationTest<'t, 'a> {
+        OrientationTest { test: self, azimuths: &ring.azimuths, seen, quality: &mut result.quality }
     }
 
     /// The robot that solutions are found for.
@@ -183,18 +185,29 @@ impl<'a> MapTest<'a> {
     }
 }
 
-/// The azimuths at which an orientation of a ring is reached, a bit for each.
-struct Found<'t, 'a> {
+/// What is known of an orientation of a ring.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Seen {
+    /// The azimuths at which it is reached, a bit for each.
+    pub reached: u64,
+    /// Some of its solutions.
+    pub solutions: Vec<Vec<f64>>,
+    /// It is proven that there are none.
+    pub is_excluded: bool,
+}
+
+/// Collects the solutions of an orientation of a ring.
+pub(super) struct OrientationTest<'t, 'a> {
     test: &'t MapTest<'a>,
     azimuths: &'t [f64],
-    reached: u64,
+    pub seen: Seen,
     /// Manipulability and clearance of the best at each azimuth.
     quality: &'t mut [Vec<f32>; 2],
 }
 
-impl Found<'_, '_> {
-    fn is_everywhere(&self) -> bool {
-        self.reached == u64::MAX >> (64 - self.azimuths.len())
+impl OrientationTest<'_, '_> {
+    pub fn is_everywhere(&self) -> bool {
+        self.seen.reached == u64::MAX >> (64 - self.azimuths.len())
     }
 
     /// Takes those that are solutions; returns whether azimuths are left.
@@ -211,8 +224,11 @@ impl Found<'_, '_> {
     fn take_family(&mut self, family: &PoseFamily<'_>, limits: &FamilyLimits, count: usize) {
         let arcs = family.arcs(limits);
         let mut values = arcs.scattered(count);
-        let wants_more = self.take_values(family, limits, values.by_ref().take(VALUES_BEFORE_DOUBT));
-        if wants_more && !arcs.is_empty() && (self.reached > 0 || !family.is_excluded(limits, &arcs)) {
+        if !self.take_values(family, limits, values.by_ref().take(VALUES_BEFORE_DOUBT)) {
+            return;
+        }
+        self.seen.is_excluded = arcs.is_empty() || (self.seen.reached == 0 && family.is_excluded(limits, &arcs));
+        if !self.seen.is_excluded {
             self.take_values(family, limits, values);
         }
     }
@@ -233,7 +249,7 @@ impl Found<'_, '_> {
     }
 
     /// Takes a configuration that has the pose, at the azimuths at which it is a solution.
-    fn take(&mut self, q: &[f64]) {
+    pub fn take(&mut self, q: &[f64]) {
         if !self.test.holds(q) {
             return;
         }
@@ -249,9 +265,12 @@ impl Found<'_, '_> {
         }
     }
 
-    /// Keeps `q` as a solution at these azimuths.
+    /// Keeps `q`, a solution at azimuth 0 but for its first joint, as one at these azimuths.
     fn keep(&mut self, q: &[f64], at: u64) {
-        self.reached |= at;
+        if at & !self.seen.reached != 0 && self.seen.solutions.len() < KEPT {
+            self.seen.solutions.push(q.to_vec());
+        }
+        self.seen.reached |= at;
         if self.test.options.quality {
             self.measure(q, at);
         }
@@ -284,12 +303,21 @@ impl Found<'_, '_> {
         let Some(solution) = searched(context, pose, stream, monitor) else { return };
         self.take(&solution.q);
         for place in 0..self.azimuths.len() {
-            if self.reached >> place & 1 == 0
+            if self.seen.reached >> place & 1 == 0
                 && let Some(solution) = searched(own, &axis.turned(pose, self.azimuths[place]), stream, monitor)
             {
-                self.keep(&solution.q, 1 << place);
+                self.take_at(place, &solution.q);
             }
         }
+    }
+
+    /// Takes a solution at one azimuth.
+    pub fn take_at(&mut self, place: usize, q: &[f64]) {
+        let mut q = q.to_vec();
+        if let Some((axis, _)) = &self.test.turning {
+            q[axis.joint] -= self.azimuths[place] * axis.per_turn;
+        }
+        self.take(&q);
     }
 }
 

@@ -3,20 +3,22 @@
 use std::borrow::Cow;
 
 use super::cost::Cost;
+use super::missed_points::missed_points;
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{AlongPathMethod, AlongPathOptions};
+use super::timed::PathProblem;
 use super::tip_path::TipPath;
 use super::{clear_path, timed, tpbso};
 use crate::error::{Error, Result};
 use crate::robot::Robot;
-use crate::solver::Monitor;
+use crate::solver::{Monitor, Status};
 
 /// Plans a motion of `robot` whose tip follows `tip_path`.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, [`Error::Unreachable`] if a point is out of reach. A plan that violates limits or comes
-/// too near to something is a status, not an error.
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] if a point is out of reach, [`Error::NotFound`] if no motion was found. A plan
+/// that violates limits or comes too near to something is a status, not an error.
 pub fn plan_along_path(
     robot: &Robot,
     tip_path: &TipPath,
@@ -34,8 +36,13 @@ pub fn plan_along_path(
     let robot = with_tool.as_ref().unwrap_or(robot);
     let space = options.surroundings.clear_space(robot)?;
     let mut plan = match (&options.method, &space) {
-        (AlongPathMethod::Timed, None) => timed::along_path(robot, &tip_path, options, monitor),
-        (AlongPathMethod::Timed, Some(space)) => clear_path::along_path(robot, &tip_path, space, options, monitor),
+        (AlongPathMethod::Timed, space) => {
+            let problem = PathProblem::new(robot, &tip_path, options)?;
+            match space {
+                None => free_motion(&problem, monitor),
+                Some(space) => clear_path::along_path(&problem, Some(space), monitor),
+            }
+        }
         (AlongPathMethod::Tpbso(_), _) if options.task.is_some() || space.is_some() => Err(Error::Contradiction {
             problem: "along a path task=, obstacles= and self_collision= need method=\"timed\"".into(),
         }),
@@ -46,4 +53,25 @@ pub fn plan_along_path(
     }?;
     plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_along_path")?);
     Ok(plan)
+}
+
+/// Plans without regard to obstacles: around a motion that follows the path from a few starts or, where that leads to no plan without
+/// violations, through layers of postures.
+fn free_motion(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Plan> {
+    let PathProblem { robot, tip_path, options, .. } = problem;
+    let followed = timed::along_path(problem, monitor)?;
+    let missed = match followed {
+        Some(plan) if plan.violations.is_empty() || plan.status == Status::Interrupted => return Ok(plan),
+        Some(_) => None,
+        None => missed_points(robot, tip_path, options.seed)?,
+    };
+    if let Some(proven @ Error::Unreachable { .. }) = missed {
+        return Err(proven);
+    }
+    match (clear_path::along_path(problem, None, monitor), followed) {
+        (Ok(plan), Some(followed)) => Ok(if plan.violations.is_empty() { plan } else { followed }),
+        (Err(Error::NotFound { .. } | Error::Unreachable { .. }), Some(followed)) => Ok(followed),
+        (Err(not_found @ Error::NotFound { .. }), None) => Err(missed.unwrap_or(not_found)),
+        (result, _) => result,
+    }
 }

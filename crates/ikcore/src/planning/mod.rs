@@ -38,6 +38,7 @@ mod end_pieces;
 mod endpoint;
 mod joined;
 mod minmax;
+mod missed_points;
 mod motion_limits;
 mod plan;
 mod planar_arm;

@@ -33,6 +33,15 @@ pub(super) struct SearchResult {
 }
 
 impl SearchResult {
+    /// This search and a `later` one.
+    pub(super) fn then(self, later: Self) -> Self {
+        let Self { mut history, evaluations, .. } = self;
+        let least = history.last().map_or(f64::INFINITY, |best| best.cost);
+        let lower = later.history.into_iter().filter(|improvement| improvement.cost < least);
+        history.extend(lower.map(|one| Improvement { evaluations: evaluations + one.evaluations, ..one }));
+        Self { history, evaluations: evaluations + later.evaluations, ..later }
+    }
+
     /// Returns the status of a plan: solved if `keeps_everything`, else why the search ended.
     pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {

@@ -11,15 +11,15 @@ use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Sweep, TooNear};
+use crate::planning::Plan;
 use crate::planning::collision_checks::{TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
+use crate::planning::missed_points::{missed_at, missed_points};
 use crate::planning::search::SearchResult;
 use crate::planning::timed::{
-    Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search, unreachable_points,
+    Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search,
 };
 use crate::planning::tip_path::TipPath;
-use crate::planning::{AlongPathOptions, Plan};
-use crate::robot::Robot;
-use crate::solver::{Monitor, Status, Stopwatch};
+use crate::solver::{Monitor, Status, Stop};
 
 /// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
 const SPACING: f64 = 0.03;
@@ -35,6 +35,9 @@ const DENSITIES: [usize; 2] = [32, 128];
 /// Motions that are tried at the most, each with more clearance where the one before came too near.
 const ROUNDS: usize = 10;
 
+/// Rounds in which a motion that leaves the path is made to follow it more closely.
+const CLOSER_ROUNDS: usize = 2;
+
 /// Evaluations of the search for a better motion around a clear one.
 const EVALUATIONS: usize = 600;
 
@@ -47,38 +50,37 @@ const AROUND: f64 = 1.5;
 /// A motion is certified to keep this much more than the margin (m), so that the margin remains where it is timed anew.
 const SPARE: f64 = 2e-5;
 
+/// What to try where no motion is found.
+const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by task=";
+
 /// The penalty of a posture in collision, for each metre that is missing of the margin.
 const DEEP: f64 = 1e6;
 
-/// Plans along a path in `space`.
+/// Plans along a path in `space`, or without regard to obstacles.
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(in crate::planning) fn along_path(
-    robot: &Robot,
-    tip_path: &TipPath,
-    space: &ClearSpace<'_>,
-    options: &AlongPathOptions,
+    problem: &PathProblem<'_>,
+    space: Option<&ClearSpace<'_>>,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
-    let stopwatch = Stopwatch::start();
-    let problem = PathProblem::new(robot, tip_path, options)?;
-    if let Some(q) = &options.start {
+    if let (Some(q), Some(space)) = (&problem.options.start, space) {
         refuse_collision("start", space.scene(), q, space.margin())?;
     }
     let mut planner = ClearPlanner {
-        problem: &problem,
+        problem,
         space,
-        price: Price::new(&problem),
-        passage: Passage::new(&problem, Some(space)),
-        shares: tip_path.knots(intervals(tip_path)),
+        price: Price::new(problem),
+        passage: Passage::new(problem, space),
+        shares: problem.tip_path.knots(intervals(problem.tip_path)),
         postures: vec![],
         accuracy: problem.accuracy,
-        stopwatch,
     };
-    match planner.first_sequence()? {
-        Ok(sequence) => planner.certified(sequence, monitor),
-        Err(dead_end) => planner.least_deep(dead_end),
+    match (planner.first_sequence()?, space) {
+        (Ok(sequence), _) => planner.certified(sequence, monitor),
+        (Err(dead_end), Some(space)) => planner.least_deep(space, dead_end),
+        (Err(dead_end), None) => Err(planner.not_found(dead_end)?),
     }
 }
 
@@ -91,7 +93,8 @@ fn intervals(tip_path: &TipPath) -> usize {
 
 struct ClearPlanner<'p> {
     problem: &'p PathProblem<'p>,
-    space: &'p ClearSpace<'p>,
+    /// What the motion keeps clear of, if anything.
+    space: Option<&'p ClearSpace<'p>>,
     price: Price,
     passage: Passage<'p>,
     /// Path parameters of the layers, and the postures there, clear or not.
@@ -99,13 +102,13 @@ struct ClearPlanner<'p> {
     postures: Vec<Vec<Point>>,
     /// Allowed deviation of the tip from the path (m, rad); smaller where that keeps it clear.
     accuracy: f64,
-    stopwatch: Stopwatch,
 }
 
 /// Why a motion is not taken.
 enum Fault {
     TooNear(Box<TooNear>),
     OutsideLimits,
+    OffPath,
 }
 
 impl ClearPlanner<'_> {
@@ -163,6 +166,11 @@ impl ClearPlanner<'_> {
                     self.passage.stay_inside();
                     None
                 }
+                Some(Fault::OffPath) if round == CLOSER_ROUNDS => return self.finished(smooth, found, None),
+                Some(Fault::OffPath) => {
+                    self.accuracy *= 0.5;
+                    None
+                }
             };
             round += 1;
             let next = if round < ROUNDS { self.clear_sequence()?.ok() } else { None };
@@ -186,8 +194,9 @@ impl ClearPlanner<'_> {
         let starts_as_given = problem.options.start.is_some();
         let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
-        cost.space = Some(space);
-        let found = search(&mut cost, problem.options, EVALUATIONS, monitor)?;
+        cost.space = *space;
+        let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
+        let found = search(&mut cost, problem.options, problem.options.stop.unwrap_or(budget), monitor)?;
         let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
         let (waypoints, _) = cost.waypoints(z);
         Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
@@ -195,14 +204,22 @@ impl ClearPlanner<'_> {
 
     fn fault(&self, motion: &PathMotion) -> Option<Fault> {
         let trajectory = &motion.trajectory;
-        let (whole, kept) = ([0.0, trajectory.duration()], self.space.margin() + SPARE);
-        let checked = Sweep::new(self.space.scene()).check(&TimedMotion::new(trajectory), whole, kept);
-        let leaves_limits = || !self.problem.limits.violations(trajectory).is_empty();
-        checked.err().map(Fault::TooNear).or_else(|| leaves_limits().then_some(Fault::OutsideLimits))
+        let too_near = self.space.and_then(|space| {
+            let (whole, kept) = ([0.0, trajectory.duration()], space.margin() + SPARE);
+            Sweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
+        });
+        if let Some(near) = too_near {
+            return Some(Fault::TooNear(near));
+        }
+        if !self.problem.limits.violations(trajectory).is_empty() {
+            return Some(Fault::OutsideLimits);
+        }
+        self.problem.leaves_path(motion).then_some(Fault::OffPath)
     }
 
     /// Keeps more clearance, and the path more closely, where a motion comes too near.
     fn keep_away(&mut self, motion: &PathMotion, near: &TooNear) -> Result<()> {
+        let Some(space) = self.space else { return Ok(()) };
         let q = configuration_at(&motion.trajectory, near.at)?;
         let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(q.len()).collect();
         let nearest = (0..rows.len())
@@ -210,9 +227,9 @@ impl ClearPlanner<'_> {
             .unwrap_or(0);
         let share = motion.waypoints.knots[nearest];
         let kept = self.passage.kept_beyond_margin(share);
-        let missing = (self.space.margin() - near.contact.distance).max(0.0);
+        let missing = (space.margin() - near.contact.distance).max(0.0);
         let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
-        let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| self.space.keeps(q, extra));
+        let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| space.keeps(q, extra));
         let reach = AROUND / self.shares.len() as f64;
         let around: Vec<usize> = (0..self.shares.len()).filter(|i| (self.shares[*i] - share).abs() <= reach).collect();
         if around.iter().all(leaves_some) {
@@ -223,12 +240,12 @@ impl ClearPlanner<'_> {
     }
 
     /// The plan that comes least deep into collision, where there is no clear one.
-    fn least_deep(mut self, dead_end: Unreached) -> Result<Plan> {
+    fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { shares: &self.shares, postures: &self.postures };
-        let obstruction = layers.obstruction(&self.passage, self.space, dead_end);
+        let obstruction = layers.obstruction(&self.passage, space, dead_end);
         let missing = |q: &Point| {
-            let distance = self.space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
-            (self.space.margin() - distance).max(0.0)
+            let distance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+            (space.margin() - distance).max(0.0)
         };
         let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
@@ -238,7 +255,11 @@ impl ClearPlanner<'_> {
         let mut anywhere = Passage::new(self.problem, None);
         let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
             Ok(sequence) => sequence,
-            Err(Unreached(layer)) => return Err(self.out_of_reach(layer)?),
+            Err(dead_end) => {
+                let PathProblem { robot, tip_path, options, .. } = self.problem;
+                let missed = missed_points(robot, tip_path, options.seed)?;
+                return Err(missed.map_or_else(|| self.not_found(dead_end), Ok)?);
+            }
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
         let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
@@ -247,19 +268,28 @@ impl ClearPlanner<'_> {
         Ok(Plan { obstruction: Some(obstruction), ..plan })
     }
 
-    /// Why no motion follows the path, clear or not.
-    fn out_of_reach(&self, layer: usize) -> Result<Error> {
+    /// The error where no sequence follows the path, clear or not.
+    fn not_found(&self, Unreached(layer): Unreached) -> Result<Error> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
-        Ok(unreachable_points(robot, tip_path, options.seed)?.unwrap_or_else(|| Error::Unreachable {
-            what: tip_path.place(self.shares[layer]),
-            problem: "only another branch of configurations does, and the arm cannot jump to it".into(),
-        }))
+        if self.postures[layer].is_empty()
+            && let Some(error) = missed_at(robot, tip_path, self.shares[layer], options.seed)?
+        {
+            return Ok(error);
+        }
+        let place = tip_path.place(self.shares[layer]);
+        let problem = match self.postures[layer].len() {
+            0 => "none of the motions tried reached it".into(),
+            1 => "the one configuration tried there is on another branch than those before".into(),
+            count => format!("all {count} configurations tried there are on other branches than those before"),
+        };
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") })
     }
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.
     fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
-        let (scene, margin) = (self.space.scene(), self.space.margin());
-        let mut plan = self.problem.plan(motion, found, self.stopwatch);
+        let mut plan = self.problem.after(found, self.problem.plan(motion));
+        let Some(space) = self.space else { return Ok(plan) };
+        let (scene, margin) = (space.scene(), space.margin());
         plan.surroundings = Some(self.problem.options.surroundings.clone());
         let trajectory = &plan.trajectory;
         let Some(near) = Sweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()]) else {

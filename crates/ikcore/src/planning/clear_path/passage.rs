@@ -3,18 +3,13 @@
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::obstacle::ClearSpace;
-use crate::planning::timed::{PathProblem, project};
+use crate::planning::timed::{NEAR_ENOUGH, PathProblem, approach, project, strays};
 
 /// A step that moves a joint farther (rad, m) is halved before it is checked.
 const FINE: f64 = 0.15;
 
 /// How often, at the most.
 const HALVINGS: usize = 3;
-
-/// The posture between two others lies this near the middle of both, relative to their distance; and this near anyway
-/// (rad, m).
-const STRAY: f64 = 0.3;
-const NEAR: f64 = 0.02;
 
 /// Distance that postures keep beyond the margin (m), since the arm is not certified between them.
 const RESERVE: f64 = 5e-5;
@@ -124,6 +119,17 @@ impl<'a> Passage<'a> {
         self.on_path(share, guess).filter(|q| self.is_clear(share, q))
     }
 
+    /// The clear posture nearest to `guess` that has the tip near the path, by a part of the accuracy: one on the path may be far where
+    /// the arm is singular.
+    pub fn clear_near_path(&mut self, share: f64, guess: &[f64]) -> Option<Point> {
+        let mut q = Point::from_slice(guess);
+        self.bounds.clip(&mut q);
+        let PathProblem { robot, tip_path, accuracy, .. } = self.problem;
+        let (target, within) = (tip_path.path_target(share), NEAR_ENOUGH * accuracy);
+        let is_near = approach(robot, &target, &self.bounds, &mut q, &mut self.scratch, within);
+        (is_near && self.is_clear(share, &q)).then_some(q)
+    }
+
     /// Whether `q` is inside the limits.
     pub fn is_within_limits(&self, q: &[f64]) -> bool {
         (0..q.len()).all(|j| self.bounds.lower()[j] <= q[j] && q[j] <= self.bounds.upper()[j])
@@ -138,10 +144,9 @@ impl<'a> Passage<'a> {
         let share = 0.5 * (from.0 + to.0);
         let middle: Point = from.1.iter().zip(to.1).map(|(from, to)| 0.5 * (from + to)).collect();
         let apart = largest_difference(from.1, to.1);
-        let Some(between) = self.clear_on_path(share, &middle) else { return false };
-        if largest_difference(&between, &middle) > STRAY * apart + NEAR {
-            return false;
-        }
+        let between = self.clear_on_path(share, &middle).filter(|q| !strays(q, &middle, apart));
+        let near_path = || self.clear_near_path(share, &middle).filter(|q| !strays(q, &middle, apart));
+        let Some(between) = between.or_else(near_path) else { return false };
         let between = (share, &between[..]);
         apart <= FINE
             || halvings == 0

@@ -9,6 +9,9 @@ use crate::objective::Point;
 /// Steps to a posture that are checked, the cheapest first, before it counts as out of reach.
 const CHECKED: usize = 12;
 
+/// Where fewer candidates than this are reached, sequences that lead to none of them go on by themselves.
+const FEW: usize = 16;
+
 /// A candidate posture.
 #[derive(Debug, Clone)]
 pub(super) struct LayerPosture {
@@ -73,7 +76,10 @@ fn reached(
         checkpoint()?;
         let before = &reached[i - 1];
         let mut step = Step { shares: [shares[i - 1], shares[i]], price, passage: &mut *passage, costs: vec![] };
-        let next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
+        let mut next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
+        if next.len() < FEW {
+            step.beside_candidates(before, &mut next);
+        }
         if next.is_empty() {
             return Ok(Err(Unreached(if before.is_empty() { i - 1 } else { i })));
         }
@@ -110,6 +116,27 @@ impl Step<'_, '_> {
             self.costs[nearest] = f64::INFINITY;
         }
         None
+    }
+}
+
+impl Step<'_, '_> {
+    /// Adds to `next` where sequences go on that lead to none of the candidates: these lack what is between samples, and at a
+    /// singularity all but one of a family.
+    fn beside_candidates(&mut self, before: &[Reached], next: &mut Vec<Reached>) {
+        let mut goes_on = vec![false; before.len()];
+        next.iter().for_each(|reached| goes_on[reached.before] = true);
+        for (number, reached) in before.iter().enumerate().filter(|(number, _)| !goes_on[*number]) {
+            let [from, to] = self.shares;
+            let on_path = self.passage.clear_on_path(to, &reached.q);
+            let near_path = self.passage.clear_near_path(to, &reached.q);
+            for q in [on_path, near_path].into_iter().flatten() {
+                let cost = reached.cost + self.price.of_step(&reached.q, &q, to - from);
+                if cost.is_finite() && self.passage.leads((from, &reached.q), (to, &q)) {
+                    next.push(Reached { q, cost, before: number });
+                    break;
+                }
+            }
+        }
     }
 }
 

@@ -1,14 +1,15 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
-use super::projection::project;
+use super::projection::{NEAR_ENOUGH, approach, project, strays};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
+use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::deviation::TipDeviation;
 use crate::planning::tip_path::TipPath;
 use crate::planning::{JointPath, SplineEnds};
-use crate::robot::Robot;
+use crate::robot::{Joint, Robot};
 
 /// Joint positions along a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,9 @@ const ENOUGH: f64 = 0.8;
 
 /// Samples inside each interval.
 const SAMPLES: usize = 7;
+
+/// An interval is halved too if a joint swings out of its limits by more than this fraction of the accuracy (rad, m).
+const SWING: f64 = 0.05;
 
 /// Maximum number of halvings of an interval: to 1/4096 of its length.
 const HALVINGS: usize = 12;
@@ -129,14 +133,15 @@ impl Interpolation<'_> {
                 checkpoint_at(i)?;
                 let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
                 // A given start may be off the path.
-                Ok((deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)).then_some(i))
+                let is_off = deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from);
+                Ok((is_off || self.swing(&path, from, to) > SWING * accuracy).then_some(i))
             };
             let intervals = 0..waypoints.knots.len() - 1;
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
             }
-            let finer = self.halved(&waypoints, &coarse, &path);
+            let finer = self.halved(&waypoints, &coarse, &path, NEAR_ENOUGH * accuracy);
             if finer.knots.len() == waypoints.knots.len() {
                 break;
             }
@@ -145,9 +150,42 @@ impl Interpolation<'_> {
         Ok(waypoints)
     }
 
-    /// Returns the waypoints with a knot added in the middle of each of these intervals, if the path can be reached
-    /// there.
-    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath) -> JointWaypoints {
+    /// By how much a joint is outside its limits between two knots, at the most (rad, m).
+    fn swing(&self, path: &JointPath, from: f64, to: f64) -> f64 {
+        let mut q = [0.0; MAX_DOF];
+        let q = &mut q[..self.robot.dof()];
+        let mut most: f64 = 0.0;
+        for sample in 1..=SAMPLES {
+            path.position(from + (to - from) * sample as f64 / (SAMPLES + 1) as f64, q);
+            let beyond = |(joint, q): (&Joint, &f64)| (joint.lower - q).max(q - joint.upper);
+            most = self.robot.joints().iter().zip(&*q).map(beyond).fold(most, f64::max);
+        }
+        most
+    }
+
+    /// Draws each joint that swings out of its limits inside: all its positions are scaled into them.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub(super) fn draw_inside(&self, waypoints: &mut JointWaypoints) -> Result<()> {
+        let path = self.path(waypoints)?;
+        let n = self.robot.dof();
+        for (j, joint) in self.robot.joints().iter().enumerate() {
+            let [lowest, highest] = path.range(j);
+            let (low, high) = (lowest.max(joint.lower), highest.min(joint.upper));
+            if (low, high) == (lowest, highest) || !(low <= high) {
+                continue;
+            }
+            let scale = if highest > lowest { (high - low) / (highest - lowest) } else { 1.0 };
+            let values = waypoints.rows.iter_mut().skip(j).step_by(n);
+            values.for_each(|q| *q = (low + scale * (*q - lowest)).clamp(low, high));
+        }
+        Ok(())
+    }
+
+    /// Returns the waypoints with a knot added in the middle of each of these intervals, if a configuration near the spline has the tip
+    /// there, or `within` this distance (m, rad).
+    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath, within: f64) -> JointWaypoints {
         let n = self.robot.dof();
         let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
         let mut scratch = Linearization::default();
@@ -160,11 +198,22 @@ impl Interpolation<'_> {
                 continue;
             }
             let middle = 0.5 * (knot + waypoints.knots[i + 1]);
+            let mut spline = [0.0; MAX_DOF];
+            let spline = &mut spline[..n];
+            path.position(middle, spline);
+            bounds.clip(spline);
             let mut q = [0.0; MAX_DOF];
             let q = &mut q[..n];
-            path.position(middle, q);
-            bounds.clip(q);
-            if project(self.robot, &self.tip_path.path_target(middle), &bounds, q, &mut scratch) == 0.0 {
+            q.copy_from_slice(spline);
+            let target = self.tip_path.path_target(middle);
+            let ends = &waypoints.rows[i * n..(i + 2) * n];
+            let apart = largest_difference(&ends[..n], &ends[n..]);
+            let mut is_met = project(self.robot, &target, &bounds, q, &mut scratch) == 0.0;
+            if !is_met || strays(q, spline, apart) {
+                q.copy_from_slice(spline);
+                is_met = approach(self.robot, &target, &bounds, q, &mut scratch, within);
+            }
+            if is_met {
                 finer.knots.push(middle);
                 finer.rows.extend_from_slice(q);
             }

@@ -8,28 +8,29 @@
 //! |---|---|
 //! | `timed_planner` | the planner |
 //! | `path_problem` | the path, what the motion has to keep, and the motion through given configurations |
-//! | `redundant_motion` | configurations along the path, and their free offsets |
+//! | `nominal_motions` | motions that follow the path from a few starts |
+//! | `redundant_motion` | one of them, and free offsets from it |
+//! | `path_walk` | configurations along the path, each the nearest to the one before |
 //! | `elastic_band` | the shortest motion around one |
 //! | `null_space` | joint motions that leave the tip in place |
-//! | `projection` | the nearest configuration that reaches a target |
+//! | `projection` | the nearest configuration that reaches a target, or comes near it |
 //! | `interpolation` | splines through configurations, dense enough to stay on the path |
 //! | `timed_cost` | the duration as a function of the offsets |
-//! | `unreachable` | the points that no configuration reaches, for the error |
 
 mod elastic_band;
 mod interpolation;
+mod nominal_motions;
 mod null_space;
 mod path_problem;
+mod path_walk;
 mod projection;
 mod redundant_motion;
 mod timed_cost;
 mod timed_planner;
-mod unreachable;
 
 pub(super) use interpolation::{Interpolation, JointWaypoints};
 pub(super) use path_problem::{PathMotion, PathProblem};
-pub(super) use projection::project;
+pub(super) use projection::{NEAR_ENOUGH, approach, project, strays};
 pub(super) use redundant_motion::RedundantMotion;
 pub(super) use timed_cost::TimedCost;
 pub(super) use timed_planner::{along_path, search};
-pub(super) use unreachable::unreachable_points;

@@ -8,6 +8,7 @@ use crate::planning::time_optimal::{coarse_duration, time_all};
 use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, JointPath, MotionLimits, TimingLimits};
 use crate::robot::Robot;
+use crate::solver::Stopwatch;
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -30,6 +31,8 @@ pub(in crate::planning) struct PathProblem<'a> {
     pub accuracy: f64,
     /// The options of the call.
     pub options: &'a AlongPathOptions,
+    /// Measures the call.
+    pub stopwatch: Stopwatch,
 }
 
 /// A motion along the path.
@@ -52,6 +55,7 @@ impl<'a> PathProblem<'a> {
         tip_path: &'a TipPath,
         options: &'a AlongPathOptions,
     ) -> Result<Self> {
+        let stopwatch = Stopwatch::start();
         let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
         let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
         let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
@@ -60,7 +64,7 @@ impl<'a> PathProblem<'a> {
             require_on_path(robot, q, tip_path, accuracy)?;
         }
         let robot = limits.applied_to(robot)?;
-        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options })
+        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options, stopwatch })
     }
 
     /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
@@ -98,7 +102,10 @@ impl<'a> PathProblem<'a> {
         waypoints: JointWaypoints,
         accuracy: f64,
     ) -> Result<PathMotion> {
-        let waypoints = interpolation.refined(waypoints, accuracy)?;
+        let mut waypoints = interpolation.refined(waypoints, accuracy)?;
+        if self.options.start.is_none() {
+            interpolation.draw_inside(&mut waypoints)?;
+        }
         let stretches = interpolation.stretches(&waypoints)?;
         let path = interpolation.path(&waypoints)?;
         let trajectory = time_all(&stretches, &self.timing_limits)?;

@@ -1,50 +1,30 @@
 //! Configurations of an arm along a path, and free offsets along its self-motion.
 //!
-//! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets
+//! A nominal motion follows the path. At a few nodes along it, offsets
 //! in the null space of the task Jacobian are free; natural splines interpolate them. The nominal configurations plus
 //! offsets are then projected back onto the points by damped least squares. Where the tip has leeway, the nominal motion uses it,
 //! and offsets leave the tip where that motion has it.
 
 use nalgebra::DMatrix;
 
-use super::elastic_band::ElasticBand;
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
 use super::projection::project;
-use super::unreachable::unreachable_points;
-use crate::error::{Error, Result};
-use crate::interrupt::checkpoint;
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::tip_path::{Borders, PathTarget, TipPath};
-use crate::rng;
 use crate::robot::Robot;
-use crate::task::Target;
-use crate::wording::number;
 
 /// Nodes of the offsets along the path: as many as the published planner has knots.
 pub(super) const NODES: usize = 5;
 
-/// Intervals between the points of the nominal motion, apart from corners: half of the published planner's.
-const INTERVALS: usize = 25;
-
-/// Starts tried for the nominal motion.
-const STARTS: usize = 16;
-
-/// Largest motion of a joint (rad, m) from one point of the nominal motion to the next; more is a jump to another
-/// branch.
-const JUMP: f64 = 1.5;
-
 /// The arm on its path.
 pub(in crate::planning) struct RedundantMotion<'a> {
     robot: &'a Robot,
-    tip_path: &'a TipPath,
     bounds: Bounds,
-    /// Targets of the tip at the nominal motion's knots.
-    targets: Vec<PathTarget>,
     nominal: JointWaypoints,
-    /// The same targets, with the tip where in their leeway the nominal motion has it.
+    /// Targets of the tip at the nominal motion's knots, each where in its leeway that motion has the tip.
     held: Vec<PathTarget>,
     /// Directions of the self-motion at each node, one per column.
     bases: Vec<DMatrix<f64>>,
@@ -56,81 +36,32 @@ pub(in crate::planning) struct RedundantMotion<'a> {
 }
 
 impl<'a> RedundantMotion<'a> {
-    /// The arm on `path`.
-    ///
-    /// # Errors
-    /// [`Error::Unreachable`] names the points that no configuration reaches, or else the first place that no motion from
-    /// any start reached.
-    pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
-        let knots = tip_path.knots(INTERVALS);
-        let mut motion = Self::unplaced(robot, tip_path, JointWaypoints { knots, rows: vec![] }, start.is_some());
-        motion.nominal.rows = match start {
-            Some(q) => match motion.begun_at(q) {
-                Ok(nominal) => nominal,
-                Err(lost) => return Err(motion.error(&lost, seed)?),
-            },
-            None => motion.shortest(seed)?,
-        };
-        motion.tighten()?;
-        motion.place_nodes();
-        Ok(motion)
-    }
-
-    /// The arm on `path`, with this nominal motion.
+    /// The arm on `tip_path`, with this nominal motion.
     pub(in crate::planning) fn around(
         robot: &'a Robot,
         tip_path: &'a TipPath,
         nominal: JointWaypoints,
         starts_as_given: bool,
     ) -> Self {
-        let mut motion = Self::unplaced(robot, tip_path, nominal, starts_as_given);
-        motion.place_nodes();
-        motion
-    }
-
-    fn unplaced(robot: &'a Robot, tip_path: &'a TipPath, nominal: JointWaypoints, starts_as_given: bool) -> Self {
-        Self {
+        let rows = nominal.rows.chunks_exact(robot.dof());
+        let held = nominal.knots.iter().zip(rows).map(|(knot, q)| tip_path.path_target(*knot).held_at(|| robot.tip(q)));
+        let mut motion = Self {
             robot,
-            tip_path,
             bounds: Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))),
-            targets: nominal.knots.iter().map(|knot| tip_path.path_target(*knot)).collect(),
+            held: held.collect(),
             weights: node_weights(&nominal.knots),
             nominal,
-            held: vec![],
             bases: vec![],
             starts_as_given,
             linearization: Linearization::default(),
-        }
+        };
+        motion.bases = motion.self_motions();
+        motion
     }
 
     /// The nominal motion.
     pub(super) fn nominal(&self) -> &JointWaypoints {
         &self.nominal
-    }
-
-    /// Replaces the nominal motion by another one on the same path.
-    pub(super) fn take(&mut self, nominal: JointWaypoints) {
-        self.targets = nominal.knots.iter().map(|knot| self.tip_path.path_target(*knot)).collect();
-        self.weights = node_weights(&nominal.knots);
-        self.nominal = nominal;
-        self.place_nodes();
-    }
-
-    /// Shortens the nominal motion.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`].
-    fn tighten(&mut self) -> Result<()> {
-        let Self { robot, bounds, targets, starts_as_given, .. } = self;
-        ElasticBand { robot, bounds, targets, starts_as_given: *starts_as_given }.tighten(&mut self.nominal)
-    }
-
-    /// Finds what is free around the nominal motion.
-    fn place_nodes(&mut self) {
-        let rows = self.nominal.rows.chunks_exact(self.robot.dof());
-        let held = |(due, q): (&PathTarget, &[f64])| due.held_at(|| self.robot.tip(q));
-        self.held = self.targets.iter().zip(rows).map(held).collect();
-        self.bases = self.self_motions();
     }
 
     /// Number of joints.
@@ -140,7 +71,7 @@ impl<'a> RedundantMotion<'a> {
 
     /// Number of points passed.
     pub(super) fn points(&self) -> usize {
-        self.targets.len()
+        self.held.len()
     }
 
     /// Number of free parameters at each node.
@@ -184,97 +115,6 @@ impl<'a> RedundantMotion<'a> {
         missed
     }
 
-    /// The nominal motion of least joint travel, over several starts: one on the path itself, or else within the leeway.
-    fn shortest(&mut self, seed: u64) -> Result<Vec<f64>> {
-        let mut rng = rng::stream(seed, 0);
-        let starts = self.robot.random_configurations(STARTS, &mut rng)?;
-        let mut farthest: Option<DeadEnd> = None;
-        for leading in [Leading::OnPath, Leading::WithinLeeway] {
-            let mut best: Option<(f64, Vec<f64>)> = None;
-            for start in starts.chunks_exact(self.dof()) {
-                checkpoint()?;
-                match self.follow(start, leading) {
-                    Ok(nominal) => {
-                        let travel = travel(&nominal, self.dof());
-                        if best.as_ref().is_none_or(|(least, _)| travel < *least) {
-                            best = Some((travel, nominal));
-                        }
-                    }
-                    Err(lost) => {
-                        if farthest.as_ref().is_none_or(|other| lost.is_farther_than(other)) {
-                            farthest = Some(lost);
-                        }
-                    }
-                }
-            }
-            if let Some((_, nominal)) = best {
-                return Ok(nominal);
-            }
-            if !self.tip_path.has_leeway() {
-                break;
-            }
-        }
-        match farthest {
-            Some(lost) => Err(self.error(&lost, seed)?),
-            None => Err(Error::InvalidPath { problem: "no start was tried".into() }),
-        }
-    }
-
-    /// The nominal motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
-    fn begun_at(&mut self, q: &[f64]) -> Result<Vec<f64>, DeadEnd> {
-        let excess = self.targets[0].excess(|| self.robot.tip(q));
-        if excess.is_none_or(|excess| excess == [0.0; 2])
-            && let Ok(nominal) = self.follow(q, Leading::InParallel)
-        {
-            return Ok(nominal);
-        }
-        self.follow(q, Leading::WithinLeeway)
-    }
-
-    /// Names the points that cannot be reached at all; where there are none, the place where the best motion ended.
-    fn error(&self, lost: &DeadEnd, seed: u64) -> Result<Error> {
-        if let Some(error) = unreachable_points(self.robot, self.tip_path, seed)? {
-            return Ok(error);
-        }
-        let problem = if lost.missed > 0.0 {
-            let unit = match self.targets[lost.point].target {
-                Target::Position(_) => "m",
-                _ => "(m and rad)",
-            };
-            format!("the nearest configuration found within the limits misses it by {} {unit}", number(lost.missed))
-        } else {
-            "only another branch of configurations does, and the arm cannot jump to it".into()
-        };
-        Ok(Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem })
-    }
-
-    /// Follows all points from `start`, each from the previous one.
-    fn follow(&mut self, start: &[f64], leading: Leading) -> Result<Vec<f64>, DeadEnd> {
-        let n = self.dof();
-        let place = match leading {
-            Leading::OnPath => self.targets[0].on_path().place,
-            Leading::InParallel => self.targets[0].held_at(|| self.robot.tip(start)).place,
-            Leading::WithinLeeway => None,
-        };
-        let mut nominal = vec![0.0; self.points() * n];
-        let mut q = [0.0; MAX_DOF];
-        q[..n].copy_from_slice(start);
-        for (point, target) in self.targets.iter().enumerate() {
-            let before = q;
-            let target = PathTarget { place, ..*target };
-            let missed = match point {
-                0 if self.starts_as_given => 0.0,
-                _ => project(self.robot, &target, &self.bounds, &mut q[..n], &mut self.linearization),
-            };
-            let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
-            if missed > 0.0 || (point > 0 && jump > JUMP) {
-                return Err(DeadEnd { point, missed });
-            }
-            nominal[point * n..(point + 1) * n].copy_from_slice(&q[..n]);
-        }
-        Ok(nominal)
-    }
-
     /// Returns the null space of the task Jacobian at each node, each basis aligned with the previous one.
     fn self_motions(&mut self) -> Vec<DMatrix<f64>> {
         let n = self.dof();
@@ -292,29 +132,6 @@ impl<'a> RedundantMotion<'a> {
             });
         }
         bases
-    }
-}
-
-/// What a nominal motion follows.
-#[derive(Debug, Clone, Copy)]
-enum Leading {
-    /// The path itself.
-    OnPath,
-    /// The path, displaced as the start is.
-    InParallel,
-    /// The nearest pose within the leeway.
-    WithinLeeway,
-}
-
-/// Knot at which a nominal motion ended, and its distance to the point (m, rad).
-struct DeadEnd {
-    point: usize,
-    missed: f64,
-}
-
-impl DeadEnd {
-    fn is_farther_than(&self, other: &Self) -> bool {
-        self.point > other.point || (self.point == other.point && self.missed < other.missed)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The planner: corners, the search for postures, the timing of the best.
 
+use super::interpolation::{Interpolation, JointWaypoints};
+use super::nominal_motions::NominalMotions;
 use super::path_problem::{PathMotion, PathProblem};
 use super::redundant_motion::RedundantMotion;
 use super::timed_cost::TimedCost;
@@ -7,10 +9,7 @@ use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 use crate::planning::deviation::TipDeviation;
 use crate::planning::search::{Search, SearchResult};
-use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, Plan};
-use crate::robot::Robot;
-use crate::solver::Stopwatch;
 use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
 
 /// Evaluations of the search; more shorten the motion by less than 1 %.
@@ -19,48 +18,82 @@ const EVALUATIONS: usize = 2000;
 /// Population size of the search.
 const POPULATION: usize = 30;
 
-/// Plans along a path.
+/// Plans along a path, around motions that follow it; `None` where each of these ends on the way.
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
-pub(crate) fn along_path(
-    robot: &Robot,
-    tip_path: &TipPath,
-    options: &AlongPathOptions,
-    monitor: &mut dyn Monitor,
-) -> Result<Plan> {
-    let stopwatch = Stopwatch::start();
-    let problem = PathProblem::new(robot, tip_path, options)?;
-    let mut motion = RedundantMotion::new(&problem.robot, tip_path, options.start.as_deref(), options.seed)?;
-    let (interpolation, waypoints) = problem.corners_of(motion.nominal(), problem.accuracy)?;
-    motion.take(waypoints);
-    let mut cost = TimedCost::new(&problem, motion, interpolation);
-    let found = search(&mut cost, options, EVALUATIONS, monitor)?;
-    let mut plan_of = |z: &[f64]| {
-        let (waypoints, _) = cost.waypoints(z);
-        let motion = problem.motion(&cost.interpolation, waypoints, problem.accuracy)?;
-        Ok(problem.plan(motion, found.clone(), stopwatch))
-    };
-    match &found {
-        None => plan_of(&[]),
-        Some(found) => Ok(better(plan_of(&found.x)?, plan_of(&vec![0.0; found.x.len()])?)),
+pub(in crate::planning) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
+    let mut candidates = vec![];
+    for waypoints in NominalMotions::new(problem).all()? {
+        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy)?;
+        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?);
+        candidates.push(Candidate { plan, interpolation, waypoints });
+    }
+    let mut candidates = candidates.into_iter();
+    let Some(widest) = candidates.next() else { return Ok(None) };
+    // The shortest motion is not always the quickest, nor the quickest one after the search.
+    match candidates.reduce(|first, other| if is_better(&other.plan, &first.plan) { other } else { first }) {
+        Some(other) if is_better(&other.plan, &widest.plan) => {
+            let (plan, found) = widest.improved(problem, 2, monitor)?;
+            let (another, later) = other.improved(problem, 2, monitor)?;
+            let found = found.zip(later).map(|(found, later)| found.then(later));
+            Ok(Some(problem.after(found, if is_better(&another, &plan) { another } else { plan })))
+        }
+        _ => {
+            let (plan, found) = widest.improved(problem, 1, monitor)?;
+            Ok(Some(problem.after(found, plan)))
+        }
     }
 }
 
-/// The plan of the search, or the nominal one where that is quicker after all: the search times a motion only roughly.
-fn better(found: Plan, nominal: Plan) -> Plan {
-    let is_better = nominal.violations.is_empty() && (!found.violations.is_empty() || nominal.cost < found.cost);
-    if is_better { nominal } else { found }
+/// A motion along the path to search around, and its plan.
+struct Candidate<'p> {
+    plan: Plan,
+    interpolation: Interpolation<'p>,
+    waypoints: JointWaypoints,
+}
+
+impl<'p> Candidate<'p> {
+    /// The best plan that a search around this one finds with a budget for one of so many `searches`.
+    fn improved(
+        self,
+        problem: &'p PathProblem<'p>,
+        searches: u32,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Plan, Option<SearchResult>)> {
+        let PathProblem { robot, tip_path, options, .. } = problem;
+        let motion = RedundantMotion::around(robot, tip_path, self.waypoints, options.start.is_some());
+        let mut cost = TimedCost::new(problem, motion, self.interpolation);
+        let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
+        let stop = Stop {
+            max_evaluations: budget.max_evaluations.div_ceil(searches as usize),
+            max_time: budget.max_time.map(|time| time / searches),
+            ..budget
+        };
+        let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
+        let (waypoints, _) = cost.waypoints(&found.x);
+        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints, problem.accuracy)?);
+        // The search times a motion only roughly.
+        Ok((if is_better(&self.plan, &plan) { self.plan } else { plan }, Some(found)))
+    }
+}
+
+/// Whether a plan keeps everything, and the other one does not or costs more.
+fn is_better(plan: &Plan, other: &Plan) -> bool {
+    plan.violations.is_empty() && (!other.violations.is_empty() || plan.cost < other.cost)
 }
 
 impl PathProblem<'_> {
-    /// The plan of a motion that a search has `found`; `None` if there was nothing to search.
-    pub(in crate::planning) fn plan(
-        &self,
-        motion: PathMotion,
-        found: Option<SearchResult>,
-        stopwatch: Stopwatch,
-    ) -> Plan {
+    /// Whether the tip of a motion is farther off the path than its accuracy.
+    pub(in crate::planning) fn leaves_path(&self, motion: &PathMotion) -> bool {
+        let PathMotion { waypoints, path, .. } = motion;
+        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let tip = TipDeviation { robot: &self.robot, tip_path: self.tip_path, configurations };
+        tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
+    }
+
+    /// The plan of a motion.
+    pub(in crate::planning) fn plan(&self, motion: PathMotion) -> Plan {
         let Self { robot, tip_path, options, .. } = self;
         let PathMotion { waypoints, stretches, path, trajectory } = motion;
         let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
@@ -83,27 +116,38 @@ impl PathProblem<'_> {
             path: stretches,
             peak: None,
             violations,
-            status: match &found {
-                Some(found) => found.status(keeps_everything),
-                None if keeps_everything => Status::Solved,
-                None => Status::Stalled,
-            },
-            evaluations: found.as_ref().map_or(1, |found| found.evaluations),
-            history: found.map_or_else(Vec::new, |found| found.history),
-            elapsed: stopwatch.elapsed(),
+            status: if keeps_everything { Status::Solved } else { Status::Stalled },
+            evaluations: 1,
+            history: vec![],
+            elapsed: self.stopwatch.elapsed(),
             trajectory,
+        }
+    }
+
+    /// A plan after the search that found it, if there was one.
+    pub(in crate::planning) fn after(&self, found: Option<SearchResult>, plan: Plan) -> Plan {
+        let elapsed = self.stopwatch.elapsed();
+        match found {
+            None => Plan { elapsed, ..plan },
+            Some(found) => Plan {
+                status: found.status(plan.violations.is_empty()),
+                evaluations: found.evaluations,
+                history: found.history,
+                elapsed,
+                ..plan
+            },
         }
     }
 }
 
-/// Runs the search, with a default budget of `evaluations`; `None` if the arm is not redundant.
+/// Runs the search; `None` if the arm is not redundant.
 ///
 /// # Errors
 /// [`Error::Contradiction`] for a solver without anything to search; those of the solver's options.
 pub(in crate::planning) fn search(
     cost: &mut TimedCost<'_>,
     options: &AlongPathOptions,
-    evaluations: usize,
+    stop: Stop,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<SearchResult>> {
     let Some(bounds) = cost.bounds() else {
@@ -119,7 +163,7 @@ pub(in crate::planning) fn search(
     let evolution = || AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
     let search = Search {
         solver: options.solver.clone().unwrap_or_else(evolution),
-        stop: options.stop.unwrap_or(Stop { max_evaluations: evaluations, ..Stop::default() }),
+        stop,
         seed: options.seed,
         // The nominal motion: nothing worse is returned.
         start: Some(Point::from_elem(0.0, cost.dimension())),

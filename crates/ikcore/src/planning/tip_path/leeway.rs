@@ -52,6 +52,16 @@ impl Leeway {
         Ok(Self { allowed: std::array::from_fn(allowed) })
     }
 
+    /// This leeway, with no component off by more than `most`; those that are free stay free.
+    pub fn at_most(&self, most: f64) -> Self {
+        Self { allowed: self.allowed.map(|allowed| if allowed.is_finite() { allowed.min(most) } else { allowed }) }
+    }
+
+    /// The largest bound of a component that is not free.
+    pub fn largest(&self) -> f64 {
+        self.allowed.into_iter().filter(|allowed| allowed.is_finite()).fold(0.0, f64::max)
+    }
+
     /// The criterion whose residual has one row for each component.
     pub fn criterion() -> Criterion {
         let components = Some(Components { weights: [1.0; ROWS], tolerance: None });

@@ -17,7 +17,7 @@ mod sampling;
 mod segment_geometry;
 mod tip_curve;
 
-pub(super) use leeway::Borders;
+pub(super) use leeway::{Borders, Displacement};
 pub(super) use path_target::PathTarget;
 pub(super) use repetition::refuse_repetition;
 pub use tip_curve::TipPath;

@@ -30,6 +30,11 @@ impl PathTarget {
         }
     }
 
+    /// The same target with the tip off by no more than `most` (m, rad) where it is not free.
+    pub fn at_most(&self, most: f64) -> Self {
+        Self { leeway: self.leeway.map(|leeway| leeway.at_most(most)), ..*self }
+    }
+
     /// The same target with the tip on the path itself; what is free stays free.
     pub fn on_path(&self) -> Self {
         Self { place: Some([0.0; ROWS]), ..*self }

@@ -140,6 +140,17 @@ impl TipPath {
         self.leeway.is_some()
     }
 
+    /// How far a component of the tip may be off that is not free (m, rad), at the most.
+    pub(in crate::planning) fn largest_leeway(&self) -> f64 {
+        self.leeway.map_or(0.0, |leeway| leeway.largest())
+    }
+
+    /// Whether the task leaves a part of the given poses out of account.
+    pub(in crate::planning) fn ignores_a_part(&self) -> bool {
+        let leaves_free = self.task.and_then(|task| task.components).is_some_and(|it| it.weights.contains(&0.0));
+        self.rotations.is_some() && (leaves_free || !matches!(self.target(0.0), Target::Pose(_)))
+    }
+
     /// How far the tip may stray (m, rad) where the caller does not say: a thousandth of the extent, and the distance of the
     /// sampled curve; no more than the smallest tolerance.
     pub fn default_accuracy(&self) -> f64 {

@@ -1,0 +1,169 @@
+//! A second look at orientations without a solution, from solutions of the orientations near them.
+//!
+//! The solutions of a voxel lie on a few smooth sheets, so that a solution of an orientation is a good start for those next to it. All
+//! starts come from the same ring: a chunk has the same bits whatever the others are.
+
+use super::map_chunk::RingResult;
+use super::map_grid::MapGrid;
+use super::map_test::{MapRobots, MapTest, Seen};
+use super::rings::Ring;
+use crate::error::Result;
+use crate::ik::{Query, SolveContext, solve_query};
+use crate::math::Frame;
+use crate::solver::{Monitor, Status, Stopwatch};
+use crate::task::Target;
+
+/// Orientations near one, from which starts are taken.
+const NEAR: usize = 12;
+
+/// Orientations whose numbers differ by more are not near: one of a spread set is near those next to it in height.
+const WINDOW: usize = 2048;
+
+/// Descents for each orientation and round, at the most.
+const DESCENTS: usize = 8;
+
+/// Rounds at the most; each but the first starts from what the one before found.
+const ROUNDS: usize = 4;
+
+/// Descends from near solutions.
+pub(super) struct SecondLook<'a> {
+    own: SolveContext<'a>,
+    /// With the first joint free to turn, where azimuths are alike.
+    turning: Option<SolveContext<'a>>,
+    /// For each orientation the numbers of those near it, the nearest first.
+    near: Vec<Vec<u32>>,
+}
+
+impl<'a> SecondLook<'a> {
+    /// # Errors
+    /// None in practice: the options of the map have been checked.
+    pub fn new(robots: &'a MapRobots, grid: &MapGrid) -> Result<Self> {
+        let MapRobots { own, turning, brief, .. } = robots;
+        let turning = turning.as_ref().map(|(_, robot)| SolveContext::new(robot, brief)).transpose()?;
+        Ok(Self { own: SolveContext::new(own, brief)?, turning, near: near_orientations(grid) })
+    }
+
+    /// Completes what has been `seen` of the orientations of a ring.
+    pub fn complete(
+        &self,
+        test: &MapTest<'_>,
+        ring: &Ring,
+        all: &mut [Seen],
+        result: &mut RingResult,
+        monitor: &mut dyn Monitor,
+    ) {
+        let mut fresh: Vec<bool> = all.iter().map(|seen| seen.reached != 0).collect();
+        for _ in 0..ROUNDS {
+            let mut found_now = vec![false; all.len()];
+            for i in 0..all.len() {
+                let near_fresh = self.near[i].iter().any(|other| fresh[*other as usize]);
+                if all[i].is_excluded || !near_fresh || !monitor.keep_going() {
+                    continue;
+                }
+                let before = all[i].reached;
+                let look = Look { second: self, test, ring, i };
+                all[i] = look.at(all, result, monitor);
+                found_now[i] = all[i].reached != before;
+            }
+            if !found_now.contains(&true) {
+                return;
+            }
+            fresh = found_now;
+        }
+    }
+}
+
+/// A second look at orientation number `i` of a ring.
+struct Look<'l, 'a> {
+    second: &'l SecondLook<'a>,
+    test: &'l MapTest<'a>,
+    ring: &'l Ring,
+    i: usize,
+}
+
+impl Look<'_, '_> {
+    /// What is known of the orientation afterwards.
+    fn at(&self, all: &[Seen], result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
+        let Self { test, ring, i, .. } = *self;
+        let pose = test.grid.pose(ring.place, test.azimuth(ring), i);
+        let mut found = test.found(ring, all[i].clone(), result);
+        if found.seen.reached == 0 {
+            let context = self.second.turning.as_ref().unwrap_or(&self.second.own);
+            for start in self.starts(all).take(DESCENTS) {
+                if let Some(q) = descended(context, &pose, &self.inside(start, None), monitor) {
+                    found.take(&q);
+                }
+                if found.seen.reached != 0 {
+                    break;
+                }
+            }
+        }
+        let Some((axis, _)) = &test.turning else { return found.seen };
+        if found.seen.reached == 0 || found.is_everywhere() {
+            return found.seen;
+        }
+        for (place, azimuth) in ring.azimuths.iter().enumerate() {
+            let range = test.ranges[axis.joint];
+            let holds = |start: &&Vec<f64>| range.holds(start[axis.joint] + azimuth * axis.per_turn);
+            for start in self.starts(all).filter(holds).take(DESCENTS) {
+                if found.seen.reached >> place & 1 == 1 {
+                    break;
+                }
+                let turned = axis.turned(&pose, *azimuth);
+                if let Some(q) = descended(&self.second.own, &turned, &self.inside(start, Some(*azimuth)), monitor) {
+                    found.take_at(place, &q);
+                }
+            }
+        }
+        found.seen
+    }
+
+    /// The solutions of the orientations near this one.
+    fn starts<'s>(&self, all: &'s [Seen]) -> impl Iterator<Item = &'s Vec<f64>> {
+        self.second.near[self.i].iter().flat_map(move |other| &all[*other as usize].solutions)
+    }
+
+    /// A start within the limits; the first joint is free to turn where there is no azimuth.
+    fn inside(&self, start: &[f64], azimuth: Option<f64>) -> Vec<f64> {
+        let turning = self.test.turning.as_ref().map(|(axis, _)| *axis);
+        let bring = |(j, value): (usize, &f64)| match (turning, azimuth) {
+            (Some(axis), None) if axis.joint == j => *value,
+            (Some(axis), Some(azimuth)) if axis.joint == j => {
+                self.test.ranges[j].brought_inside(value + azimuth * axis.per_turn)
+            }
+            _ => self.test.ranges[j].brought_inside(*value),
+        };
+        start.iter().enumerate().map(bring).collect()
+    }
+}
+
+/// The solution of a pose to which a descent from `start` leads, if it does.
+fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
+    let targets = context.read(&[Target::Pose(*pose)]).ok()?;
+    let query = Query { targets: &targets, start: Some(start), stream: 0, stopwatch: Stopwatch::start() };
+    let solution = solve_query(context, &query, monitor);
+    (solution.status == Status::Solved).then(|| solution.q.to_vec())
+}
+
+/// For each orientation of a grid the numbers of those near it, the nearest first.
+fn near_orientations(grid: &MapGrid) -> Vec<Vec<u32>> {
+    let count = grid.orientations().len();
+    let axes: Vec<_> = (0..count).map(|i| grid.orientations().axes(i)).collect();
+    // The trace of the rotation between two: 1 + 2 cos(angle).
+    let nearness = |i: usize, other: usize| -> f64 {
+        axes[i].iter().flatten().zip(axes[other].iter().flatten()).map(|(a, b)| a * b).sum()
+    };
+    let near = |i: usize| {
+        let window = i.saturating_sub(WINDOW)..(i + WINDOW).min(count);
+        let mut others: Vec<(f64, u32)> =
+            window.filter(|other| *other != i).map(|other| (nearness(i, other), other as u32)).collect();
+        let order = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+        if others.len() > NEAR {
+            others.select_nth_unstable_by(NEAR, order);
+            others.truncate(NEAR);
+        }
+        others.sort_unstable_by(order);
+        others.into_iter().map(|(_, other)| other).collect()
+    };
+    (0..count).map(near).collect()
+}
