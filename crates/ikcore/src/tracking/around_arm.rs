@@ -248,13 +248,13 @@ impl Around {
 }
 
 /// How the place of rest follows the command x: r_j(x) = rest_j + slope_j x_j + offset_j, the secant over the box.
-struct Response {
-    slope: Point,
+pub(super) struct Response {
+    pub slope: Point,
     offset: Point,
 }
 
 impl Response {
-    fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
+    pub fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
         let at_once =
             Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
         let Some(limited) = wish.limited else { return at_once };
