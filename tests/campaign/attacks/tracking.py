@@ -197,7 +197,7 @@ class StopsAmongObstacles(Attack):
     page = "scenes"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """Hard cases have round configurations and places, joints at their limits, limits that tie, and shapes that are given anew."""
+        """Hard cases are round: configurations at limits and right angles, places, ties of limits; shapes come anew."""
         tens = random.choice([1.0, 2.0, 5.0], 3) * 10.0 ** random.integers(0, 2, 3)
         rates = tens * (0.5, 1.0, 10.0) if hard else np.array([1.5, 5.0, 50.0]) * random.uniform(0.5, 2.0, 3)
 
@@ -225,8 +225,9 @@ class StopsAmongObstacles(Attack):
         ]
         return {
             "arm": str(random.choice(["panda", "iiwa14", "ur5e"])), "start": random.uniform(0.0, 1.0, 7).tolist(),
-            "round": hard, "rates": arms.triple(rates), "orders": int(random.integers(1, 4)), "scene": things(), "life": life,
-            "dt": float(random.choice([0.005, 0.01, 0.02])), "margin": float(random.choice([0.0, 0.001, 0.01])),
+            "round": hard, "rates": arms.triple(rates), "orders": int(random.integers(1, 4)), "scene": things(),
+            "life": life, "dt": float(random.choice([0.005, 0.01, 0.02])),
+            "margin": float(random.choice([0.0, 0.001, 0.01])),
         }  # fmt: skip
 
     def program(self, case: Case) -> str:
@@ -255,7 +256,8 @@ class StopsAmongObstacles(Attack):
             f"robot, dt = bik.Robot.named('{case['arm']}').with_capsules(radius=0.05), {dt}\n"
             f"start = {start.tolist()}\nscene = {things(case['scene'])}\nlife = [{', '.join(events)}]\n"
             f"limits = bik.Limits({', '.join(f'{kind}={rate}' for kind, rate in rates)})\n"
-            f"tracker = bik.Tracker(robot, start, dt=dt, limits=limits, obstacles=scene, margin={case['margin']}){STOPS}"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            f"tracker = bik.Tracker(robot, start, dt=dt, **given){STOPS}"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:

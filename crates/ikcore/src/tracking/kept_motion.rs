@@ -76,7 +76,7 @@ impl KeptMotion {
             stop: HeldStop::default(),
             next_stop: HeldStop::default(),
             goal_is_held: false,
-            progress: Progress::default(),
+            progress: Progress::new(limits),
         })
     }
 
@@ -100,6 +100,7 @@ impl KeptMotion {
         obstacles: ObstacleMotion,
         limits: &Limits,
     ) -> Result<()> {
+        self.progress.note_replaced();
         match (space, &mut self.around) {
             (Some(space), Some(around)) => {
                 (around.space, around.obstacles, around.since) = (Arc::new(space), obstacles, 0.0);
@@ -113,13 +114,13 @@ impl KeptMotion {
     /// Forgets the stop, because the arm is not where it was.
     pub fn forget(&mut self) {
         self.stop.clear();
-        self.progress = Progress::default();
+        self.progress.restart();
     }
 
     /// Moves on by one tick, of `dt` (s), of the stop after the last command. Returns its next configuration if pairs are held;
     /// otherwise each joint stops as fast as it may.
     pub fn stop_on(&mut self, dt: f64) -> Option<Point> {
-        self.progress = Progress::default();
+        self.progress.restart();
         if let Some(around) = &mut self.around {
             around.since += dt;
         }
@@ -139,7 +140,7 @@ impl KeptMotion {
         let wanted = q.clone();
         match (wish.error_after, wish.error()) {
             (Some(after), Some(now)) => self.progress.begin_tick([after, now], wish.dt),
-            _ => self.progress = Progress::default(),
+            _ => self.progress.restart(),
         }
         let pairs = wish.aim.as_ref().and_then(TickAim::tips).filter(|aims| aims.has_pairs());
         let by_obstacles = pairs.and_then(|aims| self.keep_held(wish, aims, q)).unwrap_or_else(|| {
@@ -169,23 +170,27 @@ impl KeptMotion {
         let blocked = self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted);
         let pace = self.pace(&brake);
         self.move_beside_rows(wish, (pace, blocked), [&rest, &brake], q);
-        let rest = (pace != Pace::Free).then_some(&rest);
+        let nearer_than = (pace != Pace::Free).then_some(&rest);
         let allowed = pace != Pace::Rest
-            && (self.allows(wish, rest, q) || {
+            && (self.allows(wish, nearer_than, q) || {
                 self.correct(wish, q);
-                self.allows(wish, rest, q)
+                self.allows(wish, nearer_than, q)
             });
         let best = q.clone();
         let mut parts = PARTS.into_iter().filter(|_| pace != Pace::Rest);
         let allowed = allowed
             || parts.any(|part| {
                 between(&brake, &best, part, q);
-                self.allows(wish, rest, q)
+                self.allows(wish, nearer_than, q)
             });
         if !allowed {
             q.copy_from_slice(&brake);
         }
-        if pace == Pace::Free { *q != wanted } else { blocked || !self.allows(wish, None, &wanted) }
+        if pace == Pace::Free {
+            return *q != wanted;
+        }
+        let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
+        blocked || !self.allows(wish, nearer_than, &wanted)
     }
 
     /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether what is around the arm made it
@@ -226,7 +231,7 @@ impl KeptMotion {
     /// How the arm moves, which brakes by the command `brake`. Where bodies are to part or it has to give way, it moves in any case.
     fn pace(&mut self, brake: &[f64]) -> Pace {
         if self.rows.ask_to_move(brake) {
-            self.progress = Progress::default();
+            self.progress.restart();
         }
         self.progress.pace()
     }
