@@ -16,7 +16,7 @@ const LEAST: f64 = 2e-4;
 const PATIENCE: f64 = 0.3;
 
 /// Likewise if each command has to bring the place of rest nearer.
-const MUCH_NEARER: f64 = 0.1;
+const MUCH_NEARER: f64 = 0.2;
 const LAST_PATIENCE: f64 = 0.5;
 
 /// Slow arms get more time: in proportion to a turn by 1 rad from rest to rest beyond this (s), up to a factor.
