@@ -11,7 +11,7 @@ use crate::math::vector::distance;
 use crate::objective::Point;
 
 /// An arm comes nearer if its error falls by this fraction, and no less than this (m), within this time (s).
-const NEARER: f64 = 0.01;
+const NEARER: f64 = 0.02;
 const LEAST: f64 = 2e-4;
 const PATIENCE: f64 = 0.3;
 
