@@ -128,6 +128,11 @@ impl Around {
         self.find_coming(rest);
     }
 
+    /// Whether something is nearer than the margin at the place of rest.
+    pub fn is_too_near(&self) -> bool {
+        self.near.rows().iter().any(|near| near.distance < self.space.margin())
+    }
+
     /// Finds what comes too near to an arm at `q`.
     fn find_coming(&mut self, q: &[f64]) {
         let (velocities, since) = (&self.obstacles.velocities[..], self.since);

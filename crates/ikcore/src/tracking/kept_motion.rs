@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use super::around_arm::{Around, ObstacleMotion, Response};
 use super::held_stop::HeldStop;
-use super::progress::{Pace, Progress, is_nearer};
+use super::progress::{ArmProgress, Pace, is_nearer};
 use super::row_motion::{Beside, Resting, RowMotion, Towards};
 use super::stop_motion::StopMotion;
 use super::tick_aim::TickAim;
@@ -51,7 +51,7 @@ pub(super) struct KeptMotion {
     next_stop: HeldStop,
     /// Rows keep the last goal from its target.
     goal_is_held: bool,
-    progress: Progress,
+    progress: ArmProgress,
 }
 
 /// What became of a command.
@@ -76,7 +76,7 @@ impl KeptMotion {
             stop: HeldStop::default(),
             next_stop: HeldStop::default(),
             goal_is_held: false,
-            progress: Progress::new(limits),
+            progress: ArmProgress::new(limits),
         })
     }
 
@@ -228,9 +228,9 @@ impl KeptMotion {
         Some(blocked)
     }
 
-    /// How the arm moves, which brakes by the command `brake`. Where bodies are to part or it has to give way, it moves in any case.
+    /// How the arm moves, which brakes by the command `brake`. Where bodies are too near or it has to give way, it moves in any case.
     fn pace(&mut self, brake: &[f64]) -> Pace {
-        if self.rows.ask_to_move(brake) {
+        if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
             self.progress.restart();
         }
         self.progress.pace()

@@ -46,7 +46,7 @@ pub(super) enum Pace {
 
 /// The progress of an arm towards its target, which may move. Errors are roots of squared ones.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Progress {
+pub(super) struct ArmProgress {
     /// By how much more time than a quick arm this one gets.
     slower: f64,
     pace: Pace,
@@ -64,7 +64,7 @@ pub(super) struct Progress {
     replaced: bool,
 }
 
-impl Progress {
+impl ArmProgress {
     /// Of an arm with these limits.
     pub fn new(limits: &Limits) -> Self {
         let slower = (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT);
