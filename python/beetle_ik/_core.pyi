@@ -2489,10 +2489,12 @@ class Tracker:
                 limits; without these a stamp is refused. A target older than the last one is ignored.
         """
     def stop(self) -> float:
-        """Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
+        """Stops as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives. Pairs of tips that
+        are held stay held. The stop is the one that was certified with the last command; the arm does not give way to what moves, and
+        stands afterwards.
 
         Returns:
-            How long the stop takes (s); 0 without acceleration and jerk limits.
+            How long the stop takes (s), to within a tick; 0 without acceleration and jerk limits.
         """
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:

@@ -94,6 +94,10 @@ SPOILED = {
         "log += [('q', tracker.q + 1.0)]",
         "a command is outside the position limits",
     ),
+    "stops_among_obstacles": (
+        "stops = [(said, q + 1e-3 * np.arange(len(q))[:, None]) for said, q in stops]",
+        "an arm is later at rest than its stop said",
+    ),
     "state_to_state": (
         "motion = bik.Trajectory(motion.time, motion.coefficients + [1e-4, 0, 0, 0])",
         "the motion misses its start",

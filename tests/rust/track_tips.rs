@@ -114,6 +114,35 @@ fn a_tray_stays_in_both_hands_wherever_they_are_sent() {
 }
 
 #[test]
+fn a_tray_stops_in_the_time_that_is_said() {
+    let robot = robot();
+    let home = forward([0.5, 0.25, 0.9], [0.0; 3]);
+    let q = start(&robot, &home);
+    for (limits, _) in all_limits(&robot) {
+        let (mut session, mut draws) = (session(&robot, &q, limits), rng::stream(5, 0));
+        for stop in 0..12 {
+            let target = forward([0.5, 0.25, 0.9].map(|x| x + draws.uniform_in(-0.3, 0.3)), [0.0; 3]);
+            for _ in 0..10 + 2 * stop {
+                let arrival = TipArrival { targets: targets(&target), stamp: None };
+                session.advance_tips(Some(arrival), &mut Unattended).unwrap();
+            }
+            let said = session.stop();
+            let ticks = (said / DT).round() as usize;
+            for tick in 0..ticks + 50 {
+                let left = session.stop();
+                assert!(
+                    (left - (said - tick as f64 * DT).max(0.0)).abs() < 1e-9,
+                    "the time left is that of the same stop"
+                );
+                session.advance_tips(None, &mut Unattended).unwrap();
+                let still = session.qd().iter().all(|rate| rate.abs() * DT < 1e-12);
+                assert!(still || tick < ticks, "stop {stop}: it takes longer than {said} s");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_pair_that_is_apart_comes_together_and_then_stays() {
     let robot = robot();
     let home = forward([0.5, 0.25, 0.9], [0.0; 3]);

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+import beetle_ik as bik
+
 from .. import arms, typed
 from ..attack import Attack, BrokenError, Case
 from .solving import refuse_only_locked
@@ -174,4 +176,112 @@ def check_limits(case: Case, q: np.ndarray, limits: dict[str, np.ndarray], dt: f
                 raise BrokenError(f"the {kind} is beyond its limit", excess)
 
 
-ATTACKS = [TrackerLives()]
+# Stops in a life among obstacles, then a target that stands still. The last obstacles have moved, or are given anew.
+STOPS = """
+home, stops = robot.fk(start), []
+for away, ticks, noise, rare, given in life:
+    target = home.copy()
+    target[:3, 3] += away
+    for k in range(ticks):
+        shaken = target.copy()
+        shaken[:3, 3] += noise * np.sin((2.0 + k) ** 2 * np.arange(1, 4))
+        tracker.step(None if k % rare else shaken)
+    if given is not None:
+        tracker.obstacles = given
+    said = tracker.stop()
+    stops.append((said, np.array([tracker.q] + [tracker.step(None).q for _ in range(round(said / dt) + 20)])))
+tracker.obstacles = scene
+for _ in range(round(4.0 / dt)):
+    tracker.step(target)
+held = [tracker.step(target) for _ in range(round(1.0 / dt))]
+"""
+AT_REST = 1e-9  # rad, m: a joint that moves less in a tick stands
+SLOW = 1e-3  # rad/s, m/s
+NEARER = 0.9  # of the error a second before: an arm that is on its way
+
+
+class StopsAmongObstacles(Attack):
+    name = "stops_among_obstacles"
+    promise = "Among obstacles a stop takes as long as it says, and an arm that cannot come nearer comes to rest"
+    page = "scenes"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Hard cases are round: configurations at limits and right angles, places, ties of limits; shapes come anew."""
+        tens = random.choice([1.0, 2.0, 5.0], 3) * 10.0 ** random.integers(0, 2, 3)
+        rates = tens * (0.5, 1.0, 10.0) if hard else np.array([1.5, 5.0, 50.0]) * random.uniform(0.5, 2.0, 3)
+
+        def place(extent: float) -> tuple[float, float, float]:
+            drawn = random.uniform(-extent, extent, 3)
+            return arms.triple(np.round(drawn, 1) if hard and random.random() < 0.6 else drawn)
+
+        def things() -> list[dict[str, Any]]:
+            sizes = (0.1, 0.2, 0.5) if hard else random.uniform(0.05, 0.3, 3)
+            velocities = [place(0.3) if random.random() < 0.4 else (0.0, 0.0, 0.0) for _ in range(4)]
+            return [
+                {"at": place(0.4), "size": arms.triple(random.permutation(sizes)), "velocity": velocity}
+                for velocity in velocities[: int(random.integers(5))]
+            ]
+
+        life = [
+            {
+                "away": place(0.3),
+                "ticks": int(random.integers(1, 60)),
+                "noise": float(random.choice([0.0, 0.0, 1e-5, 1e-3])),
+                "rare": int(random.choice([1, 1, 5])),
+                "given": things() if hard and random.random() < 0.4 else None,
+            }
+            for _ in range(int(random.integers(1, 6)))
+        ]
+        return {
+            "arm": str(random.choice(["panda", "iiwa14", "ur5e"])), "start": random.uniform(0.0, 1.0, 7).tolist(),
+            "round": hard, "rates": arms.triple(rates), "orders": int(random.integers(1, 4)), "scene": things(),
+            "life": life, "dt": float(random.choice([0.005, 0.01, 0.02])),
+            "margin": float(random.choice([0.0, 0.001, 0.01])),
+        }  # fmt: skip
+
+    def program(self, case: Case) -> str:
+        arm, dt = bik.Robot.named(case["arm"]), case["dt"]
+        lower, upper = np.maximum(arm.lower, -3.0), np.minimum(arm.upper, 3.0)
+        start = lower + (upper - lower) * np.array(case["start"])[: arm.dof]
+        if case["round"]:
+            start = np.clip(np.round(start / (np.pi / 4)) * (np.pi / 4), lower, upper)
+        home = arm.fk(start)[:3, 3]
+
+        def things(given: list[dict[str, Any]]) -> str:
+            shapes = []
+            for thing in given:
+                shape = f"bik.obstacles.Box({(home + thing['at']).tolist()}, {thing['size']})"
+                moves = f"bik.obstacles.Moving({shape}, velocity={thing['velocity']})"
+                shapes.append(moves if any(thing["velocity"]) else shape)
+            return f"[{', '.join(shapes)}]"
+
+        rates = zip(KINDS[: case["orders"]], case["rates"], strict=False)
+        events = (
+            f"({life['away']}, {life['ticks']}, {life['noise']}, {max(life['rare'], 1)}, "
+            f"{None if life['given'] is None else things(life['given'])})"
+            for life in case["life"]
+        )
+        return (
+            f"robot, dt = bik.Robot.named('{case['arm']}').with_capsules(radius=0.05), {dt}\n"
+            f"start = {start.tolist()}\nscene = {things(case['scene'])}\nlife = [{', '.join(events)}]\n"
+            f"limits = bik.Limits({', '.join(f'{kind}={rate}' for kind, rate in rates)})\n"
+            f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
+            f"tracker = bik.Tracker(robot, start, dt=dt, **given){STOPS}"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        for said, q in left["stops"]:
+            steps = np.abs(np.diff(q, axis=0)).max(axis=1)
+            moving = np.flatnonzero(steps > AT_REST)
+            if moving.size and moving[-1] > round(said / case["dt"]):
+                raise BrokenError("an arm is later at rest than its stop said", (said, case["dt"] * (moving[-1] + 1)))
+        held, moves = left["held"], any(any(thing["velocity"]) for thing in case["scene"])
+        fastest = max(np.abs(step.qd).max() for step in held[-10:])
+        errors = np.array([[step.position_error, step.rotation_error] for step in (held[0], held[-1])])
+        on_its_way = (errors[1] < NEARER * errors[0]).any()
+        if not (moves or on_its_way) and held[-1].status != bik.Status.IN_COLLISION and fastest > SLOW:
+            raise BrokenError("an arm moves whose target stands still", (fastest, held[-1].status.name))
+        return len(left["stops"])
+
+
+ATTACKS = [TrackerLives(), StopsAmongObstacles()]

@@ -128,6 +128,11 @@ impl Around {
         self.find_coming(rest);
     }
 
+    /// Whether something is nearer than the margin at the place of rest.
+    pub fn is_too_near(&self) -> bool {
+        self.near.rows().iter().any(|near| near.distance < self.space.margin())
+    }
+
     /// Finds what comes too near to an arm at `q`.
     fn find_coming(&mut self, q: &[f64]) {
         let (velocities, since) = (&self.obstacles.velocities[..], self.since);
@@ -248,13 +253,13 @@ impl Around {
 }
 
 /// How the place of rest follows the command x: r_j(x) = rest_j + slope_j x_j + offset_j, the secant over the box.
-struct Response {
-    slope: Point,
+pub(super) struct Response {
+    pub slope: Point,
     offset: Point,
 }
 
 impl Response {
-    fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
+    pub fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
         let at_once =
             Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
         let Some(limited) = wish.limited else { return at_once };

@@ -3,7 +3,7 @@
 use super::row_motion::{Beside, RowMotion, Towards};
 use super::wish::Wish;
 use crate::math::vector::dot;
-use crate::motion::JointState;
+use crate::motion::{Braking, JointState};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
@@ -11,7 +11,7 @@ use crate::obstacle::JointMotion;
 const SLOWER: f64 = 3.0;
 const MORE_TICKS: usize = 8;
 
-/// A step below this (rad, m) is rest: it ends within the next tick, whatever the limits.
+/// A step below this (rad, m) is rest if the next tick can end it.
 const REST: f64 = 1e-8;
 
 /// The configurations of a stop, tick by tick.
@@ -51,9 +51,9 @@ impl HeldStop {
         self.places.last()
     }
 
-    /// Ticks from the end of the command until the arm is at rest.
+    /// Ticks until the arm is at rest: from the end of the command, or from the last place that has been passed.
     pub fn ticks_to_stop(&self) -> f64 {
-        self.places.len().saturating_sub(2) as f64
+        self.places.len().saturating_sub(2 + self.passed) as f64
     }
 
     /// Finds the stop after `command`. Returns whether there is one that holds the pairs within all limits.
@@ -70,7 +70,7 @@ impl HeldStop {
         let mut q = Point::from_slice(command);
         let most = MORE_TICKS + (SLOWER * state.ticks_to_stop(limited.braking())) as usize;
         for tick in 1..=most {
-            if state.step.iter().all(|step| step.abs() < REST) {
+            if is_at_rest(&state, limited.braking()) {
                 return true;
             }
             let from = wish.time + tick as f64 * wish.dt;
@@ -93,6 +93,14 @@ impl HeldStop {
         }
         false
     }
+}
+
+/// Whether all joints hardly move, and can stand within the next tick.
+fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
+    let mut joints = state.step.iter().zip(&state.change).zip(braking);
+    joints.all(|((step, change), most)| {
+        step.abs() < REST && step.abs() <= most.acceleration && (step + change).abs() <= most.jerk
+    })
 }
 
 /// The next place of a stop: all joints slow down by the same share, by which the first of them may.

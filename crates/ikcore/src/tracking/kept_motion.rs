@@ -9,9 +9,10 @@
 
 use std::sync::Arc;
 
-use super::around_arm::{Around, ObstacleMotion};
+use super::around_arm::{Around, ObstacleMotion, Response};
 use super::held_stop::HeldStop;
-use super::row_motion::{Beside, RowMotion, Towards};
+use super::progress::{ArmProgress, Pace, is_nearer};
+use super::row_motion::{Beside, Resting, RowMotion, Towards};
 use super::stop_motion::StopMotion;
 use super::tick_aim::TickAim;
 use super::wish::Wish;
@@ -50,6 +51,7 @@ pub(super) struct KeptMotion {
     next_stop: HeldStop,
     /// Rows keep the last goal from its target.
     goal_is_held: bool,
+    progress: ArmProgress,
 }
 
 /// What became of a command.
@@ -74,6 +76,7 @@ impl KeptMotion {
             stop: HeldStop::default(),
             next_stop: HeldStop::default(),
             goal_is_held: false,
+            progress: ArmProgress::new(limits),
         })
     }
 
@@ -97,12 +100,13 @@ impl KeptMotion {
         obstacles: ObstacleMotion,
         limits: &Limits,
     ) -> Result<()> {
+        self.progress.note_replaced();
         match (space, &mut self.around) {
             (Some(space), Some(around)) => {
                 (around.space, around.obstacles, around.since) = (Arc::new(space), obstacles, 0.0);
             }
             (Some(space), none) => *none = Some(Around::new(space, obstacles, limits)?),
-            (None, around) => *around = None,
+            (None, around) => (*around, self.goal_is_held) = (None, false),
         }
         Ok(())
     }
@@ -110,12 +114,34 @@ impl KeptMotion {
     /// Forgets the stop, because the arm is not where it was.
     pub fn forget(&mut self) {
         self.stop.clear();
+        self.progress.restart();
+    }
+
+    /// Moves on by one tick, of `dt` (s), of the stop after the last command. Returns its next configuration if pairs are held;
+    /// otherwise each joint stops as fast as it may.
+    pub fn stop_on(&mut self, dt: f64) -> Option<Point> {
+        self.progress.restart();
+        if let Some(around) = &mut self.around {
+            around.since += dt;
+        }
+        let next = self.stop.next().cloned();
+        self.stop.pass();
+        next
+    }
+
+    /// Ticks until an arm that holds pairs is at rest if it stops now; `None` if it holds none.
+    pub fn ticks_to_stop(&self) -> Option<f64> {
+        self.stop.rest().map(|_| self.stop.ticks_to_stop())
     }
 
     /// Changes the command `q` that the rule has found to one that keeps the arm clear and pairs of tips held. Pairs that cannot be held
     /// are tasks like others, until they are where they are to be.
     pub fn keep(&mut self, wish: &Wish<'_>, q: &mut Point) -> Kept {
         let wanted = q.clone();
+        match (wish.error_after, wish.error()) {
+            (Some(after), Some(now)) => self.progress.begin_tick([after, now], wish.dt),
+            _ => self.progress.restart(),
+        }
         let pairs = wish.aim.as_ref().and_then(TickAim::tips).filter(|aims| aims.has_pairs());
         let by_obstacles = pairs.and_then(|aims| self.keep_held(wish, aims, q)).unwrap_or_else(|| {
             self.stop.clear();
@@ -124,6 +150,9 @@ impl KeptMotion {
         });
         if let Some(around) = &mut self.around {
             around.since += wish.dt;
+        }
+        if by_obstacles || self.goal_is_held {
+            self.progress.note_held();
         }
         Kept { changed: *q != wanted, by_obstacles }
     }
@@ -136,30 +165,32 @@ impl KeptMotion {
         let brake = braking(wish);
         let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
         let stop = StopMotion::new(wish.q, &brake, limited);
-        let rest: Point = (0..wish.q.len()).map(|j| stop.end(j)).collect();
+        let rest = stop.rest();
         let wanted = q.clone();
-        let mut may_stay = false;
-        if self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted) {
-            may_stay = wish.limited.is_none() && self.rows.are_kept_at(&brake) && self.rows.wanted.is_empty();
-            self.step_beside_rows(wish, q);
-        }
-        let certified = self.certifies(wish, q) || {
-            self.correct(wish, q);
-            self.certifies(wish, q)
-        };
+        let blocked = self.set_rows(wish, (&rest, stop.ticks_to_stop()), &wanted);
+        let pace = self.pace(&brake);
+        self.move_beside_rows(wish, (pace, blocked), [&rest, &brake], q);
+        let nearer_than = (pace != Pace::Free).then_some(&rest);
+        let allowed = pace != Pace::Rest
+            && (self.allows(wish, nearer_than, q) || {
+                self.correct(wish, q);
+                self.allows(wish, nearer_than, q)
+            });
         let best = q.clone();
-        let mut parts = PARTS.into_iter();
-        let certified = certified
+        let mut parts = PARTS.into_iter().filter(|_| pace != Pace::Rest);
+        let allowed = allowed
             || parts.any(|part| {
                 between(&brake, &best, part, q);
-                self.certifies(wish, q)
+                self.allows(wish, nearer_than, q)
             });
-        // Otherwise an arm that is held could swing along its self-motion for ever.
-        let stays = may_stay && gets_farther(wish, &brake, q) && self.certifies(wish, &brake);
-        if stays || !certified {
+        if !allowed {
             q.copy_from_slice(&brake);
         }
-        *q != wanted
+        if pace == Pace::Free {
+            return *q != wanted;
+        }
+        let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
+        blocked || !self.allows(wish, nearer_than, &wanted)
     }
 
     /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether what is around the arm made it
@@ -170,16 +201,18 @@ impl KeptMotion {
         let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
         let wanted = q.clone();
         let mut blocked = self.set_rows(wish, (&rest, self.stop.ticks_to_stop()), &wanted);
-        if blocked {
-            self.step_beside_rows(wish, q);
-        }
+        let pace = self.pace(&brake);
+        self.move_beside_rows(wish, (pace, blocked), [&rest, &brake], q);
         let best = q.clone();
-        for part in [1.0].into_iter().chain(PARTS) {
+        for part in [1.0].into_iter().chain(PARTS).filter(|_| pace != Pace::Rest) {
             between(&brake, &best, part, q);
             if !(self.rows.hold(&beside(wish, Towards::Start), q) && self.finds_stop(wish, q)) {
                 continue;
             }
             let (stop, dt) = (&self.next_stop, wish.dt);
+            if pace == Pace::Nearer && !stop.rest().is_some_and(|to| is_nearer(wish, &rest, to)) {
+                continue;
+            }
             let end = 1.0 + stop.ticks_to_stop();
             if self.around.as_mut().is_none_or(|around| around.certifies(stop, end, dt)) {
                 std::mem::swap(&mut self.stop, &mut self.next_stop);
@@ -195,6 +228,34 @@ impl KeptMotion {
         Some(blocked)
     }
 
+    /// How the arm moves, which brakes by the command `brake`. Where bodies are too near or it has to give way, it moves in any case.
+    fn pace(&mut self, brake: &[f64]) -> Pace {
+        if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
+            self.progress.restart();
+        }
+        self.progress.pace()
+    }
+
+    /// Moves the command `q` to one beside the rows: the nearest, or the one after which the arm rests nearest to the target. It would
+    /// rest at `rest` after the command `brake`.
+    fn move_beside_rows(
+        &mut self,
+        wish: &Wish<'_>,
+        (pace, blocked): (Pace, bool),
+        [rest, brake]: [&[f64]; 2],
+        q: &mut Point,
+    ) {
+        match pace {
+            Pace::Free if blocked => self.step_beside_rows(wish, q),
+            Pace::Free | Pace::Rest => {}
+            Pace::Nearer => {
+                let slope = Response::new(wish, rest).slope;
+                let resting = Resting { rest, slope: &slope, command: brake };
+                self.rows.write_resting(&beside(wish, Towards::Target), &resting, q);
+            }
+        }
+    }
+
     /// Finds the stop after the command `q`, beside no rows: these are for the command.
     fn finds_stop(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
         let Self { rows, next_stop, .. } = self;
@@ -204,18 +265,21 @@ impl KeptMotion {
         found
     }
 
-    /// Whether the command `q` and the stop after it are certainly clear.
-    fn certifies(&mut self, wish: &Wish<'_>, q: &[f64]) -> bool {
+    /// Whether the command `q` and the stop after it are certainly clear and, of an arm that has to come nearer than it would at
+    /// `rest`, whether it does.
+    fn allows(&mut self, wish: &Wish<'_>, rest: Option<&Point>, q: &[f64]) -> bool {
         let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
         let motion = StopMotion::new(wish.q, q, limited);
-        self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), wish.dt))
+        let comes_nearer = |rest: &Point| is_nearer(wish, rest, &motion.rest());
+        rest.is_none_or(comes_nearer)
+            && self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), wish.dt))
     }
 
     /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it.
     fn correct(&mut self, wish: &Wish<'_>, q: &mut Point) {
         let limited = wish.limited.map(|limited| (limited.braking(), limited.state()));
         let stop = StopMotion::new(wish.q, q, limited);
-        let rest: Point = (0..q.len()).map(|j| stop.end(j)).collect();
+        let rest = stop.rest();
         self.rows.rows.clear();
         if let Some(around) = &mut self.around {
             around.set_rows_after(wish, (&rest, stop.ticks_to_stop()), q, &mut self.rows.rows);
@@ -286,14 +350,6 @@ impl KeptMotion {
 fn beside<'a>(wish: &'a Wish<'a>, towards: Towards) -> Beside<'a> {
     let (lower, upper) = (wish.lower(), wish.upper());
     Beside { robot: wish.robot, aim: wish.aim.as_ref(), lower, upper, towards, holds_pairs: true }
-}
-
-/// Whether the command `q` leaves the task less done than `from` does.
-fn gets_farther(wish: &Wish<'_>, from: &[f64], q: &[f64]) -> bool {
-    wish.aim.as_ref().is_some_and(|aim| {
-        let [before, after] = [from, q].map(|q| aim.assess(wish.robot, q).score);
-        !after.solved && after.value > before.value
-    })
 }
 
 /// The command of the fastest stop.

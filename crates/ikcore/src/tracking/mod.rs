@@ -18,6 +18,7 @@
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | what is around an arm, as rows that its command is to keep |
 //! | `kept_motion`, `stop_motion`, `held_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `progress` | whether an arm that obstacles hold still comes nearer to its target |
 //! | `row_motion`, `wish`, `tick_aim` | steps beside rows, and what they are found from |
 //! | `tip_order`, `track_tips` | several tips: what is asked of them, and the call for their paths |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
@@ -37,6 +38,7 @@ mod late_sensor;
 mod limited_motion;
 mod model_free;
 mod plant;
+mod progress;
 mod record;
 mod repeated_targets;
 mod row_motion;

@@ -66,6 +66,14 @@ pub(super) struct Beside<'a> {
     pub holds_pairs: bool,
 }
 
+/// Where the arm rests after a `command`, and how far that place moves with the command, for each joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Resting<'a> {
+    pub rest: &'a [f64],
+    pub slope: &'a [f64],
+    pub command: &'a [f64],
+}
+
 impl RowMotion {
     /// With room for steps of `n` joints beside this many rows.
     pub fn with_room(n: usize, rows: usize) -> Self {
@@ -78,15 +86,27 @@ impl RowMotion {
         }
     }
 
-    /// Whether `q` keeps all inequalities.
-    pub fn are_kept_at(&self, q: &[f64]) -> bool {
-        self.rows.iter().all(|row| dot(&row.gradient, q) >= row.least)
+    /// Whether an arm at `q` is to move: bodies are to part, or it has to give way to what moves, whose rows are softer.
+    pub fn ask_to_move(&self, q: &[f64]) -> bool {
+        let gives_way = |row: &Row| row.softness > SOFTNESS && dot(&row.gradient, q) < row.least;
+        !self.wanted.is_empty() || self.rows.iter().any(gives_way)
     }
 
     /// Writes the point after the step from `start` into `out`.
     pub fn write(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
         self.linearize(step, start);
         self.write_linearized(step, start, out);
+    }
+
+    /// Writes the command after the step of the place of rest into `out`.
+    pub fn write_resting(&mut self, step: &Beside<'_>, resting: &Resting<'_>, out: &mut [f64]) {
+        self.linearize(step, resting.rest);
+        for block in self.linearization.blocks_mut() {
+            for (column, slope) in block.columns.iter_mut().zip(resting.slope) {
+                column.iter_mut().for_each(|entry| *entry *= slope);
+            }
+        }
+        self.write_linearized(step, resting.command, out);
     }
 
     /// Writes the point after the step from `start`, where the linearization is, into `out`.

@@ -325,7 +325,7 @@ impl Session {
         } else {
             self.run_rule(sampled_ago, monitor)
         };
-        let held = !found.interrupted && self.keep(&mut found);
+        let held = !found.interrupted && !self.stopping && self.keep(&mut found);
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
@@ -410,11 +410,13 @@ impl Session {
         self.running.advance(&self.q, tick)
     }
 
-    /// Moves by one tick of the fastest stop.
-    fn brake(&self) -> TickResult {
+    /// Moves by one tick of the stop that was certified with the last command.
+    fn brake(&mut self) -> TickResult {
         let mut found = TickResult::at(&self.q);
-        if let Some(limited) = &self.limited {
-            found.q = limited.stopping(&self.q);
+        let held = self.kept.as_mut().filter(|_| self.stopping).and_then(|kept| kept.stop_on(self.dt));
+        let fastest = || self.limited.as_ref().map(|limited| limited.stopping(&self.q));
+        if let Some(next) = held.or_else(fastest) {
+            found.q = next;
         }
         self.tick_box.bounds.clip(&mut found.q);
         self.assess(&mut found);
@@ -436,10 +438,15 @@ impl Session {
             _ if !self.is_clear(&found.q) => Status::InCollision,
             _ if solved && self.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
-            _ if held || self.kept.as_ref().is_some_and(|kept| kept.goal_is_held()) => Status::HeldByObstacle,
+            _ if held || self.goal_is_held() => Status::HeldByObstacle,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         }
+    }
+
+    /// Whether obstacles keep the goal of an arm that does not stop from its target.
+    fn goal_is_held(&self) -> bool {
+        !self.stopping && self.kept.as_ref().is_some_and(|kept| kept.goal_is_held())
     }
 
     /// Changes what the rule has `found` to a command that keeps the arm clear and pairs of tips held. Returns whether it had to, because
@@ -454,6 +461,7 @@ impl Session {
             limit_at: self.limit_at,
             limited: self.limited.as_ref(),
             aim: aim(&self.targets, self.tips.as_deref(), &self.criterion),
+            error_after: self.last_value.filter(|value| value.is_finite()).map(f64::sqrt),
             time: self.ticks as f64 * self.dt,
             dt: self.dt,
         };
@@ -520,11 +528,14 @@ impl Session {
         self.targets.accept();
     }
 
-    /// Brakes as fast as the limits allow, from the next tick on until a target arrives. Returns how long the stop takes
-    /// (s): 0 for an arm that may stop at once.
+    /// Stops as fast as the limits allow, from the next tick on until a target arrives; pairs of tips that are held stay held. Nothing
+    /// else is wished: the arm does not give way to what comes near, and stands afterwards. Returns how long the stop takes (s): 0 for
+    /// an arm that may stop at once.
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
-        self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop)
+        let held = self.kept.as_ref().and_then(|kept| kept.ticks_to_stop());
+        let fastest = || self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
+        held.map_or_else(fastest, |ticks| self.dt * ticks)
     }
 
     /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts

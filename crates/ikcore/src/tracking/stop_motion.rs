@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
 use crate::motion::{Braking, JointState, StopCurve};
+use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
 /// An interval this short (ticks) is not halved again.
@@ -44,6 +45,11 @@ impl<'a> StopMotion<'a> {
     /// When it ends (ticks).
     pub fn end_tick(&self) -> f64 {
         1.0 + self.ticks
+    }
+
+    /// Where the arm comes to rest.
+    pub fn rest(&self) -> Point {
+        (0..self.command.len()).map(|j| self.end(j)).collect()
     }
 
     /// Where joint `j` comes to rest.

@@ -17,12 +17,19 @@ pub(super) struct Wish<'a> {
     pub limited: Option<&'a LimitedMotion>,
     /// None before the first target.
     pub aim: Option<TickAim<'a>>,
+    /// Root of the squared error at `q` to the target of the last tick; None before the first.
+    pub error_after: Option<f64>,
     /// Start of the tick, and its length (s).
     pub time: f64,
     pub dt: f64,
 }
 
 impl Wish<'_> {
+    /// Root of the squared error at `q`; None before the first target.
+    pub fn error(&self) -> Option<f64> {
+        self.aim.as_ref().map(|aim| aim.assess(self.robot, self.q).score.value.sqrt())
+    }
+
     /// The lower ends of the box.
     pub fn lower(&self) -> &[f64] {
         self.tick_box.bounds.lower()

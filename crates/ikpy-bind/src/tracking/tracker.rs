@@ -177,10 +177,12 @@ impl PyTracker {
         Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
     }
 
-    /// Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
+    /// Stops as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives. Pairs of tips that
+    /// are held stay held. The stop is the one that was certified with the last command; the arm does not give way to what moves, and
+    /// stands afterwards.
     ///
     /// Returns:
-    ///     How long the stop takes (s); 0 without acceleration and jerk limits.
+    ///     How long the stop takes (s), to within a tick; 0 without acceleration and jerk limits.
     fn stop(&self) -> f64 {
         self.session().stop()
     }

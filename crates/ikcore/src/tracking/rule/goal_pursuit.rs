@@ -6,6 +6,7 @@
 //! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
 
 use super::tick::{Tick, TickResult};
+use crate::math::vector::distance;
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
@@ -21,6 +22,12 @@ const SHORT: f64 = 1e-5;
 
 /// Evaluations of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
 const MOST_EVALUATIONS: usize = 60;
+
+/// A motion of the goal that lowers the squared error by less than this fraction is none towards the target.
+const NO_GAIN: f64 = 1e-3;
+
+/// A descent that lowers the error by less than this for each unit of its way (m/rad) goes along a flat valley, which need not end.
+const FLAT: f64 = 1e-5;
 
 /// So many samples after obstacles changed one, the goal begins anew: what it remembers are motions along obstacles, not noise.
 const RELEASED: usize = 5;
@@ -166,7 +173,26 @@ impl GoalPursuit {
             }
         }
         self.sample = begin;
+        self.begin_at_rest((time, lowest), positions, found, tick);
         self.descend(positions, found, tick);
+    }
+
+    /// Moves `sample` to where the goal was, unless its motion has lowered the error below `lowest`: out of reach, the goal would go on
+    /// along the self-motion for ever.
+    fn begin_at_rest(
+        &mut self,
+        (time, lowest): (f64, f64),
+        positions: &Bounds,
+        found: &mut TickResult,
+        tick: &Tick<'_>,
+    ) {
+        let Some(goal) = &self.goal else { return };
+        let moved = self.sample.clone();
+        goal.expected(time - goal.remembered(), &mut self.sample);
+        positions.clip(&mut self.sample);
+        if self.linearize(found, tick) > lowest * (1.0 + NO_GAIN) {
+            self.sample = moved;
+        }
     }
 
     /// Residual and Jacobian at `sample`; returns the squared error.
@@ -202,6 +228,11 @@ impl GoalPursuit {
         run(&LevenbergMarquardt::default(), &mut evaluator, &self.sample);
         found.evaluations += evaluator.evaluations();
         found.iterations += evaluator.iterations();
-        self.sample.copy_from_slice(&evaluator.best().x);
+        let end = Point::from_slice(&evaluator.best().x);
+        drop(evaluator);
+        let [before, after] = [&self.sample, &end].map(|q| problem.assess(q).score);
+        if after.solved || before.value.sqrt() - after.value.sqrt() > FLAT * distance(&self.sample, &end) {
+            self.sample = end;
+        }
     }
 }
