@@ -27,6 +27,7 @@ CASES = {
     "self_motions": 3,
     "paths_followed": 3,
     "plants": 5,
+    "stops_among_obstacles": 4,
     "complete_sets": 6,
     "arguments": 12,
 }
