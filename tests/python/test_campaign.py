@@ -28,6 +28,7 @@ CASES = {
     "paths_followed": 3,
     "looser_paths": 2,
     "plants": 5,
+    "stops_among_obstacles": 4,
     "complete_sets": 6,
     "arguments": 12,
 }
