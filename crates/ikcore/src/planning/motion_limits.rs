@@ -156,6 +156,8 @@ impl MotionLimits {
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let [velocity, acceleration, jerk] =
             [trajectory.max_velocity(), trajectory.max_acceleration(), trajectory.max_jerk()];
+        // Of the times of the trajectory: a velocity may be off by what an acceleration changes meanwhile, and so on.
+        let resolution = 4.0 * f64::EPSILON * trajectory.duration();
         let mut found = vec![];
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
             let units = if self.joints[j].1.turns() {
@@ -177,7 +179,13 @@ impl MotionLimits {
                 ("jerk", jerk[j], self.jerk[j], jerk[j] - self.jerk[j], units[3]),
             ];
             for (quantity, value, bound, excess, unit) in checks {
-                if excess > ROUNDING * bound.abs().max(1.0) {
+                let changes = match quantity {
+                    "velocity" => self.acceleration[j],
+                    "acceleration" => self.jerk[j],
+                    _ => 0.0,
+                };
+                let unresolved = if changes.is_finite() { resolution * changes } else { 0.0 };
+                if excess > ROUNDING * bound.abs().max(1.0) + unresolved {
                     let what = format!("{quantity} of joint '{}'", self.joint_name(j));
                     found.push(Violation { what, value, bound, unit: unit.into() });
                 }

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::trajectory::Trajectory;
 
 /// Below this fraction of the duration, the rounding of times may make a segment exceed its limits.
-const SHORT: f64 = 1e-8;
+const SHORT: f64 = 1e-6;
 
 /// Relative excess of a limit that rounding may leave.
 const EXCESS: f64 = 1e-9;
