@@ -10,12 +10,30 @@
 use nalgebra::Vector3;
 
 use super::bounding_tree::Aabb;
-use super::mesh::Mesh;
 use super::mesh_pieces::{MeshPiece, MeshPieces, NO_PIECE};
 use super::segment_lanes::{TriangleLanes, to_triangle};
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
+
+/// Triangles that can be asked for winding numbers, and for those near a place.
+pub(super) trait TriangleSurface {
+    fn vertices(&self) -> &[[f64; 3]];
+
+    fn faces(&self) -> &[[u32; 3]];
+
+    /// The corners of a triangle.
+    fn triangle(&self, face: usize) -> [Vector3<f64>; 3];
+
+    /// The box around all.
+    fn bounds(&self) -> &Aabb;
+
+    /// How often the triangles enclose `point`, if `count` says how often each counts.
+    fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32;
+
+    /// Visits the triangles within `reach` (m) of a segment, and some others; `visit` returns the new reach.
+    fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64);
+}
 
 /// What a mesh encloses.
 #[derive(Debug, Clone)]
@@ -44,7 +62,7 @@ impl Enclosure {
     pub const NOTHING: Self = Self { turns: vec![], certain: false };
 
     /// What `mesh` encloses.
-    pub fn of(mesh: &Mesh) -> Self {
+    pub fn of(mesh: &impl TriangleSurface) -> Self {
         let MeshPieces { pieces, mut turns, of } = MeshPieces::of(mesh.vertices(), mesh.faces());
         let mut certain = !pieces.is_empty() && pieces.iter().all(|piece| piece.closed);
         // The orientation in which each piece was given: +1 is outward.
@@ -70,7 +88,7 @@ impl Enclosure {
 }
 
 /// The volume that a piece encloses (m^3); negative if its triangles are turned inward.
-fn signed_volume(mesh: &Mesh, piece: &MeshPiece, turns: &[i8]) -> f64 {
+fn signed_volume(mesh: &impl TriangleSurface, piece: &MeshPiece, turns: &[i8]) -> f64 {
     let [origin, ..] = mesh.triangle(piece.faces[0] as usize);
     let cone = |face: &u32| {
         let [a, b, c] = mesh.triangle(*face as usize).map(|corner| corner - origin);
@@ -81,7 +99,12 @@ fn signed_volume(mesh: &Mesh, piece: &MeshPiece, turns: &[i8]) -> f64 {
 
 /// Whether the winding numbers of a piece on both sides of some of its triangles are those of a body turned outward; `own` is what each
 /// triangle of it counts.
-fn encloses_for_certain(mesh: &Mesh, piece: &MeshPiece, own: impl Fn(usize) -> i32, sampled: usize) -> bool {
+fn encloses_for_certain(
+    mesh: &impl TriangleSurface,
+    piece: &MeshPiece,
+    own: impl Fn(usize) -> i32,
+    sampled: usize,
+) -> bool {
     let sides = |face: u32| {
         let samples = SAMPLES.iter().filter_map(move |shares| both_sides(mesh, face, shares));
         samples.map(|points| points.map(|point| mesh.winding_number(&point, &own)))
@@ -92,7 +115,7 @@ fn encloses_for_certain(mesh: &Mesh, piece: &MeshPiece, own: impl Fn(usize) -> i
 }
 
 /// Points on both sides of a triangle near the one with these barycentric coordinates; `None` if it has no area.
-fn both_sides(mesh: &Mesh, face: u32, shares: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
+fn both_sides(mesh: &impl TriangleSurface, face: u32, shares: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
     let [a, b, c] = mesh.triangle(face as usize);
     let at = shares[0] * a + shares[1] * b + shares[2] * c;
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
@@ -106,7 +129,12 @@ fn both_sides(mesh: &Mesh, face: u32, shares: &[f64; 3]) -> Option<[Vector3<f64>
 }
 
 /// The pieces that are walls of cavities; `of` is the number of the piece of each triangle, `given` the orientation of each piece, or 0.
-fn cavities(mesh: &Mesh, (pieces, of): (&[MeshPiece], &[usize]), given: &[i32], turns: &[i8]) -> Vec<usize> {
+fn cavities(
+    mesh: &impl TriangleSurface,
+    (pieces, of): (&[MeshPiece], &[usize]),
+    given: &[i32],
+    turns: &[i8],
+) -> Vec<usize> {
     let closed = |sign: i32| (0..pieces.len()).any(|i| pieces[i].closed && given[i] == sign);
     if !(closed(1) && closed(-1)) {
         return vec![];
@@ -129,7 +157,7 @@ fn cavities(mesh: &Mesh, (pieces, of): (&[MeshPiece], &[usize]), given: &[i32], 
 }
 
 /// Whether a triangle touches one of another piece; `of` is the number of the piece of each.
-fn touches_others(mesh: &Mesh, of: &[usize], face: u32) -> bool {
+fn touches_others(mesh: &impl TriangleSurface, of: &[usize], face: u32) -> bool {
     let own = mesh.triangle(face as usize);
     let Aabb { lower, upper } = mesh.bounds();
     let near = COINCIDENT * (upper - lower).amax();
@@ -160,6 +188,7 @@ fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64)
 mod tests {
     use super::super::checked_shape::Shape;
     use super::super::geometry::Geometry;
+    use super::super::mesh::Mesh;
     use super::*;
     use crate::rng::{self, LazyRng};
 

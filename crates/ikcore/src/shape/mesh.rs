@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
-use super::enclosure::Enclosure;
+use super::enclosure::{Enclosure, TriangleSurface};
 use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
@@ -114,11 +114,6 @@ impl Mesh {
         self.enclosure.turns.iter().enumerate().map(cone).sum()
     }
 
-    /// The box around it.
-    pub(super) fn bounds(&self) -> &Aabb {
-        self.tree.bounds()
-    }
-
     /// The corners of face `i`.
     pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
         self.faces[i].map(|corner| self.vertices[corner as usize].into())
@@ -128,22 +123,6 @@ impl Mesh {
     pub(super) fn encloses(&self, point: &Vector3<f64>) -> bool {
         let Enclosure { turns, .. } = &self.enclosure;
         !turns.is_empty() && self.winding_number(point, |face| turns[face].into()) != 0
-    }
-
-    /// How often the mesh encloses `point`, if `count` says how often each triangle counts.
-    pub(super) fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32 {
-        let bounds = self.tree.bounds();
-        if !(0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k])) {
-            return 0;
-        }
-        let mut turns = 0;
-        self.tree.along_x(point, |leaf| {
-            let faces = self.leaves[leaf].faces;
-            for face in faces.into_iter().filter(|face| *face != NONE) {
-                turns += count(face as usize) * winding(point, &self.triangle(face as usize));
-            }
-        });
-        turns
     }
 
     /// The nearest point of the surface within the square root of `bound`.
@@ -205,6 +184,43 @@ impl Mesh {
         }
         let distance = wedges.iter().fold(seen.distance, |lowest, wedge| lowest.min(wedge.bound));
         SegmentDistance { distance, ..seen }
+    }
+}
+
+impl TriangleSurface for Mesh {
+    fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    fn triangle(&self, face: usize) -> [Vector3<f64>; 3] {
+        self.triangle(face)
+    }
+
+    fn bounds(&self) -> &Aabb {
+        self.tree.bounds()
+    }
+
+    fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
+        self.each_near(segment, reach, visit);
+    }
+
+    fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32 {
+        let bounds = self.tree.bounds();
+        if !(0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k])) {
+            return 0;
+        }
+        let mut turns = 0;
+        self.tree.along_x(point, |leaf| {
+            let faces = self.leaves[leaf].faces;
+            for face in faces.into_iter().filter(|face| *face != NONE) {
+                turns += count(face as usize) * winding(point, &self.triangle(face as usize));
+            }
+        });
+        turns
     }
 }
 
