@@ -335,15 +335,15 @@ proptest! {
         prop_assert!((one - next).abs() <= 1e-6 * one + 1e-5 * (velocity / jerk).sqrt(), "{one} and {next}");
     }
 
-    /// From any state, inside the limits or not, a joint gets to any rest within its jerk limit, and its end is exact.
+    /// From any state, inside the limits or not, unless the way back inside takes centuries, a joint gets to any rest within its jerk limit, and its end is exact.
     #[test]
     fn every_start_has_a_motion(
         (limits, parts, beyond, d) in (round_limits(), [part(), part()], [round(), round()], round())
     ) {
         let [velocity, acceleration, jerk] = limits;
         let (v0, a0) = (of(velocity * beyond[0], parts[0]), of(acceleration * beyond[1], parts[1]));
-        // The way back inside takes days, not centuries.
-        prop_assume!(v0.abs() + 0.5 * a0 * a0 / jerk <= 100.0 * velocity);
+        let a0 = a0.clamp(-(100.0 * velocity * jerk).sqrt(), (100.0 * velocity * jerk).sqrt());
+        let v0 = v0.clamp(-50.0 * velocity, 50.0 * velocity);
         let from = state([&[0.0], &[v0], &[a0]]);
         let motion = state_to_state(&from, &rest(&[d]), &up_to_jerk([&[velocity], &[acceleration], &[jerk]])).unwrap();
         prop_assert!(motion.max_jerk()[0] <= jerk * (1.0 + 1e-9));

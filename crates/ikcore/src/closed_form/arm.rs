@@ -119,6 +119,15 @@ impl ClosedFormArm {
         !general
     }
 
+    /// Whether it can prove that a pose has no other solutions.
+    pub fn proves(&self) -> bool {
+        match &self.method {
+            Method::Planar(_) | Method::Scara(_) | Method::Seven(_) => true,
+            Method::Five(method) => method.structure().proves(),
+            Method::Six(method) => method.structure().proves(),
+        }
+    }
+
     /// Whether an arm has more joints than a pose needs.
     pub fn is_redundant(&self) -> bool {
         matches!(self.method, Method::Seven(_))
@@ -130,12 +139,7 @@ impl ClosedFormArm {
             Method::Planar(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Scara(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Five(method) => ArmBranches::of(&method.solve(target), &self.drives),
-            Method::Six(method) => {
-                let mut branches = ArmBranches::of(&method.solve(target), &self.drives);
-                // Only zeros of a polynomial near the real axis would tell.
-                branches.nearly |= method.structure() == Structure::General;
-                branches
-            }
+            Method::Six(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Seven(_) => return None,
         })
     }

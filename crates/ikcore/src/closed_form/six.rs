@@ -40,6 +40,11 @@ pub enum Structure {
 }
 
 impl Structure {
+    /// Whether its method proves that a pose has no other solutions: where zeros of a polynomial are counted, rounding may hide some.
+    pub fn proves(self) -> bool {
+        matches!(self, Self::ThreeMeet { nearly: false, .. } | Self::ThreeParallel { nearly: false, .. })
+    }
+
     /// Whether it holds only nearly: its method gives starts.
     pub fn is_nearly(self) -> bool {
         matches!(self, Self::ThreeMeet { nearly: true, .. } | Self::ThreeParallel { nearly: true, .. })
@@ -74,8 +79,6 @@ pub struct ClosedForm {
     verifier: Verifier<6>,
     back: Frame,
     size: f64,
-    /// Whether it is to tell that nothing is missing, and not only to yield what it finds.
-    proves: bool,
     /// The general method beside one that holds only nearly: beside folds of the elbow, that one loses solutions.
     further: Option<Box<[General; 2]>>,
 }
@@ -98,7 +101,7 @@ enum Method {
 impl ClosedForm {
     /// Decides the method from the numbers of the chain.
     pub fn new(chain: &AxisChain<6>) -> Self {
-        let mut form = Self { proves: true, ..Self::structured(chain) };
+        let mut form = Self::structured(chain);
         if form.structure.is_nearly() && chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns) {
             let ways = general_ways(&chain.joints, form.size);
             form.further = Some(form.ordered(ways));
@@ -113,7 +116,7 @@ impl ClosedForm {
         let worth_polishing = if structure.is_nearly() { 30.0 * NEARLY * size.max(1.0) } else { 1e-3 };
         let verifier = Verifier::new(chain, worth_polishing);
         let back = chain.tip.inverse();
-        let mut form = Self { chain: *chain, structure, method, verifier, back, size, proves: false, further: None };
+        let mut form = Self { chain: *chain, structure, method, verifier, back, size, further: None };
         if !matches!(structure, Structure::General | Structure::Unsolved) && !form.finds_samples() {
             // Axes that coincide, say, defeat the method of a structure: it is checked before it is trusted.
             let turning = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
@@ -216,23 +219,18 @@ impl ClosedForm {
         !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
     }
 
-    /// Both ways where nothing may be missing: what one finds and counts, the other must too. No more branches than zeros: as many of
-    /// both leave none to be found.
+    /// One way, and the other too where the first may miss something: where zeros nearly coincide, their count is no proof either.
     fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
-        let (mut is_firm, mut is_found) = (self.proves, false);
         for way in ways {
             let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
-            is_firm &= account.firm && found.len() >= account.zeros;
-            is_found |= account.sound && found.len() >= account.zeros;
-            if is_found && !is_firm {
-                break;
+            // No more branches than zeros: as many of both leave none to be found.
+            let is_all = account.sound && found.len() >= account.zeros;
+            found.doubt = if is_all { Doubt::Beside } else { Doubt::Open };
+            if is_all {
+                return found;
             }
         }
-        // Zeros that nearly coincide, and their branches, are as good as double.
-        found.doubt = if is_firm { Doubt::Beside } else { Doubt::Open };
-        if !is_found {
-            self.search_further(ways, goal, target, &mut found);
-        }
+        self.search_further(ways, goal, target, &mut found);
         found
     }
 

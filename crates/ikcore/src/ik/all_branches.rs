@@ -30,6 +30,9 @@ const LEAST_TOLERANCE: f64 = 1e-9;
 /// Tolerances by which a pose changes per rad or m, below which a direction is as good as free.
 const ALMOST_FREE: f64 = 1.0;
 
+/// The same, above which one branch is far from others.
+const FAR_FROM_FREE: f64 = 1e3;
+
 /// A branch that no change of its pose by so many tolerances brings inside the limits is outside them.
 const FIRMLY_OUTSIDE: f64 = 10.0;
 
@@ -182,9 +185,10 @@ impl Taker<'_, '_, '_> {
         if self.found.solutions.is_empty() && self.nearly {
             self.take_beside();
         }
-        if !self.found.complete && !self.found.singular {
+        if branches.doubt == Doubt::Open && !self.found.singular {
             self.take_scattered();
         }
+        self.found.complete &= self.attempt.context.robot().proves_branches();
         Some(branches.len())
     }
 
@@ -220,6 +224,7 @@ impl Taker<'_, '_, '_> {
             self.found.solutions.push(near, TipError { position, rotation });
         } else {
             // The tolerances asked for may be tighter than rounding allows the closed form.
+            self.found.complete = false;
             self.take_beyond(near);
         }
         outside
@@ -237,7 +242,9 @@ impl Taker<'_, '_, '_> {
             self.found.singular = true;
             self.found.complete = false;
         }
-        if outside > AT_LIMIT && (outside < NEAR_LIMIT || outside * weak.change < FIRMLY_OUTSIDE) {
+        if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
+            // Where the arm is far from singular, a descent decides.
+            self.found.complete &= weak.change > FAR_FROM_FREE;
             let along = self.least_outside_along(q, &weak.direction);
             self.take_beyond(&along);
         }
@@ -302,7 +309,6 @@ impl Taker<'_, '_, '_> {
     /// Takes the solution that a descent from `q` finds.
     #[cold]
     fn take_beyond(&mut self, q: &[f64]) {
-        self.found.complete = false;
         let mut near = Point::from_slice(q);
         self.turns.bring_near(&mut near);
         let bounds = self.attempt.context.bounds();

@@ -261,6 +261,11 @@ impl Robot {
         self.closed_form_or_reason().as_ref().ok()?.solve(&self.at_flange(pose))
     }
 
+    /// Whether the closed form can prove that a pose has no other solutions.
+    pub(crate) fn proves_branches(&self) -> bool {
+        self.closed_form_or_reason().as_ref().is_ok_and(ClosedFormArm::proves)
+    }
+
     /// The same unless forward kinematics says otherwise, at less cost where that is possible; none without a closed form and for
     /// redundant arms.
     #[inline]

@@ -33,8 +33,6 @@ const DEGREE: usize = 8;
 const SAMPLES: usize = 20;
 /// Largest noise, relative to the size of the polynomial, with which zeros are proven.
 const NOISE: f64 = 1e-6;
-/// Multiple of the rounding with which zeros are counted again.
-const COARSER: f64 = 100.0;
 /// Bound on the determinant's rounding, as a multiple of the coefficient beyond its degree.
 const SAFETY: f64 = 30.0;
 
@@ -70,8 +68,6 @@ pub struct Account {
     pub zeros: usize,
     /// The zeros settled, and the determinant had the degree it should.
     pub sound: bool,
-    /// So do zeros counted with much larger rounding.
-    pub firm: bool,
     /// Zeros that two branches share.
     pub shared: usize,
 }
@@ -175,11 +171,8 @@ impl General {
                 found(self.others(&goal, &elimination, &constant, [*q3, *q4, *q5]));
             }
         }
-        // What rounding can merge or hide, much larger rounding does too: the count must not depend on it.
-        let coarse = polynomial.zeros_by_samples::<{ 2 * DEGREE }>(COARSER * noise, &mut value);
         let sound = zeros.settled && noise <= NOISE * polynomial.size();
-        let firm = sound && coarse.settled && coarse.possible == zeros.possible;
-        Account { zeros: zeros.possible, sound, firm, shared }
+        Account { zeros: zeros.possible, sound, shared }
     }
 
     /// The displacement seen from the centre, in units of the arm's size.
