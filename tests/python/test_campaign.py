@@ -75,6 +75,10 @@ SPOILED = {
         "solution = Changed(solution, q=solution.q + 1e-4)",
         "position_error is not the error",
     ),
+    "round_poses": (
+        "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
+        "a pose that the arm has is called out of reach",
+    ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
         "q is not finite",

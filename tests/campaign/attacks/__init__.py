@@ -10,6 +10,7 @@ from . import (
     kinematics,
     motion,
     readers,
+    round_poses,
     searching,
     several,
     solving,
@@ -18,7 +19,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, searching, several, tracking, motion, clearance, readers, xacro_files, calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, motion, clearance, readers, xacro_files),
+    *(calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
