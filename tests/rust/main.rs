@@ -44,6 +44,7 @@ mod region;
 mod resolved_rate;
 mod retime;
 mod robots;
+mod round_poses;
 mod seed_index;
 mod state_to_state;
 mod tasks;

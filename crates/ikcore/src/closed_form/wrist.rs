@@ -15,7 +15,7 @@ use crate::math::arithmetic::Baseline;
 pub const ALIGNED: f64 = 1e-10;
 
 /// Below this sine (rad) a pose within the tolerances of a caller has a family of solutions, of which rounding finds any member.
-pub const NEARLY_ALIGNED: f64 = 1e-7;
+pub const NEARLY_ALIGNED: f64 = 1e-5;
 
 /// The middle joint of a wrist: angles q with outer' rot(axis, q) inner = outer' goal.
 #[derive(Debug, Clone, Copy)]

@@ -244,7 +244,10 @@ impl Taker<'_, '_, '_> {
         }
         if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
             // Where the arm is far from singular, a descent decides.
-            self.found.complete &= weak.change > FAR_FROM_FREE;
+            if weak.change > FAR_FROM_FREE {
+                return self.take_beyond(q);
+            }
+            self.found.complete = false;
             let along = self.least_outside_along(q, &weak.direction);
             self.take_beyond(&along);
         }
