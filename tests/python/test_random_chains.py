@@ -13,12 +13,15 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benches"))
 
 from random_chains import KINDS, Count, judge, tried
 
+STRUCTURED = ("spherical wrist", "three parallel")
+
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_arms_miss_nothing_where_complete_is_said(kind: str) -> None:
     count = tried(kind, arms=2, poses=4, descents=30, seed=3)
     assert (count.wrong, count.missing_though_complete) == (0, 0)
-    assert count.complete >= 4
+    # Elsewhere zeros of a polynomial are counted, which is no proof.
+    assert count.complete >= 4 if kind in STRUCTURED else count.complete == 0
     assert count.found_again > 0
 
 

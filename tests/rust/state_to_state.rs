@@ -277,7 +277,11 @@ proptest! {
         let from = ArmState { q: column(|j| j.1[0]), qd: column(|j| j.1[1]), qdd: column(|j| j.1[2]) };
         let to = ArmState { q: column(|j| j.2[0]), qd: column(|j| j.2[1]), qdd: column(|j| j.2[2]) };
         prop_assume!(from.qd != to.qd || from.qdd != to.qdd || largest_difference(&from, &to) > 1e-15);
-        let motion = state_to_state(&from, &to, &up_to_jerk([&rates[0], &rates[1], &rates[2]])).unwrap();
+        let motion = match state_to_state(&from, &to, &up_to_jerk([&rates[0], &rates[1], &rates[2]])) {
+            // Limits so unlike each other make motions of weeks with phases of microseconds: named, not computed.
+            Err(error) if error.to_string().contains("do not resolve its shortest phases") => return Ok(()),
+            motion => motion.unwrap(),
+        };
         let duration = motion.duration();
         for (order, found) in [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()].iter().enumerate() {
             for (j, found) in found.iter().enumerate() {
