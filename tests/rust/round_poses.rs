@@ -109,7 +109,7 @@ fn nearly_structured_arms_claim_nothing_of_their_own_poses() {
         let five =
             arm("five", [[0.033, h, 0.147], [0.155, off, 0.0], [0.135, 0.0, 0.0], [0.0, h, 0.0], [0.0, 0.0, 0.2175]]);
         for full in [skew, five, calibrated_ur10(off)] {
-            let robot = full.with_limits(|_, joint| (joint.lower, joint.upper) = (-6.28, 6.28)).unwrap();
+            let robot = full.with_limits(|_, joint| (joint.lower, joint.upper) = (-WIDEST, WIDEST)).unwrap();
             for _ in 0..60 {
                 let mut q = round_configuration(&robot, &mut rng);
                 q[4] = if chance(&mut rng, 0.5) { rng.uniform_in(-0.02, 0.02) } else { q[4] };
