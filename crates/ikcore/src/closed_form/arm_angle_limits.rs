@@ -59,7 +59,8 @@ impl ArmAngle {
         of_elbow: &AngleRange,
     ) -> Decisive {
         let (mut at_limits, mut aligned) = (Values::new(), Values::new());
-        let mut is_sure = pose.doubt != Doubt::Open;
+        // Beside a stretched elbow its two values, and with them all others, are not known well.
+        let mut is_sure = pose.doubt == Doubt::None;
         for ElbowTurn { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
             let shoulder = |arm_angle: Angle, v: &Vector| {
                 let line = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
