@@ -20,7 +20,8 @@ use crate::task::Target;
 ///
 /// A pose of an arm with a closed form ([`Robot::closed_form`]) is solved by it, unless a solver is named or the task has weights or a
 /// region: the branch nearest to the start is returned or, without a start, the most central one inside the limits. A redundant arm
-/// descends from a given start first. A pose that has no solution is proven to be out of reach. Everything else is searched for.
+/// descends from a given start first. A pose is called out of reach only where the closed form leaves no doubt of it. Everything else is
+/// searched for.
 ///
 /// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
