@@ -13,7 +13,7 @@ use crate::closed_form::structure::Pair;
 
 /// Common normal of two axes times the sine of their angle, as a multiple of its rounding, below which they nearly meet or are nearly
 /// parallel.
-const NEARLY_JOINED: f64 = 1e8;
+pub const NEARLY_JOINED: f64 = 1e8;
 
 /// Angles of three joints.
 pub type Three = [Angle; 3];

@@ -10,6 +10,7 @@ use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::four_angles::{self, FourAngles};
 use crate::closed_form::orbit::{Orbit, about_z, seen};
+use crate::closed_form::position::NEARLY_JOINED;
 use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{
     CLAMP, Linear, NEARLY_DOUBLE, angle_to_plane, line_on_circle, two_linear_equations,
@@ -178,6 +179,10 @@ impl ThreeParallel {
         r1[0] -= of_n[0];
         r2[0] -= offset + of_lever[0];
         let m = [[of_n[1], of_n[2]], [of_lever[1], of_lever[2]]];
+        // Axes that nearly meet, or are nearly parallel, leave rounding much room.
+        if (m[0][0] * m[1][1] - m[0][1] * m[1][0]).abs() <= NEARLY_JOINED * self.floor {
+            found.doubt = Doubt::Open;
+        }
         let Some((q1, q5)) = two_linear_equations(&m, &[r1, r2]) else {
             found.doubt = Doubt::Open;
             return;
