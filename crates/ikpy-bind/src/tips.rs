@@ -218,12 +218,14 @@ impl TipSettings {
         self.of(&robot.tips().map(str::to_owned).collect())
     }
 
-    /// The tasks of targets with these keys.
-    pub fn tasks<'a>(&'a self, keys: &'a TipKeys, subjects: &'a [Subject]) -> impl Iterator<Item = TipTask> + 'a {
-        keys.iter().zip(subjects).map(|(key, subject)| {
+    /// The tasks of the targets that were `asked` of several tips; none of one.
+    pub fn tasks<T>(&self, asked: &Asked<T>) -> Vec<TipTask> {
+        let Asked::Tips { keys, subjects, .. } = asked else { return vec![] };
+        let task = |(key, subject): (_, &Subject)| {
             let (task, tolerance) = self.of(key);
             TipTask { subject: *subject, task, tolerance }
-        })
+        };
+        keys.iter().zip(subjects).map(task).collect()
     }
 
     fn of(&self, key: &TipKey) -> (Option<Task>, Tolerance) {

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::tracking::{Arrival, Session, TickRule, TipArrival, TrackOptions};
+use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -151,26 +151,24 @@ impl PyTracker {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
         }
         let (watch, mut session) = (Stopwatch::start(), self.session());
-        let core = match target {
-            Some(Asked::Tips { keys, subjects, values }) => {
-                if velocity.is_some() {
-                    return Err(invalid("velocity is for the target of one tip: leave it out".into()));
-                }
-                let targets = self.settings.tasks(&keys, &subjects).zip(values).collect();
-                let step = session.advance_tips(Some(TipArrival { targets, stamp }), &mut Unattended).map_err(raise)?;
-                *self.keys() = keys;
-                step
+        let arrival = match &target {
+            Some(Asked::Tips { .. }) if velocity.is_some() => {
+                return Err(invalid("velocity is for the target of one tip: leave it out".into()));
             }
-            target => {
-                let one = |target| if let Asked::One(target) = target { Some(target) } else { None };
-                let arrival = target.and_then(one).map(|target| Arrival { target, velocity, stamp });
-                if self.runs_solver {
-                    watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
-                } else {
-                    session.advance(arrival, &mut Unattended).map_err(raise)?
-                }
+            Some(asked) => {
+                let tips = self.settings.tasks(asked);
+                Some(Arrival { tips, targets: asked.values().iter().copied().collect(), velocity, stamp })
             }
+            None => None,
         };
+        let core = if self.runs_solver {
+            watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
+        } else {
+            session.advance(arrival, &mut Unattended).map_err(raise)?
+        };
+        if let Some(Asked::Tips { keys, .. }) = target {
+            *self.keys() = keys;
+        }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
