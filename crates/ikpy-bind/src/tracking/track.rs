@@ -1,6 +1,5 @@
 //! `track` and `TrackResult`.
 
-use ikcore::ik::SolveOptions;
 use ikcore::math::Pose;
 use ikcore::obstacle::Surroundings;
 use ikcore::path::Reference;
@@ -260,14 +259,13 @@ pub fn track(
     let start = start.map(|start| vector("start", start)).transpose()?;
     let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
     let surroundings = Surroundings { obstacles, margin, self_collision };
-    let mut tasks = SolveOptions::default();
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
-    TaskArguments { task, position_tolerance, rotation_tolerance }.write(robot.get(), &asked, &mut tasks)?;
-    let (task, tolerance) = (tasks.task, tasks.tolerance);
-    let read = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
+    let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
+    let only = settings.of_only(robot.get());
+    let read = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
     let options = TrackOptions { ease, ..read.read(resolved)? };
-    let start = start.as_deref();
-    let paths = TipPaths { tips: &tasks.tips, paths: &references };
+    let (start, tips) = (start.as_deref(), settings.tasks(&asked));
+    let paths = TipPaths { tips: &tips, paths: &references };
     let record = watched(py, progress, |watcher| track_tips(&arm, &paths, start, &options, watcher))?;
     let tips = TipErrors { keys: asked.keys(robot.get()), errors: record.tips.errors.clone() };
     python_calls::log(py, format!("track: {}", record.message()))?;

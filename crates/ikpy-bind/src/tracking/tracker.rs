@@ -103,13 +103,9 @@ impl PyTracker {
         let shapes = given.as_ref().map(|given| given.shapes.clone());
         let surroundings = Surroundings { obstacles: shapes, margin, self_collision };
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
-        let given_tasks = TaskArguments { task, position_tolerance, rotation_tolerance };
-        let settings = TipSettings::read(robot.get(), &given_tasks)?;
-        let (task, tolerance) = match arm.tip_count() {
-            1 => settings.of_only(arm),
-            _ => Default::default(),
-        };
-        let asked = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
+        let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
+        let only = settings.of_only(robot.get());
+        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
