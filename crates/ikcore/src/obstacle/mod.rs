@@ -50,7 +50,7 @@ pub use clear_space::ClearSpace;
 pub(crate) use coming_rows::{Coming, ComingRows, MOST_COMING};
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use joint_motion::{Edge, JointMotion};
-pub(crate) use kept_distance::KeptDistance;
+pub(crate) use kept_distance::RequiredDistance;
 pub use line_check::LineCheck;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::Obstacles;

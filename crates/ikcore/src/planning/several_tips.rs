@@ -11,7 +11,7 @@ use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::{Target, TipTask};
+use crate::task::{Target, NamedTask};
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;
@@ -110,7 +110,7 @@ impl<'a> EndSearch<'a> {
         Ok(std::iter::once(first.q.to_vec()).chain(others.solutions.iter().map(|other| other.q.to_vec())).collect())
     }
 
-    fn options_of(&self, tips: &[TipTask]) -> SolveOptions {
+    fn options_of(&self, tips: &[NamedTask]) -> SolveOptions {
         SolveOptions { tips: tips.to_vec(), ..self.options.clone() }
     }
 

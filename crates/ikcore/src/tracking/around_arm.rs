@@ -14,7 +14,7 @@ use crate::math::MAX_DOF;
 use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, norm};
 use crate::objective::Point;
-use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, KeptDistance, NearRow, NearRows};
+use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, RequiredDistance, NearRow, NearRows};
 
 /// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
 const ROOM: f64 = 2e-4;
@@ -153,7 +153,7 @@ impl Around {
 
     /// Whether a motion until `end` (ticks) is certainly clear.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
-        let kept = KeptDistance {
+        let kept = RequiredDistance {
             margin: self.space.margin(),
             speeds: &self.obstacles.speeds,
             since: self.since,
