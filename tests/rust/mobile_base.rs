@@ -15,7 +15,7 @@ use ikcore::rng;
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
 use ikcore::shape::Shape;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Goal, Subject, Target, NamedTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 
 use crate::common::{assert_derivative, configurations, message, pose_at};
 use crate::tips::two_arms;

@@ -16,7 +16,7 @@ use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Goal, Subject, Target, Task, TaskKind, NamedTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 
 /// A lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
 pub fn two_arms() -> String {

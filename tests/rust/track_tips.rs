@@ -7,7 +7,7 @@ use ikcore::math::{Pose, pose};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::task::{Goal, Subject, Target, NamedTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 use ikcore::tracking::{Arrival, Session, TrackOptions};
 
 use crate::tips::two_arms;

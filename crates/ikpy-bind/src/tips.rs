@@ -3,7 +3,7 @@
 use ikcore::ik::SolveOptions;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Subject, TargetRow, Task, TipError, NamedTask, Tolerance};
+use ikcore::task::{NamedTask, Subject, TargetRow, Task, TipError, Tolerance};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 

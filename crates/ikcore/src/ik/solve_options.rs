@@ -4,7 +4,7 @@ use crate::limits::Limits;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stop};
-use crate::task::{Goal, Task, NamedTask, Tolerance};
+use crate::task::{Goal, NamedTask, Task, Tolerance};
 use crate::wording::words;
 
 /// Which solution to return if there are several.

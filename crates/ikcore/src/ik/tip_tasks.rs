@@ -6,7 +6,7 @@ use super::solve_options::SolveOptions;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::robot::Robot;
-use crate::task::{Aims, Subject, Target, TargetRow, TipCriterion, TipError, NamedTask};
+use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
 
 /// The tasks of `options`, validated; of one tip that of plain targets.
 pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {

@@ -6,9 +6,9 @@
 
 use super::body_model::BodyPair;
 use super::joint_motion::JointMotion;
-use super::kept_distance::RequiredDistance;
 use super::link_displacement::{displacement, sagitta};
 use super::near_rows::MOST_RESERVED;
+use super::required_distance::RequiredDistance;
 use super::scene::Scene;
 use crate::math::Frame;
 use crate::objective::Point;

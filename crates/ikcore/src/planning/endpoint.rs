@@ -5,7 +5,7 @@ use smallvec::smallvec;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Target, TargetRow, Task, NamedTask, Tolerance};
+use crate::task::{NamedTask, Target, TargetRow, Task, Tolerance};
 
 /// The start of a motion, or one of its possible ends.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@ use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::{Target, NamedTask};
+use crate::task::{NamedTask, Target};
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;

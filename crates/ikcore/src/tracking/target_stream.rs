@@ -5,7 +5,7 @@ use smallvec::smallvec;
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::task::{Target, TargetMotion, TargetRow, NamedTask, Twist};
+use crate::task::{NamedTask, Target, TargetMotion, TargetRow, Twist};
 
 /// A target is extrapolated over this time (s) at most, however old it is.
 const LONGEST_AGE: f64 = 0.25;

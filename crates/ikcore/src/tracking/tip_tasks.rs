@@ -4,7 +4,7 @@ use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Aims, Region, Target, TipCriterion, NamedTask};
+use crate::task::{Aims, NamedTask, Region, Target, TipCriterion};
 
 /// Weight of pairs beside other tasks, so that what is not within reach costs them little: they are then held exactly.
 const PAIR_WEIGHT: f64 = 100.0;

@@ -14,7 +14,7 @@ use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
-use crate::task::{Goal, Target, TargetRow, NamedTask, Tolerance};
+use crate::task::{Goal, NamedTask, Target, TargetRow, Tolerance};
 
 /// Follows `path` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
 ///

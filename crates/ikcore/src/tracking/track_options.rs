@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
-use crate::task::{Goal, Task, TipCriterion, NamedTask, Tolerance};
+use crate::task::{Goal, NamedTask, Task, TipCriterion, Tolerance};
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]

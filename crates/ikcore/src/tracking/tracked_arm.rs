@@ -91,6 +91,7 @@ impl TrackedArm {
         self.tasks.with(self.targets.last())
     }
 
+    /// Whether the robot has one tip.
     pub fn has_one_tip(&self) -> bool {
         self.robot.tip_count() == 1
     }
