@@ -54,6 +54,11 @@ class Obstacles:
         if self._page.arm.obstacles is not self._shapes:
             self._draw(self._page.arm.obstacles)
 
+    def show_handles(self, shown: bool) -> None:
+        """Shows or hides the handle of the chosen obstacle."""
+        if self._handle is not None:
+            self._handle.visible = shown
+
     def _draw(self, obstacles: list[Obstacle]) -> None:
         self._choose(None)
         for drawn in self._drawn:

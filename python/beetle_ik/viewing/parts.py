@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +13,14 @@ from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
 from .._style import BLACK, BLUE, ORANGE, rgb
 from ..mapping import ReachabilityMap
 from ..mapping.map_figure import cloud
+from .arm import DT
 from .checks import motion_of, postures_of
 from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
 from .playback import Playback
 from .postures import Postures
+from .recording import FIELD
 from .report import Report
 from .surfaces import Links
 
@@ -30,7 +34,6 @@ if TYPE_CHECKING:
 
 _FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
-_FIELD = 0.8  # rad
 _REFERENCE = 2.0  # pixels
 _DOT = 0.25  # of a voxel
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -48,12 +51,12 @@ class Parts:
         size = max(page.scale, float(np.linalg.norm(high - low)))
         look = 0.5 * (low + high) + _ASIDE * size
         camera = page.server.initial_camera
-        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
+        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, FIELD
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
         scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
         self.report = Report(page, notes)
-        self._playback = Playback(page)
+        self.playback = Playback(page)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Target"):
             handles = Handles(page)
@@ -66,13 +69,33 @@ class Parts:
         with tabs.add_tab("Postures"):
             self._postures = Postures(page, self._links)
         self._quick = (handles, obstacles, self._postures)
+        self._with_handles = (handles, obstacles)
         self._slow = (joints, self.report)
         self._due = 0.0
+        self._left_over = 0.0  # s
         self.refresh()
 
     def advance(self, elapsed: float) -> bool:
         """Moves the arm on by a tick, `elapsed` (s) after the last one; returns whether it still moves."""
-        return self._playback.advance(elapsed) or self._page.arm.advance()
+        return self.playback.advance(elapsed) or self._page.arm.advance()
+
+    def pass_time(self, seconds: float) -> bool:
+        """Moves the arm on by ticks, for `seconds` in all; returns whether it still moves."""
+        moves, self._left_over = self._page.arm.moves, self._left_over + seconds
+        while self._left_over > 0.5 * DT:
+            moves, self._left_over = self.advance(DT), self._left_over - DT
+        return moves
+
+    @contextmanager
+    def without_handles(self) -> Iterator[None]:
+        """Hides what is there to be dragged."""
+        try:
+            for part in self._with_handles:
+                part.show_handles(False)
+            yield
+        finally:
+            for part in self._with_handles:
+                part.show_handles(True)
 
     def refresh(self, *, moving: bool = False) -> None:
         """Shows the state of the arm."""
@@ -118,7 +141,7 @@ class Parts:
         reference = result.reference if isinstance(result, Plan | TrackResult) else None
         if reference is not None:
             self.draw_path(reference)
-        self._playback.show(motion)
+        self.playback.show(motion)
 
     def _show_postures(self, result: Any) -> None:
         postures = postures_of(result)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 _SAMPLES = 400  # of the trace and the plot
 _STEP = 0.01  # s, of the time bar
 _TRACE = 3.0  # pixels
+_FRAME = 1.0 / 30.0  # s, of a recording
+_REST = 0.7  # s, at the end of a recording, before it begins again
 _ASPECT = 1.5  # of the plot
 
 
@@ -70,6 +73,18 @@ class Playback:
         self._put()
         set_value(self._bar, round(min(self._time, self._bar.max), 2))
         return self._playing
+
+    def frames(self) -> Iterator[float]:
+        """Puts the arm along the motion, if there is one, and yields for how long it stays there (s); ends at rest."""
+        if self._motion is None:
+            return
+        before, end = self._time, self._motion.duration
+        for time in np.arange(0.0, end, _FRAME).tolist():
+            self._jump(time)
+            yield min(_FRAME, end - time)
+        self._jump(end)
+        yield _REST
+        self._jump(before)
 
     def _play(self, playing: bool) -> None:
         self._playing = playing
