@@ -80,7 +80,7 @@ def test_handles_are_hidden_in_recordings_alone(viewer: bik.Viewer, tmp_path: Pa
 def test_the_arm_dodges_between_frames_without_a_clock(viewer: bik.Viewer, tmp_path: Path) -> None:
     def approach() -> Iterator[float]:
         viewer.q = START
-        for x in np.linspace(0.75, 0.55, 50):
+        for x in np.linspace(0.7, 0.45, 50):
             viewer.obstacles = [bik.obstacles.Sphere((x, 0.1, 0.5), 0.1)]
             yield 0.03
         yield 2.0
@@ -93,7 +93,7 @@ def test_the_arm_dodges_between_frames_without_a_clock(viewer: bik.Viewer, tmp_p
         viewer.record(tmp_path / name, approach())
         ways.append(placed(read(tmp_path / name)[1], "/robot/link_7"))
     assert ways[0] == ways[1]
-    assert len(ways[0]) > 30
+    assert len(ways[0]) > 10
 
 
 def test_a_motion_shown_in_frames_is_played(viewer: bik.Viewer, tmp_path: Path) -> None:
