@@ -14,13 +14,13 @@ from .._style import BLACK, BLUE, ORANGE, rgb
 from ..mapping import ReachabilityMap
 from ..mapping.map_figure import cloud
 from .arm import DT
+from .camera import Camera
 from .checks import motion_of, postures_of
 from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
 from .playback import Playback
 from .postures import Postures
-from .recording import FIELD
 from .report import Report
 from .surfaces import Links
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
-_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
+_CELLS, _SECTIONS = "#DADDE1", "#B9BEC5"  # of the floor
+_LARGE = 2.0  # m: the floor of a larger robot has larger cells
 _REFERENCE = 2.0  # pixels
 _DOT = 0.25  # of a voxel
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -49,12 +49,15 @@ class Parts:
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
-        look = 0.5 * (low + high) + _ASIDE * size
-        camera = page.server.initial_camera
-        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, FIELD
+        self._camera = Camera(page.server)
+        self._camera.show(low, high, size)
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
-        scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
+        cell = 0.1 if size < _LARGE else 0.5
+        scene.add_grid(
+            "/floor", 4 * size, 4 * size, cell_size=cell, section_size=5 * cell, position=floor,
+            cell_color=rgb(_CELLS), section_color=rgb(_SECTIONS), fade_distance=8 * size,
+        )  # fmt: skip
         self.report = Report(page, notes)
         self.playback = Playback(page)
         tabs = gui.add_tab_group()
@@ -64,7 +67,7 @@ class Parts:
             joints = Joints(page)
         with tabs.add_tab("Obstacles"):
             obstacles = Obstacles(page)
-            bodies = gui.add_checkbox("bodies around the meshes", False, visible=self._links.has_covers)
+            bodies = gui.add_checkbox("bodies that are kept clear", False, visible=self._links.has_covers)
             page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
         with tabs.add_tab("Postures"):
             self._postures = Postures(page, self._links)
@@ -87,12 +90,15 @@ class Parts:
         return moves
 
     @contextmanager
-    def without_handles(self) -> Iterator[None]:
-        """Hides what is there to be dragged."""
+    def posed(self) -> Iterator[None]:
+        """Hides what is there to be dragged, and looks at the arm from near, for a recording."""
+        corners = [self._links.bounds(q) for q in self.playback.passed(self._page.arm.q)]
+        low, high = np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
         try:
             for part in self._with_handles:
                 part.show_handles(False)
-            yield
+            with self._camera.recording(low, high):
+                yield
         finally:
             for part in self._with_handles:
                 part.show_handles(True)

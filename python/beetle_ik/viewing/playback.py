@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _SAMPLES = 400  # of the trace and the plot
 _STEP = 0.01  # s, of the time bar
 _TRACE = 3.0  # pixels
+_PASSED = 12  # configurations along a motion, to see where it leads
 _FRAME = 1.0 / 30.0  # s, of a recording
 _REST = 0.7  # s, at the end of a recording, before it begins again
 _ASPECT = 1.5  # of the plot
@@ -73,6 +74,10 @@ class Playback:
         self._put()
         set_value(self._bar, round(min(self._time, self._bar.max), 2))
         return self._playing
+
+    def passed(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Returns configurations (k, n) along the motion; `q` (n,) if there is none."""
+        return q[None] if self._motion is None else self._motion.at(np.linspace(0.0, self._motion.duration, _PASSED))[0]
 
     def frames(self) -> Iterator[float]:
         """Puts the arm along the motion, if there is one, and yields for how long it stays there (s); ends at rest."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .._core import InvalidInputError
 from .._files import path_of, whole_file
 from .._needs import library
+from .camera import FIELD
 
 if TYPE_CHECKING:
     import os
@@ -45,8 +46,6 @@ window.__VISER_EMBED_DATA__ = "{recorded}";
 window.__VISER_EMBED_CONFIG__ = {darkMode: matchMedia("(prefers-color-scheme: dark)").matches};
 </script>
 """
-
-FIELD = 0.8  # rad: the vertical field of view of the camera
 
 
 def recording_file(file: str | os.PathLike[str]) -> Path:
@@ -95,7 +94,7 @@ def take(server: viser.ViserServer, parts: Parts, frames: Iterable[float], passe
 
     `passed` moves the arm on by that time. Visitors see the end alone.
     """
-    with server.atomic(), parts.without_handles():
+    with server.atomic(), parts.posed():
         parts.refresh()
         serializer = server.get_scene_serializer()
         try:

@@ -21,7 +21,7 @@ from .address import free_port
 from .admission import Admission
 from .arm import DT, FOLLOWS, Arm
 from .checks import configuration, inside_limits, path_points, target_poses
-from .looks import looks
+from .looks import drawn_looks, looks
 from .page import Page
 from .parts import Parts
 from .recording import recording_file, take, write_recording
@@ -118,6 +118,9 @@ class Viewer:
         require("robot", robot, Robot)
         seen, missing = looks(robot)
         self.robot, notes = start.shown(robot, has_meshes=bool(seen))
+        if not seen:
+            seen = drawn_looks(self.robot, start.middle(robot))
+            notes += ["no meshes in the model: the arm is drawn along its joints"] if seen else []
         scene = list(Scene(() if obstacles is None else obstacles))
         begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
         line = None if path is None else path_points(path)
