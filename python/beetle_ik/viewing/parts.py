@@ -49,8 +49,7 @@ class Parts:
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
-        self._camera = Camera(page.server)
-        self._camera.show(low, high, size)
+        self._camera = Camera(page.server, low, high, size)
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
         cell = 0.1 if size < _LARGE else 0.5
