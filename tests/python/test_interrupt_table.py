@@ -241,7 +241,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
-    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
+    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(
         ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
          "Trajectory.from_npz", "paths.polyline"],

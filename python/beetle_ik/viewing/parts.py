@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
-from .._style import BLACK, BLUE, ORANGE, rgb
+from .._style import BLACK, rgb
 from ..mapping import ReachabilityMap
-from ..mapping.map_figure import cloud
 from .arm import DT
 from .camera import Camera
 from .checks import motion_of, postures_of
+from .files import Program, SceneFiles
 from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
+from .planning import Planning
 from .playback import Playback
 from .postures import Postures
+from .reach import Reach
 from .report import Report
 from .surfaces import Links
 
@@ -35,7 +37,6 @@ if TYPE_CHECKING:
 _CELLS, _SECTIONS = "#DADDE1", "#B9BEC5"  # of the floor
 _LARGE = 2.0  # m: the floor of a larger robot has larger cells
 _REFERENCE = 2.0  # pixels
-_DOT = 0.25  # of a voxel
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
 
 
@@ -59,13 +60,17 @@ class Parts:
         )  # fmt: skip
         self.report = Report(page, notes)
         self.playback = Playback(page)
+        self._reach = Reach(page)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Target"):
             handles = Handles(page)
+            planning = Planning(page, self.playback)
+            self.program = Program(page, planning)
         with tabs.add_tab("Joints"):
             joints = Joints(page)
         with tabs.add_tab("Obstacles"):
             obstacles = Obstacles(page)
+            SceneFiles(page)
             bodies = gui.add_checkbox("bodies that are kept clear", False, visible=self._links.has_covers)
             page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
         with tabs.add_tab("Postures"):
@@ -119,22 +124,10 @@ class Parts:
         scene = self._page.server.scene
         scene.add_line_segments("/path", segments, rgb(BLACK), thickness=_REFERENCE, thickness_units="screen")
 
-    def draw_map(self, found: ReachabilityMap) -> None:
-        """Draws the voxels that are reached, in place of the last ones: small, so that one sees between them."""
-        mapped, shown = found.robot.name, self._page.arm.robot.name
-        if mapped != shown:
-            raise InvalidInputError(f"result is a map of robot '{mapped}', not of '{shown}'")
-        points, share = cloud(found)
-        low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
-        colors = (low + share[:, None] * (high - low)).astype(np.uint8)
-        self._page.server.scene.add_point_cloud(
-            "/map", points.astype(np.float32), colors, point_size=_DOT * found.voxel, point_shape="circle"
-        )
-
     def show(self, result: Any) -> None:
         """Shows a result of this library."""
         if isinstance(result, ReachabilityMap):
-            self.draw_map(result)
+            self._reach.show(result)
             return
         motion = motion_of(result)
         self._require_fitting(postures_of(result) if motion is None else motion.q)

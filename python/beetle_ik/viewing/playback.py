@@ -47,8 +47,9 @@ class Playback:
         self._left = (page.arm.q, page.arm.targets)
         """What the arm was left with; if it has something else, someone has taken over."""
 
-    def show(self, motion: Trajectory) -> None:
-        """Shows a trajectory in place of the last one, and plays it."""
+    def show(self, motion: Trajectory, *, repeat: bool = True) -> None:
+        """Shows a trajectory in place of the last one, and plays it, over and over or once."""
+        set_value(self._repeat, repeat)
         for handle in self._drawn:
             handle.remove()
         self._motion, self._time = motion, 0.0
@@ -74,6 +75,10 @@ class Playback:
         self._put()
         set_value(self._bar, round(min(self._time, self._bar.max), 2))
         return self._playing
+
+    def shows(self, motion: Trajectory) -> bool:
+        """Whether the arm is where a motion has put it."""
+        return self._motion is motion and self._page.arm.q is self._left[0]
 
     def passed(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """Returns configurations (k, n) along the motion; `q` (n,) if there is none."""

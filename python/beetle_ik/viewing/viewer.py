@@ -231,6 +231,15 @@ class Viewer:
         """
         self._change(lambda: self._parts.show(result))
 
+    def to_python(self) -> str:
+        """Returns a program that makes what the page shows, as its button "Copy as Python" does.
+
+        It has the robot (a built-in one, otherwise a place for yours), the configuration, the target and the obstacles,
+        and plans from the one to the other. After a plan that was made on the page, it has the start of that.
+        """
+        with self._lock:
+            return self._parts.program.text()
+
     def record(self, file: str | os.PathLike[str], frames: Iterable[float] | None = None) -> None:
         """Writes the scene and its motion to a file that plays and turns in any browser, without a server.
 
