@@ -95,8 +95,9 @@ class Parts:
 
     @contextmanager
     def posed(self) -> Iterator[None]:
-        """Hides what is there to be dragged, and looks at the arm from near, for a recording."""
-        corners = [self._links.bounds(q) for q in self.playback.passed(self._page.arm.q)]
+        """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
+        passed = self.playback.passed(self._page.arm.q)
+        corners = [*(self._links.bounds(q) for q in passed), *self._reach.corners]
         low, high = np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
         try:
             for part in self._with_handles:
