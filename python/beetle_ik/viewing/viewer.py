@@ -217,7 +217,7 @@ class Viewer:
         return self._moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a map as a cloud.
+        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a slice of a map.
 
         A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
         orange where all are.
