@@ -4,6 +4,7 @@ import functools
 import http.server
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import repeat
@@ -54,8 +55,8 @@ def test_a_motion_is_recorded_from_start_to_end(viewer: bik.Viewer, tmp_path: Pa
     assert duration == pytest.approx(1.01 + 0.7)
     ways = placed(messages, "/robot/link_7")
     assert len(ways) == 32  # 30 a second, and both ends
-    for time, position in ways.items():
-        place = ROBOT.all_link_poses(MOTION.at(time)[0])[ROBOT.all_link_names.index("link_7")]
+    for at, position in ways.items():
+        place = ROBOT.all_link_poses(MOTION.at(at)[0])[ROBOT.all_link_names.index("link_7")]
         np.testing.assert_allclose(position, place[:3, 3], atol=1e-6)
 
 
@@ -67,6 +68,37 @@ def test_a_scene_without_motion_is_recorded_as_it_is(viewer: bik.Viewer, tmp_pat
     kinds = {message["type"] for _, message in messages}
     assert "MeshMessage" in kinds
     assert not any("Gui" in kind for kind in kinds)
+
+
+def test_a_recording_leaves_the_arm_where_it_was(viewer: bik.Viewer, tmp_path: Path) -> None:
+    viewer.show(MOTION)
+    viewer.q = START - 0.1
+    target = viewer.target
+    viewer.record(tmp_path / "motion.viser")
+    np.testing.assert_array_equal(viewer.q, START - 0.1)
+    np.testing.assert_array_equal(viewer.target, target)
+    viewer.show(MOTION)
+    viewer.record(tmp_path / "motion.viser")
+    first = viewer.q
+    for _ in range(1000):
+        if not np.array_equal(viewer.q, first):
+            return
+        time.sleep(0.01)
+    raise AssertionError("the motion does not go on")
+
+
+def test_a_chosen_camera_is_recorded_and_any_other_comes_near(viewer: bik.Viewer, tmp_path: Path) -> None:
+    def positions() -> list[list[float]]:
+        viewer.record(tmp_path / "still.viser")
+        _, messages = read(tmp_path / "still.viser")
+        return [list(message["position"]) for _, message in messages if message["type"] == "SetCameraPositionMessage"]
+
+    far = viewer.server.initial_camera.position.copy()
+    (near,) = positions()
+    assert np.linalg.norm(near) < np.linalg.norm(far)
+    np.testing.assert_array_equal(viewer.server.initial_camera.position, far)
+    viewer.server.initial_camera.position = (1.0, 2.0, 3.0)
+    assert positions() == [[1.0, 2.0, 3.0]]
 
 
 def test_handles_are_hidden_in_recordings_alone(viewer: bik.Viewer, tmp_path: Path) -> None:

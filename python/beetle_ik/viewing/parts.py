@@ -97,7 +97,7 @@ class Parts:
     def posed(self) -> Iterator[None]:
         """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
         passed = self.playback.passed(self._page.arm.q)
-        corners = [*(self._links.bounds(q) for q in passed), *self._reach.corners]
+        corners = [*(self._links.bounds(q) for q in passed), *self._reach.corners, *self._obstacles_nearby()]
         low, high = np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
         try:
             for part in self._with_handles:
@@ -107,6 +107,13 @@ class Parts:
         finally:
             for part in self._with_handles:
                 part.show_handles(True)
+
+    def _obstacles_nearby(self) -> Iterator[tuple[Array, Array]]:
+        """Yields least and greatest coordinates (3,) of obstacles that are no larger than the arm, as floors are."""
+        for obstacle in self._page.arm.obstacles:
+            low, high = obstacle.triangles.min(axis=(0, 1)), obstacle.triangles.max(axis=(0, 1))
+            if np.abs((low, high)).max() < self._page.scale:
+                yield low, high
 
     def refresh(self, *, moving: bool = False) -> None:
         """Shows the state of the arm."""
