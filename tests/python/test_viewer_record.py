@@ -16,6 +16,7 @@ import pytest
 
 import beetle_ik as bik
 from beetle_ik.viewing import write_player
+from beetle_ik.viewing.camera import FIELD, _corners, _fitting
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
 from viewer_pictures import chromium, visits
@@ -99,6 +100,20 @@ def test_a_chosen_camera_is_recorded_and_any_other_comes_near(viewer: bik.Viewer
     np.testing.assert_array_equal(viewer.server.initial_camera.position, far)
     viewer.server.initial_camera.position = (1.0, 2.0, 3.0)
     assert positions() == [[1.0, 2.0, 3.0]]
+
+
+def test_what_is_recorded_fills_the_picture_and_fits_into_it() -> None:
+    random = np.random.default_rng(4)
+    for _ in range(20):
+        boxes = np.sort(random.uniform(-1, 1, (3, 2, 3)), axis=1)
+        points = _corners(boxes) - 0.5 * (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0))
+        position = _fitting(points)
+        toward = position / np.linalg.norm(position)
+        right = np.cross([0, 0, 1], toward) / np.linalg.norm(np.cross([0, 0, 1], toward))
+        depth = np.linalg.norm(position) - points @ toward
+        up = np.abs(points @ np.cross(toward, right)) / depth / np.tan(0.5 * FIELD)
+        beside = np.abs(points @ right) / depth / np.tan(0.5 * FIELD) / 1.3
+        assert 0.7 < max(up.max(), beside.max()) <= 1.0
 
 
 def test_handles_are_hidden_in_recordings_alone(viewer: bik.Viewer, tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_CELLS, _SECTIONS = "#DADDE1", "#B9BEC5"  # of the floor
+_CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # of the floor
 _LARGE = 2.0  # m: the floor of a larger robot has larger cells
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -97,12 +97,11 @@ class Parts:
     def posed(self) -> Iterator[None]:
         """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
         passed = self.playback.passed(self._page.arm.q)
-        corners = [*(self._links.bounds(q) for q in passed), *self._reach.corners, *self._obstacles_nearby()]
-        low, high = np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
+        boxes = [*(self._links.bounds(q) for q in passed), *self._reach.bounds, *self._obstacles_nearby()]
         try:
             for part in self._with_handles:
                 part.show_handles(False)
-            with self._camera.recording(low, high):
+            with self._camera.recording(np.array(boxes)):
                 yield
         finally:
             for part in self._with_handles:

@@ -70,12 +70,17 @@ class Reach:
         self._cut()
 
     @property
-    def corners(self) -> list[tuple[Array, Array]]:
-        """The least and greatest coordinates (3,) of the map that is shown, if there is one."""
+    def bounds(self) -> list[tuple[Array, Array]]:
+        """The least and greatest coordinates (3,) of the voxels that are shown, if any are."""
         found = self._map
         if found is None or self._drawn is None:
             return []
-        return [(found.origin, found.origin + found.voxel * np.array(found.index.shape))]
+        points, _ = cloud(found)
+        low, high = points.min(axis=0), points.max(axis=0)
+        if self._across.value != _ALL:
+            axis = _SLICES.index(self._across.value)
+            low[axis] = high[axis] = self._at.value
+        return [(low, high)]
 
     def _cut(self) -> None:
         """Puts the slice through the base, or through the middle of the map if the base is beside it."""
