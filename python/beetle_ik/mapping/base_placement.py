@@ -51,6 +51,12 @@ class BasePlacement:
         found = f"{count} reached from ({x:.3g}, {y:.3g}, {z:.3g})"
         return found if self.success else f"{found}; widen the region, or move the others"
 
+    def _repr_html_(self) -> str:
+        """Shows the place in a notebook."""
+        from .._html import base_placement
+
+        return base_placement(self)
+
     def __repr__(self) -> str:
         """Says how many targets are reached."""
         return f"<BasePlacement: {self.message}>"
