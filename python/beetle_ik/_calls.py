@@ -1,20 +1,24 @@
 """Words errors of calls whose arguments do not fit: the argument, its value, and what is expected.
 
-Each call of the native module ends here when PyO3 could not read its arguments (`crates/ikpy-bind/src/gate.rs`).
+Each call of the native module ends here when PyO3 could not read its arguments (`crates/ikpy-bind/src/gate.rs`), and
+each function in Python that is `worded_call`.
 """
 
 import inspect
 import os
 import re
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
 from ._core import CallError
 from ._names import meant
 
-_UNKNOWN = re.compile(r"\(\) got an unexpected keyword argument '(.*)'$", re.DOTALL)
+_Arguments = ParamSpec("_Arguments")
+_Made = TypeVar("_Made")
+_UNKNOWN = re.compile(r"\(\) got an unexpected keyword argument '([^']*)'")
 _MISFIT = re.compile(r"^while processing '(\w+)'$")
 _NO_INSTANCE = re.compile(r" object is not an instance of '(\w+)'$")
 _NO_CONVERSION = re.compile(r"cannot be converted to '?(\w+)'?$|must be (real number), not")
@@ -48,12 +52,27 @@ def worded(error: Exception, call: Any, arguments: tuple[Any, ...], keywords: Ma
         if of_type := _MISFIT.search(note):
             return CallError(_misfit_of(call, signature, of_type[1], error, _given(signature, arguments, keywords)))
     if unknown := _UNKNOWN.search(text):
-        return CallError(f"{name}(){unknown[0][2:]}{_instead(unknown[1], signature)}")
+        return CallError(f"{name}{unknown[0]}{_instead(unknown[1], signature)}")
     if re.search(r"\(\) missing \d+ required ", text):
         return CallError(f"{name}(){text.partition('()')[2]}: call it as {name}{_shape(signature)}")
     if re.search(r"\(\) takes .* positional arguments? but ", text):
         return CallError(f"{name}(){text.partition('()')[2]}: {_by_keyword(name, signature)}")
     return error
+
+
+def worded_call(function: Callable[_Arguments, _Made]) -> Callable[_Arguments, _Made]:
+    """Decorates a function in Python so that calls which do not fit its signature are worded too."""
+
+    @wraps(function)
+    def call(*arguments: _Arguments.args, **keywords: _Arguments.kwargs) -> _Made:
+        try:
+            return function(*arguments, **keywords)
+        except TypeError as error:
+            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+                raise  # from within the function
+            raise worded(error, function, arguments, keywords) from None
+
+    return call
 
 
 def _signature(call: Any) -> inspect.Signature | None:
@@ -79,10 +98,14 @@ def misfit(argument: str, value: object, error: Exception) -> str:
     kind = _kind(str(error))
     if kind is None:
         return f"{argument}: {error}, got {shown(value)}"
-    example = f", such as {_EXAMPLES[kind]}" if kind in _EXAMPLES else ""
+    return f"{argument} must be {_with_article(kind)}{example(kind, value)}, got {shown(value)}"
+
+
+def example(kind: str, value: object) -> str:
+    """Returns how a value of this kind is made, such as ", such as Robot.named('panda')"; nothing for most kinds."""
     if kind == "Robot" and isinstance(value, str | os.PathLike):
-        example = f", such as {_robot_from(os.fspath(value))}"
-    return f"{argument} must be {_with_article(kind)}{example}, got {shown(value)}"
+        return f", such as {_robot_from(os.fspath(value))}"
+    return f", such as {_EXAMPLES[kind]}" if kind in _EXAMPLES else ""
 
 
 def _misfit_of(

@@ -153,6 +153,18 @@ SOLVERS = (
             "np.radians converts degrees",
         ),
         (
+            lambda: bik.reachability(PANDA, voxel_size=0.1),  # type: ignore[call-arg]
+            bik.CallError,
+            "reachability() got an unexpected keyword argument 'voxel_size' (did you mean 'voxel'?); its arguments: "
+            "robot, voxel, directions, rolls, region, task, obstacles, margin, self_collision, evaluations, "
+            "quality, threads, progress, store",
+        ),
+        (
+            lambda: bik.view("panda"),  # type: ignore[arg-type]
+            Invalid,
+            "robot must be a Robot, such as Robot.named('panda'), got 'panda'",
+        ),
+        (
             lambda: bik.Robot.named("pandda"),
             Unknown,
             f"no robot is named 'pandda' (did you mean 'panda'?); known robots: {BUILT_IN}",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._arguments import require
+from .._calls import worded_call
 from .._core import InvalidInputError, Obstacle, Robot, pose, solve_batch
 from .._scene import Scene
 from .._text import counted
@@ -62,6 +63,7 @@ class BasePlacement:
         return f"<BasePlacement: {self.message}>"
 
 
+@worded_call
 def best_base(
     robot: Robot,
     targets: ArrayLike,
