@@ -23,6 +23,8 @@ def robot(name: str, options: Mapping[str, Any], trusted: bool) -> Robot:
     require_text("name", name)
     if file := _data_file(name):
         return Robot.from_urdf(file, trusted=trusted, **options)
+    if name in Robot.names() and not _has_descriptions():
+        raise UnknownNameError(f"no description is named '{name}'; Robot.named('{name}') is built in")
     package = library("robot_descriptions", "robot_descriptions", f"the robot named '{name:.60}'", extra="robots")
     known = _names(package)
     described = _described(name) if name in known else None
@@ -49,25 +51,28 @@ def named(name: str, unknown: str) -> Robot:
         return robot(name, {}, trusted=False)
     if name.lower().endswith(_FILES):
         raise UnknownNameError(f"no robot is named '{name:.60}'; a file is read by {_reader(name)}('{name:.60}')")
-    try:
-        near = nearest(name, _stems(_names(import_module("robot_descriptions"))))
-    except ModuleNotFoundError:
-        near = None
+    stems = _stems(_names(import_module("robot_descriptions"))) if _has_descriptions() else []
+    near = nearest(name, stems)
     also = "" if near is None or "did you mean" in unknown else f"; robot_descriptions has '{near}{_ENDING}'"
     raise UnknownNameError(unknown + also)
 
 
 def is_description(name: str) -> bool:
     """Whether a name is one of a description, or by its ending can be no other."""
-    try:
-        known = name in _names(import_module("robot_descriptions"))
-    except ModuleNotFoundError:
-        known = False
+    known = _has_descriptions() and name in _names(import_module("robot_descriptions"))
     return known or name.endswith(_ENDING) or _data_file(name) is not None
 
 
 def _reader(name: str) -> str:
     return "Robot.from_mjcf" if name.lower().endswith(".xml") else "Robot.from_urdf"
+
+
+def _has_descriptions() -> bool:
+    try:
+        import_module("robot_descriptions")
+    except ModuleNotFoundError:
+        return False
+    return True
 
 
 def _names(package: Any) -> list[str]:

@@ -6,11 +6,14 @@
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 
+use std::collections::HashMap;
 use std::ffi::CString;
 use std::sync::OnceLock;
 
 use pyo3::exceptions::{PyOverflowError, PyRuntimeError, PyTypeError};
-use pyo3::ffi::{self, METH_FASTCALL, METH_KEYWORDS, METH_STATIC, PyCFunctionFastWithKeywords, PyMethodDef, PyObject};
+use pyo3::ffi::{
+    self, METH_FASTCALL, METH_KEYWORDS, METH_STATIC, METH_VARARGS, PyCFunctionFastWithKeywords, PyMethodDef, PyObject,
+};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple, PyType};
@@ -29,6 +32,9 @@ struct Member {
 
 /// The members behind each of [`GATES`].
 static MEMBERS: [OnceLock<Member>; GATES.len()] = [const { OnceLock::new() }; GATES.len()];
+
+/// The constructors of PyO3, by the address of their class.
+static CONSTRUCTORS: OnceLock<HashMap<usize, ffi::newfunc>> = OnceLock::new();
 
 /// A C function is told neither its name nor its object, so each member has a gate of its own.
 const GATES: [PyCFunctionFastWithKeywords; 128] = gates();
@@ -146,6 +152,7 @@ fn reword<'py>(py: Python<'py>, member: &Bound<'py, PyAny>, given: impl FnOnce()
 pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     let mut free = 0..GATES.len();
+    let mut constructors = HashMap::new();
     let staticmethod = py.import("builtins")?.getattr("staticmethod")?;
     let method = py.import("types")?.getattr("MethodDescriptorType")?;
     for (name, value) in module.dict() {
@@ -159,7 +166,7 @@ pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
         for entry in class.getattr("__dict__")?.call_method0("items")?.try_iter()?.collect::<PyResult<Vec<_>>>()? {
             let (key, value): (String, Bound<'_, PyAny>) = entry.extract()?;
             let gated = if key == "__new__" {
-                gated_constructor(class)?
+                gated_constructor(class, &mut constructors)?
             } else if value.is_exact_instance(&staticmethod) {
                 let gated = gated_function(&value.getattr("__func__")?, class, None, &mut free)?;
                 gated.map(|gated| staticmethod.call1((gated,))).transpose()?
@@ -173,6 +180,7 @@ pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
             }
         }
     }
+    let _ = CONSTRUCTORS.set(constructors);
     Ok(())
 }
 
@@ -236,8 +244,10 @@ fn behind_gate(
 }
 
 /// Returns `__new__` behind a gate; None for a class that only the library makes.
-fn gated_constructor<'py>(class: &Bound<'py, PyType>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let py = class.py();
+fn gated_constructor<'py>(
+    class: &Bound<'py, PyType>,
+    constructors: &mut HashMap<usize, ffi::newfunc>,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
     if class.getattr("__text_signature__")?.is_none() {
         return Ok(None);
     }
@@ -248,19 +258,54 @@ fn gated_constructor<'py>(class: &Bound<'py, PyType>) -> PyResult<Option<Bound<'
     }
     // SAFETY: the slot has this type.
     let make = unsafe { std::mem::transmute::<*mut std::ffi::c_void, ffi::newfunc>(slot) };
-    let gated = move |given: &Bound<'_, PyTuple>, keywords: Option<&Bound<'_, PyDict>>| -> PyResult<Py<PyAny>> {
-        let py = given.py();
-        let made = given.get_item(0)?.cast_into::<PyType>()?;
-        let arguments = given.get_slice(1, given.len());
-        let keywords_pointer = keywords.map_or(std::ptr::null_mut(), |keywords| keywords.as_ptr());
-        // SAFETY: the arguments of a constructor.
-        let made_by = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords_pointer) };
-        // SAFETY: it returns an object, or null and sets an exception.
-        unsafe { Bound::from_owned_ptr_or_err(py, made_by) }.map(Bound::unbind).map_err(|error| {
-            error.restore(py);
-            reword(py, made.as_any(), || Ok((arguments, keywords.cloned().unwrap_or_else(|| PyDict::new(py)))));
-            PyErr::fetch(py)
-        })
-    };
-    PyCFunction::new_closure(py, Some(c"__new__"), None, gated).map(|gated| Some(gated.into_any()))
+    constructors.insert(class.as_ptr() as usize, make);
+    let definition = Box::into_raw(Box::new(PyMethodDef {
+        ml_name: c"__new__".as_ptr(),
+        ml_meth: ffi::PyMethodDefPointer { PyCFunctionWithKeywords: construct },
+        ml_flags: METH_VARARGS | METH_KEYWORDS,
+        ml_doc: std::ptr::null(),
+    }));
+    // SAFETY: the definition is never freed.
+    let made = unsafe { ffi::PyCFunction_NewEx(definition, class.as_ptr(), std::ptr::null_mut()) };
+    // SAFETY: a new reference, or null with an exception.
+    unsafe { Bound::from_owned_ptr_or_err(class.py(), made) }.map(Some)
+}
+
+/// Makes an instance. The first argument is the class, or one derived from it.
+unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywords: *mut PyObject) -> *mut PyObject {
+    Python::attach(|py| {
+        // SAFETY: Python calls with the class that the function belongs to, a tuple, and a dict or null.
+        let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };
+        match derived(&class, &given) {
+            Ok((make, made, arguments)) => {
+                // SAFETY: the constructor is that of a class that `made` derives from.
+                let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
+                if instance.is_null() {
+                    // SAFETY: as above.
+                    let named = unsafe { Bound::from_borrowed_ptr_or_opt(py, keywords) };
+                    let named = named.and_then(|named| named.cast_into().ok()).unwrap_or_else(|| PyDict::new(py));
+                    reword(py, made.as_any(), || Ok((arguments, named)));
+                }
+                instance
+            }
+            Err(error) => {
+                error.restore(py);
+                std::ptr::null_mut()
+            }
+        }
+    })
+}
+
+/// Returns the constructor of a class, the class that it is called for, and the arguments after that.
+fn derived<'py>(
+    class: &Bound<'py, PyAny>,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<(ffi::newfunc, Bound<'py, PyType>, Bound<'py, PyTuple>)> {
+    let given = given.cast::<PyTuple>()?;
+    let made = given.get_item(0).ok().and_then(|made| made.cast_into::<PyType>().ok());
+    let make = CONSTRUCTORS.get().and_then(|all| all.get(&(class.as_ptr() as usize)));
+    match (make, made) {
+        (Some(make), Some(made)) if made.is_subclass(class)? => Ok((*make, made, given.get_slice(1, given.len()))),
+        _ => Err(PyTypeError::new_err(format!("__new__() needs {class} first, or a class derived from it"))),
+    }
 }
