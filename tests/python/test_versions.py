@@ -45,9 +45,13 @@ def test_the_doctor_solves_a_target() -> None:
     assert "self-test" in found
 
 
-def test_completion_can_be_installed_and_knows_the_robots() -> None:
+def test_completion_can_be_installed_and_knows_the_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "iiwa").mkdir()
+    for name in ("iiwa.urdf", "iiwa.txt"):
+        (tmp_path / name).touch()
     assert "--install-completion" in CliRunner().invoke(app, ["--help"]).stdout
-    assert complete_robot("iiwa") == ["iiwa14", "iiwa7"]
+    assert complete_robot("iiwa") == ["iiwa14", "iiwa7", "iiwa/", "iiwa.urdf"]
 
 
 def test_the_library_logs_only_when_asked(caplog: pytest.LogCaptureFixture, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from enum import StrEnum
+from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,8 +22,10 @@ _FILES = (".urdf", ".xacro", _MJCF)
 
 
 def complete_robot(incomplete: str) -> list[str]:
-    """Returns the built-in robots that begin with what was typed."""
-    return [name for name in Robot.names() if name.startswith(incomplete)]
+    """Returns the built-in robots, files and folders that begin with what was typed."""
+    found = (Path(file) for file in sorted(glob(f"{escape(incomplete)}*")))
+    files = [f"{file}/" if file.is_dir() else str(file) for file in found if file.is_dir() or file.suffix in _FILES]
+    return [name for name in Robot.names() if name.startswith(incomplete)] + files
 
 
 RobotName = Annotated[
