@@ -2,7 +2,6 @@
 
 import re
 from enum import StrEnum
-from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,9 +22,12 @@ _FILES = (".urdf", ".xacro", _MJCF)
 
 def complete_robot(incomplete: str) -> list[str]:
     """Returns the built-in robots, files and folders that begin with what was typed."""
-    found = (Path(file) for file in sorted(glob(f"{escape(incomplete)}*")))
-    files = [f"{file}/" if file.is_dir() else str(file) for file in found if file.is_dir() or file.suffix in _FILES]
-    return [name for name in Robot.names() if name.startswith(incomplete)] + files
+    before, slash, begun = incomplete.rpartition("/")
+    folder = Path(before + slash)
+    files = sorted(folder.iterdir()) if folder.is_dir() else []
+    shown = (file.name + "/" * file.is_dir() for file in files if file.is_dir() or file.suffix in _FILES)
+    found = [before + slash + name for name in shown if name.startswith(begun)]
+    return [name for name in Robot.names() if name.startswith(incomplete)] + found
 
 
 RobotName = Annotated[
