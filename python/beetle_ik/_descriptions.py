@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from ._arguments import require_text
-from ._core import BeetleIkError, InvalidInputError, Robot, UnknownNameError
+from ._core import BeetleIkError, InvalidInputError, Robot, UnknownNameError, UrdfError
 from ._names import nearest
 from ._needs import library
 from ._text import listed
 
 _ENDING = "_description"
+_SEVERAL_TIPS = "say which one is the tip"
 _DATA = "cmeel.prefix/share/example-robot-data/robots"
 _FILES = (".urdf", ".xacro", ".xml")
 
@@ -46,9 +47,15 @@ def named(name: str, unknown: str) -> Robot:
 
     Raises:
         UnknownNameError: there is no description of that name either. Names the nearest.
+        UrdfError: the description has several tips. Names them.
     """
     if is_description(name):
-        return robot(name, {}, trusted=False)
+        try:
+            return robot(name, {}, trusted=False)
+        except UrdfError as error:
+            if _SEVERAL_TIPS not in str(error):
+                raise
+            raise UrdfError(f"{error}; Robot.from_description('{name}', tip=...) takes it") from None
     if name.lower().endswith(_FILES):
         raise UnknownNameError(f"no robot is named '{name:.60}'; a file is read by {_reader(name)}('{name:.60}')")
     stems = _stems(_names(import_module("robot_descriptions"))) if _has_descriptions() else []

@@ -277,6 +277,15 @@ def test_robots_of_example_robot_data_have_names(monkeypatch: pytest.MonkeyPatch
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(GRIPPER.replace('name="r"', f'name="{Path(file).stem}"'))
     monkeypatch.setattr("beetle_ik._descriptions._data_folder", lambda: tmp_path)
+    forked = GRIPPER.replace("</robot>", '<link name="eye"/><joint name="held" type="fixed"><parent link="base"/>')
+    forked += '<child link="eye"/></joint></robot>'
+    (tmp_path / "arm_description" / "urdf" / "forked.urdf").write_text(forked)
+    assert_told(
+        lambda: bik.Robot.named("forked"),
+        bik.UrdfError,
+        "robot 'r' ends in 2 links: say which one is the tip; leaves, by number of joints: finger (2), eye (0); "
+        "Robot.from_description('forked', tip=...) takes it",
+    )
     for name, found in (("arm_description", "arm"), ("arm_long", "arm_long"), ("a", "a")):
         assert bik.Robot.named(name).name == bik.Robot.from_description(name).name == found
     assert_told(lambda: bik.Robot.named("two"), Unknown, "'two' of example-robot-data has several robots: a, b")
