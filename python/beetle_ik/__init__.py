@@ -12,8 +12,10 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
 """
 
 import logging
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from . import filters, goals, interop, obstacles, paths, plot, tasks, vision
+from . import filters, goals, obstacles, paths, tasks
 from ._core import (
     APPS,
     BAS,
@@ -28,6 +30,7 @@ from ._core import (
     BeetleSwarm,
     Body,
     BroydenBAS,
+    CallError,
     CircleSwarm,
     ControlSession,
     DifferentialEvolution,
@@ -82,9 +85,12 @@ from ._core import (
     track_model_free,
 )
 from ._scene import Scene
-from ._versions import show_versions
-from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
-from .viewing import Viewer, view
+
+if TYPE_CHECKING:
+    from . import interop, plot, vision
+    from ._versions import show_versions
+    from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
+    from .viewing import Viewer, view
 
 # Silent unless the application configures logging.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
@@ -104,6 +110,7 @@ __all__ = [
     "BeetleSwarm",
     "Body",
     "BroydenBAS",
+    "CallError",
     "CircleSwarm",
     "ControlSession",
     "DifferentialEvolution",
@@ -173,3 +180,31 @@ __all__ = [
     "view",
     "vision",
 ]
+
+# Imported when they are first used, and where they are: `import beetle_ik` stays quick.
+_LATER = {
+    "interop": "interop",
+    "plot": "plot",
+    "vision": "vision",
+    "show_versions": "_versions",
+    "BasePlacement": "mapping",
+    "InverseReachabilityMap": "mapping",
+    "ReachabilityMap": "mapping",
+    "best_base": "mapping",
+    "reachability": "mapping",
+    "Viewer": "viewing",
+    "view": "viewing",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'", name=name, obj=import_module(__name__))
+    module = import_module(f".{_LATER[name]}", __name__)
+    value = module if name == _LATER[name] else getattr(module, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -13,6 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
 from .._arguments import require
+from .._calls import worded_call
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from .._needs import library
 from .._scene import Scene
@@ -49,6 +50,7 @@ _LONGEST_TICK = 0.1  # s: after a rest, or on a busy machine, a motion goes on w
 _WAKE = 0.1  # s: how often a waiting thread looks for Ctrl-C, which Windows would not wake it for
 
 
+@worded_call
 def view(
     robot: Robot,
     q: ArrayLike | None = None,
