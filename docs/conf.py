@@ -46,7 +46,11 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120  # s
 nb_merge_streams = True
 
-autodoc_default_options = {"members": True, "undoc-members": True, "member-order": "bysource"}
+autodoc_default_options = {
+    "members": True,
+    "undoc-members": True,
+    "member-order": "bysource",
+}
 autodoc_typehints = "none"
 
 plot_formats = [("png", 120)]
@@ -59,7 +63,8 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
-    "ignore_pattern": r"15_wrong_model\.py$",  # a program for MuJoCo, with an argument
+    # A program for MuJoCo, with an argument.
+    "ignore_pattern": r"15_wrong_model\.py$",
     "thumbnail_size": (640, 480),
     "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),

@@ -5,14 +5,18 @@ from typing import Any
 
 _CODE = re.compile(r"(`[^`]*`)")
 _SPECIAL = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
-_ENUMERATOR = re.compile(r"(?<=: )(\w)\.$")  # "tolerance: m." is not the first item of a list
+_ENUMERATOR = re.compile(
+    r"(?<=: )(\w)\.$"
+)  # "tolerance: m." is not the first item of a list
 _SECTION = re.compile(r"^(Args|Returns|Raises|Yields):$")
 
 
 def escaped(line: str) -> str:
     """Escapes what reStructuredText would read as markup, except in backquotes."""
     parts = _CODE.split(line)
-    parts[::2] = [_SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]]
+    parts[::2] = [
+        _SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]
+    ]
     for i in range(2, len(parts), 2):
         if parts[i][:1].isalnum():
             parts[i] = "\\ " + parts[i]  # the s of several `Sinusoid`s
@@ -33,7 +37,14 @@ def converted(lines: list[str]) -> list[str]:
     return result
 
 
-def convert(_app: Any, _what: str, _name: str, _subject: Any, _options: Any, lines: list[str]) -> None:
+def convert(
+    _app: Any,
+    _what: str,
+    _name: str,
+    _subject: Any,
+    _options: Any,
+    lines: list[str],
+) -> None:
     """Handles the autodoc event."""
     lines[:] = converted(lines)
 

@@ -1,4 +1,7 @@
-"""Reads pages whose Python blocks make up a program as notebooks, which the build executes and offers for download."""
+"""Reads pages whose Python blocks make up a program as notebooks.
+
+The build executes the notebooks and offers them for download.
+"""
 
 import re
 
@@ -10,12 +13,17 @@ _KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 
 def read(page: str) -> NotebookNode:
-    """Returns a page of Markdown as a notebook, with a cell for each block of Python."""
+    """Returns a page of Markdown as a notebook: a cell for each block of Python."""
     cells, lines, end = [], [], 0
     for block in _BLOCK.finditer(page):
-        cells += [new_markdown_cell(page[end : block.start()]), new_code_cell(block[1].rstrip())]
+        cells += [
+            new_markdown_cell(page[end : block.start()]),
+            new_code_cell(block[1].rstrip()),
+        ]
         lines += [page.count("\n", 0, at) for at in (end, block.start())]
         end = block.end()
     cells.append(new_markdown_cell(page[end:]))
     lines.append(page.count("\n", 0, end))
-    return new_notebook(cells=cells, metadata={"kernelspec": _KERNEL, "source_map": lines})
+    return new_notebook(
+        cells=cells, metadata={"kernelspec": _KERNEL, "source_map": lines}
+    )

@@ -2,8 +2,9 @@
 The reachability map of an arm
 ==============================
 
-``reachability`` computes which orientations an arm reaches in each voxel of space. Slices show where the Panda works
-best: at arm's length around its shoulder, and neither close to its axis nor stretched out.
+``reachability`` computes which orientations an arm reaches in each voxel of space.
+Slices show where the Panda works best: at arm's length around its shoulder, and
+neither close to its axis nor stretched out.
 """
 
 import matplotlib.pyplot as plt

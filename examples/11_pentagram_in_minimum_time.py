@@ -2,9 +2,10 @@
 A pentagram in minimum time
 ===========================
 
-A planar arm with three links has one redundant degree of freedom. ``plan_along_path`` optimises redundancy and timing
-together, and keeps the tip within the requested accuracy along the whole star; it stops at the corners. In the fastest
-motion some joint is at a limit at any time.
+A planar arm with three links has one redundant degree of freedom.
+``plan_along_path`` optimises redundancy and timing together, and keeps the tip
+within the requested accuracy along the whole star; it stops at the corners. In the
+fastest motion some joint is at a limit at any time.
 """
 
 import matplotlib.pyplot as plt
@@ -25,7 +26,12 @@ time, q, _, _ = plan.trajectory.sample(0.01)
 tip = robot.fk(q)[:, :3, 3]
 figure, axes = plt.subplots(figsize=(6, 5), layout="constrained")
 for posture in q[::20]:
-    axes.plot(*robot.link_poses(posture)[:, :2, 3].T, color="0.8", marker="o", markersize=3)
+    axes.plot(
+        *robot.link_poses(posture)[:, :2, 3].T,
+        color="0.8",
+        marker="o",
+        markersize=3,
+    )
 axes.plot(*tip[:, :2].T, color="#D55E00", linewidth=2, label="tip")
 axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title=f"{plan.cost:.2f} s")
 axes.legend()

@@ -2,10 +2,12 @@
 An arm with a wrong model
 =========================
 
-The arm differs from its model: links by up to 2 cm, joints by up to 2°. Joint positions computed with the model miss
-the circle by centimetres. ``BroydenBAS`` uses no model: it commands the arm, measures the tip and learns the relation.
+The arm differs from its model: links by up to 2 cm, joints by up to 2°. Joint
+positions computed with the model miss the circle by centimetres. ``BroydenBAS``
+uses no model: it commands the arm, measures the tip and learns the relation.
 
-``examples/15_wrong_model.py`` does the same on a simulated arm with gravity and servos, and writes a film.
+``examples/15_wrong_model.py`` does the same on a simulated arm with gravity and
+servos, and writes a film.
 """
 
 import matplotlib.pyplot as plt
@@ -29,16 +31,27 @@ error_by_model = np.linalg.norm(reached - by_model.reference, axis=1)
 plant = bik.KinematicPlant(built, noise=5e-5, seed=0)
 controller = bik.BroydenBAS(max_evaluations_per_step=1)
 without = bik.track_model_free(
-    plant, circle, start, dt=0.2, controller=controller, limits=drawn.limits, position_tolerance=1e-3
+    plant,
+    circle,
+    start,
+    dt=0.2,
+    controller=controller,
+    limits=drawn.limits,
+    position_tolerance=1e-3,
 )
 print(without.message)
 settled = slice(20, None)
 print(f"with the model: {1e3 * error_by_model[settled].max():.1f} mm off at most")
-print(f"without: {1e3 * without.position_error[settled].max():.2f} mm off at most, as measured")
+print(
+    f"without: {1e3 * without.position_error[settled].max():.2f} mm off at most, "
+    "as measured"
+)
 
 # %%
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
-left.plot(*by_model.reference[:, :2].T, color="black", linestyle=":", label="reference")
+left.plot(
+    *by_model.reference[:, :2].T, color="black", linestyle=":", label="reference"
+)
 left.plot(*reached[settled, :2].T, label="with the model")
 left.plot(*without.position[settled, :2].T, label="without")
 left.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title="Seen from above")

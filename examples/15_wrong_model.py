@@ -1,11 +1,15 @@
 """An arm that differs from its model, tracked with the model and without any.
 
-The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link 2 cm
-longer than its model, and joints that are 2 degrees off. Joint positions computed with the model miss the circle by
-centimetres. `BroydenBAS` uses no model: it sends one command per tick, measures the tip, and stays within a millimetre.
+The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise
+on each axis) has a link 2 cm longer than its model, and joints that are 2 degrees
+off. Joint positions computed with the model miss the circle by centimetres.
+`BroydenBAS` uses no model: it sends one command per tick, measures the tip, and
+stays within a millimetre.
 
     pip install 'beetle-ik[plot,sim]'
-    python examples/15_wrong_model.py OUT          # writes OUT/wrong_model.gif and OUT/wrong_model.png
+    python examples/15_wrong_model.py OUT
+
+writes OUT/wrong_model.gif and OUT/wrong_model.png.
 """
 
 import argparse
@@ -20,12 +24,26 @@ import beetle_ik as bik
 from beetle_ik.sim import MujocoPlant
 
 DT = 0.2  # s
-START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.617944106, 0.0])
+START = np.array([
+    0.5449219327,
+    0.1036664288,
+    0.0969337234,
+    -0.8713896072,
+    0.1027968992,
+    0.617944106,
+    0.0,
+])
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 SETTLED = 20  # ticks for the first antennae and the approach to the circle
 EVERY = 5  # ticks per frame
 VIEW = partial(
-    MujocoPlant.picture, width=400, height=360, azimuth=-60.0, elevation=-50.0, distance=1.3, look_at=(0.2, 0.2, 0.8)
+    MujocoPlant.picture,
+    width=400,
+    height=360,
+    azimuth=-60.0,
+    elevation=-50.0,
+    distance=1.3,
+    look_at=(0.2, 0.2, 0.8),
 )
 
 Array = NDArray[np.float64]
@@ -70,7 +88,9 @@ class Filmed:
 
 def main() -> None:
     """Follows the circle twice and writes the film."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
@@ -84,13 +104,25 @@ def main() -> None:
     without = Filmed(MujocoPlant(built, dt=DT, noise=5e-5))
     controller = bik.BroydenBAS(max_evaluations_per_step=1)
     limits = bik.Limits(velocity=2.0)
-    bik.track_model_free(without, CIRCLE, START, dt=DT, controller=controller, limits=limits)
-    print(f"without a model: {1e3 * without.error.max():.2f} mm off at most, one command per tick of {DT} s")
+    bik.track_model_free(
+        without, CIRCLE, START, dt=DT, controller=controller, limits=limits
+    )
+    print(
+        f"without a model: {1e3 * without.error.max():.2f} mm off at most, "
+        f"one command per tick of {DT} s"
+    )
 
     frames = [
-        Image.fromarray(np.concatenate(pair, axis=1)) for pair in zip(by_model.frames, without.frames, strict=False)
+        Image.fromarray(np.concatenate(pair, axis=1))
+        for pair in zip(by_model.frames, without.frames, strict=False)
     ]
-    frames[0].save(out / "wrong_model.gif", save_all=True, append_images=frames[1:], duration=100, loop=0)
+    frames[0].save(
+        out / "wrong_model.gif",
+        save_all=True,
+        append_images=frames[1:],
+        duration=100,
+        loop=0,
+    )
     frames[-1].save(out / "wrong_model.png")
     print(f"left with the model, right without: {out / 'wrong_model.gif'}")
 

@@ -2,8 +2,9 @@
 A new target during a motion
 ============================
 
-``state_to_state`` finds the fastest motion of all joints within velocity, acceleration and jerk limits. It starts from
-any state, so a motion can be replaced while the arm moves: velocity and acceleration stay continuous.
+``state_to_state`` finds the fastest motion of all joints within velocity,
+acceleration and jerk limits. It starts from any state, so a motion can be replaced
+while the arm moves: velocity and acceleration stay continuous.
 """
 
 import matplotlib.pyplot as plt
@@ -22,15 +23,26 @@ second = home + np.array([-0.4, 0.1, 0.5, -0.3, 0.4, 0.3, -0.6])
 to_first = bik.state_to_state(home, first, limits, joint_names=robot.joint_names)
 change = 0.4
 q, qd, qdd = to_first.at(change)
-to_second = bik.state_to_state(q, second, limits, qd0=qd, qdd0=qdd, joint_names=robot.joint_names)
-print(f"{to_first.duration:.3f} s to the first target, {to_second.duration:.3f} s from the change to the second")
+to_second = bik.state_to_state(
+    q, second, limits, qd0=qd, qdd0=qdd, joint_names=robot.joint_names
+)
+print(
+    f"{to_first.duration:.3f} s to the first target, "
+    f"{to_second.duration:.3f} s from the change to the second"
+)
 print("largest jerk:", np.round(to_second.max_jerk(), 1), "rad/s^3")
 
 # %%
 # The first joint turns back without a jump of its acceleration.
-before, after = np.linspace(0.0, change, 200), np.linspace(0.0, to_second.duration, 400)
+before, after = (
+    np.linspace(0.0, change, 200),
+    np.linspace(0.0, to_second.duration, 400),
+)
 time = np.concatenate((before, change + after))
-states = [np.vstack(pair)[:, 0] for pair in zip(to_first.at(before), to_second.at(after), strict=True)]
+states = [
+    np.vstack(pair)[:, 0]
+    for pair in zip(to_first.at(before), to_second.at(after), strict=True)
+]
 figure, axes = plt.subplots(3, 1, sharex=True, layout="constrained")
 units = ("position [rad]", "velocity [rad/s]", "acceleration [rad/s²]")
 for axis, values, label in zip(axes, states, units, strict=True):
