@@ -4,7 +4,9 @@ import logging
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+from figure_style import STYLE
 
 import beetle_ik
 
@@ -20,6 +22,7 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
     "myst_nb",
     "paper_figures",
+    "signatures",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
@@ -33,7 +36,21 @@ html_theme = "furo"
 html_title = "beetle-ik"
 html_copy_source = False
 html_static_path = ["static"]
-html_css_files = ["gallery.css"]
+html_css_files = ["site.css"]
+html_logo = "images/logo.svg"
+html_favicon = "images/logo.svg"
+html_theme_options = {
+    "light_css_variables": {
+        "color-brand-primary": "#00734f",
+        "color-brand-content": "#00734f",
+        "figure-filter": "none",
+    },
+    "dark_css_variables": {
+        "color-brand-primary": "#3fc79a",
+        "color-brand-content": "#3fc79a",
+        "figure-filter": "invert(1) hue-rotate(180deg)",
+    },
+}
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -51,9 +68,11 @@ autodoc_default_options = {
     "undoc-members": True,
     "member-order": "bysource",
 }
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+maximum_signature_line_length = 72
 
 plot_formats = [("png", 120)]
+plot_rcparams = STYLE
 plot_html_show_formats = False
 plot_html_show_source_link = False
 plot_include_source = False
@@ -68,6 +87,7 @@ sphinx_gallery_conf = {
     "thumbnail_size": (640, 480),
     "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),
+    "reset_modules": ("matplotlib", "figure_style.reset"),
     "remove_config_comments": True,
     "show_memory": False,
     "show_signature": False,

@@ -11,7 +11,7 @@ from beetle_ik import experiments
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-FOLDER = Path(__file__).parent / "papers" / "figures"
+FOLDER = Path(__file__).parents[1] / "papers" / "figures"
 FIGURES = {
     "cheng2020": ("figure_2", "search_box", "equation_5"),
     "khan2022": (
@@ -36,22 +36,13 @@ def setup(app: Sphinx) -> dict[str, bool]:
 def draw_all() -> None:
     """Draws figures that are missing or older than the package."""
     package = Path(beetle_ik.__file__).parent
-    changed = max(
-        file.stat().st_mtime
-        for file in package.rglob("*")
-        if file.suffix in (".py", ".so", ".pyd")
-    )
+    changed = max(file.stat().st_mtime for file in package.rglob("*") if file.suffix in (".py", ".so", ".pyd"))
     FOLDER.mkdir(exist_ok=True)
     for experiment, names in FIGURES.items():
         files = {name: FOLDER / f"{experiment}_{name}.png" for name in names}
-        if all(
-            file.is_file() and file.stat().st_mtime > changed
-            for file in files.values()
-        ):
+        if all(file.is_file() and file.stat().st_mtime > changed for file in files.values()):
             continue
-        report = experiments.experiment(experiment).run(
-            experiments.Context(short=True)
-        )
+        report = experiments.experiment(experiment).run(experiments.Context(short=True))
         for figure in report.figures:
             if figure.name in files:
-                figure.drawing.savefig(files[figure.name], dpi=120)
+                figure.drawing.savefig(files[figure.name], dpi=120, transparent=True)

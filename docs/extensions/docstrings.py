@@ -5,18 +5,14 @@ from typing import Any
 
 _CODE = re.compile(r"(`[^`]*`)")
 _SPECIAL = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
-_ENUMERATOR = re.compile(
-    r"(?<=: )(\w)\.$"
-)  # "tolerance: m." is not the first item of a list
+_ENUMERATOR = re.compile(r"(?<=: )(\w)\.$")  # "tolerance: m." is not the first item of a list
 _SECTION = re.compile(r"^(Args|Returns|Raises|Yields):$")
 
 
 def escaped(line: str) -> str:
     """Escapes what reStructuredText would read as markup, except in backquotes."""
     parts = _CODE.split(line)
-    parts[::2] = [
-        _SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]
-    ]
+    parts[::2] = [_SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]]
     for i in range(2, len(parts), 2):
         if parts[i][:1].isalnum():
             parts[i] = "\\ " + parts[i]  # the s of several `Sinusoid`s

@@ -24,6 +24,4 @@ def read(page: str) -> NotebookNode:
         end = block.end()
     cells.append(new_markdown_cell(page[end:]))
     lines.append(page.count("\n", 0, end))
-    return new_notebook(
-        cells=cells, metadata={"kernelspec": _KERNEL, "source_map": lines}
-    )
+    return new_notebook(cells=cells, metadata={"kernelspec": _KERNEL, "source_map": lines})
