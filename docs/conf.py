@@ -83,7 +83,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
     # A program for MuJoCo, with an argument.
-    "ignore_pattern": r"15_wrong_model\.py$",
+    "ignore_pattern": r"29_wrong_model\.py$",
     "thumbnail_size": (640, 480),
     "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),

@@ -6,7 +6,7 @@ The arm differs from its model: links by up to 2 cm, joints by up to 2°. Joint
 positions computed with the model miss the circle by centimetres. ``BroydenBAS``
 uses no model: it commands the arm, measures the tip and learns the relation.
 
-``examples/15_wrong_model.py`` does the same on a simulated arm with gravity and
+``examples/29_wrong_model.py`` does the same on a simulated arm with gravity and
 servos, and writes a film.
 """
 

@@ -7,7 +7,7 @@ off. Joint positions computed with the model miss the circle by centimetres.
 stays within a millimetre.
 
     pip install 'beetle-ik[plot,sim]'
-    python examples/15_wrong_model.py OUT
+    python examples/29_wrong_model.py OUT
 
 writes OUT/wrong_model.gif and OUT/wrong_model.png.
 """
