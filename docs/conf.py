@@ -24,6 +24,7 @@ extensions = [
     "paper_figures",
     "signatures",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
@@ -69,6 +70,9 @@ autodoc_default_options = {
     "member-order": "bysource",
 }
 autodoc_typehints = "signature"
+autosummary_generate = False
+copybutton_prompt_text = r">>> |\.\.\. "
+copybutton_prompt_is_regexp = True
 maximum_signature_line_length = 72
 
 plot_formats = [("png", 120)]

@@ -45,7 +45,7 @@ found = bik.minimize(
     worst,
     [-0.5, -0.5],
     [1.5, 1.5],
-    solver=bik.PSO(population=15),
+    solver=bik.papers.PSO(population=15),
     stop=bik.Stop(max_evaluations=900),
     seed=1,
 )

@@ -26,7 +26,7 @@ result = bik.track(
     circle,
     start,
     dt=0.2,
-    solver=bik.BAS(),
+    solver=bik.papers.BAS(),
     limits=limits,
     position_tolerance=1.7e-5,
 )

@@ -1,8 +1,8 @@
 """Counts blocks of the built site that do not fit their page: `python tools/site_fit.py docs/build/html`.
 
-A block of code or output is clipped if part of it is only seen after scrolling. On a phone, nothing may be wider than the
-page, except a table that scrolls by itself. `--pictures DIR` also takes pictures of some pages: wide, narrow and dark.
-Needs playwright and Chromium.
+A block of code or output is clipped if part of it is only seen after scrolling. On a phone, nothing may be wider than
+the page, except a table that scrolls by itself. `--pictures DIR` also takes pictures of some pages: wide, narrow and
+dark. Needs playwright and Chromium.
 """
 
 import argparse

@@ -33,20 +33,24 @@ def converted(lines: list[str]) -> list[str]:
     return result
 
 
-def convert(
-    _app: Any,
-    _what: str,
-    _name: str,
-    _subject: Any,
-    _options: Any,
-    lines: list[str],
-) -> None:
-    """Handles the autodoc event."""
+_kept: dict[str, list[str]] = {}  # docstrings of attributes, by name
+
+
+def convert(_app: Any, what: str, name: str, _subject: Any, _options: Any, lines: list[str]) -> None:
+    """Handles the autodoc event, before napoleon."""
     lines[:] = converted(lines)
+    if what in ("attribute", "property"):
+        _kept[name] = lines.copy()
+
+
+def restore(_app: Any, _what: str, name: str, _subject: Any, _options: Any, lines: list[str]) -> None:
+    """Undoes what napoleon reads in attributes: words before a colon are no type."""
+    lines[:] = _kept.pop(name, lines)
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Registers the Sphinx extension; it runs before napoleon."""
+    """Registers the Sphinx extension."""
     app.setup_extension("sphinx.ext.autodoc")
     app.connect("autodoc-process-docstring", convert, priority=100)
+    app.connect("autodoc-process-docstring", restore, priority=900)
     return {"parallel_read_safe": True}

@@ -12,27 +12,17 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
 """
 
 import logging
+from typing import TYPE_CHECKING, Any
 
-from . import filters, goals, interop, obstacles, paths, plot, tasks, vision
+from . import filters, goals, interop, obstacles, papers, paths, plot, tasks, vision
 from ._core import (
-    APPS,
-    BAS,
-    PSO,
-    QPSO,
-    TPBSO,
-    ZNNBAS,
     BatchPlan,
     BatchSolution,
-    BeeColony,
     BeetleIkError,
-    BeetleSwarm,
     Body,
     BroydenBAS,
-    CircleSwarm,
     ControlSession,
     DifferentialEvolution,
-    Firefly,
-    Genetic,
     InfeasibleError,
     InvalidInputError,
     JacobianTranspose,
@@ -46,7 +36,6 @@ from ._core import (
     NewtonRaphson,
     Path,
     Plan,
-    PlanarPosture,
     Robot,
     SelfMotion,
     Sinusoid,
@@ -70,7 +59,6 @@ from ._core import (
     plan_along_path,
     plan_batch,
     plan_point_to_point,
-    planar_posture,
     pose,
     self_motion,
     solve,
@@ -90,25 +78,14 @@ from .viewing import Viewer, view
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 __all__ = [
-    "APPS",
-    "BAS",
-    "PSO",
-    "QPSO",
-    "TPBSO",
-    "ZNNBAS",
     "BasePlacement",
     "BatchPlan",
     "BatchSolution",
-    "BeeColony",
     "BeetleIkError",
-    "BeetleSwarm",
     "Body",
     "BroydenBAS",
-    "CircleSwarm",
     "ControlSession",
     "DifferentialEvolution",
-    "Firefly",
-    "Genetic",
     "InfeasibleError",
     "InvalidInputError",
     "InverseReachabilityMap",
@@ -123,7 +100,6 @@ __all__ = [
     "NewtonRaphson",
     "Path",
     "Plan",
-    "PlanarPosture",
     "ReachabilityMap",
     "Robot",
     "Scene",
@@ -152,11 +128,11 @@ __all__ = [
     "interop",
     "minimize",
     "obstacles",
+    "papers",
     "paths",
     "plan_along_path",
     "plan_batch",
     "plan_point_to_point",
-    "planar_posture",
     "plot",
     "pose",
     "reachability",
@@ -173,3 +149,48 @@ __all__ = [
     "view",
     "vision",
 ]
+
+
+# Results: annotations name them, calls do not.
+_MADE_BY_CALLS = frozenset(
+    {
+        "BasePlacement",
+        "BatchPlan",
+        "BatchSolution",
+        "Body",
+        "ControlSession",
+        "InverseReachabilityMap",
+        "Minimum",
+        "ModelFreeResult",
+        "Plan",
+        "SelfMotion",
+        "Solution",
+        "SolutionSet",
+        "Step",
+        "TrackResult",
+        "VelocityEllipsoid",
+        "Viewer",
+        "Violation",
+    }
+)
+
+
+def __dir__() -> list[str]:
+    """Returns what a completion offers: public names without those of results."""
+    return sorted(set(__all__) - _MADE_BY_CALLS)
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """Returns a method of the papers under its old name."""
+        if name not in papers.__all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        import warnings
+
+        warnings.warn(
+            f"beetle_ik.{name} is now beetle_ik.papers.{name}; the old name goes in 0.3",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        return getattr(papers, name)
