@@ -133,6 +133,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Tracker.stop": {".": bik.Tracker(ARM, **TICKS)},
     "Viewer.": {".": VIEWER},
     "Viewer.on_target": {"callback": len},
+    "Viewer.record": {"file": "motion.viser"},
     "Viewer.show": {"result": TRACK},
     "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
     "Trajectory.": {".": MOTION},

@@ -4,6 +4,7 @@ No clock decides: a signal comes every 10 ms, and its handler raises at the thir
 signals meets the handler once, after it has returned, and nothing is raised.
 """
 
+import itertools
 import signal
 import sys
 import tempfile
@@ -109,6 +110,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
+        "Viewer.record": lambda: recorded(bik.view(IIWA, port=0)),
         "Viewer.wait": lambda: bik.view(IIWA, port=0).wait,
         "view": lambda: lambda: bik.view(IIWA, port=0, block=True),
         "time_optimal": lambda: waypoints(100_000),
@@ -121,6 +123,10 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
             )
         ),
     }
+
+
+def recorded(viewer: bik.Viewer) -> Callable[[], object]:
+    return lambda: viewer.record("motion.viser", itertools.repeat(0.0))
 
 
 def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], object]:
@@ -239,7 +245,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
-    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
+    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(
         ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
          "Trajectory.from_npz", "paths.polyline"],

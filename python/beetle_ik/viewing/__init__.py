@@ -16,10 +16,12 @@
     handle, joints, obstacles, postures, playback, report
                 the parts of the page: each shows and changes one thing of the state
     displaced   obstacles, moved
+    recording   what the page shows, as a file that plays by itself
 
 viser calls back in the thread of its server. A part of the page never moves the arm there: it asks the worker.
 """
 
+from .recording import write_player
 from .viewer import Viewer, view
 
-__all__ = ["Viewer", "view"]
+__all__ = ["Viewer", "view", "write_player"]
