@@ -2,6 +2,7 @@
 
 import logging
 import sys
+import tomllib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "extensions"))
@@ -22,6 +23,7 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
     "myst_nb",
     "paper_figures",
+    "recordings",
     "signatures",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
@@ -53,6 +55,21 @@ html_theme_options = {
     },
 }
 
+# The address of the repository, once it is filled in: pages link to their source.
+_project = tomllib.loads(
+    (Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+)["project"]
+if "FILL-IN" not in _project["urls"]["Repository"]:
+    html_theme_options |= {
+        "source_repository": _project["urls"]["Repository"],
+        "source_branch": "main",
+        "source_directory": "docs/",
+    }
+
+myst_html_meta = {
+    "description": _project["description"],
+    "keywords": ", ".join(_project["keywords"]),
+}
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 

@@ -1,8 +1,8 @@
-"""Counts blocks of the built site that do not fit their page: `python tools/site_fit.py docs/build/html`.
+"""Looks at the built site in a browser: `python tools/check_site.py docs/build/html`.
 
 A block of code or output is clipped if part of it is only seen after scrolling. On a phone, nothing may be wider than
-the page, except a table that scrolls by itself. `--pictures DIR` also takes pictures of some pages: wide, narrow and
-dark. Needs playwright and Chromium.
+the page, except a table that scrolls by itself. Searches have to find their page. `--pictures DIR` also takes pictures
+of some pages: wide, narrow and dark. Needs playwright and Chromium.
 """
 
 import argparse
@@ -20,6 +20,19 @@ from viewer_pictures import visits
 LAPTOP, PHONE = (1366, 768), (390, 844)  # pixels
 PICTURED = ("index", "gallery/index", "first_ten_minutes", "planning", "scenes", "api/solving")
 NOT_OURS = ("genindex", "py-modindex", "search")  # pages that Sphinx writes
+
+# What is searched for, and a page that has to be among the first.
+SEARCHES = {
+    "pick and place": "pick_and_place.html",
+    "quaternion": "solving.html",
+    "degrees": "solving.html",
+    "conveyor": "tracking.html",
+    "gripper": "pick_and_place.html",
+    "mobile base": "mobile_bases.html",
+    "ROS 2": "ros2.html",
+    "URDF": "gallery/02_your_urdf.html",
+}
+_FIRST = 3  # results
 
 # The first line of each block that is clipped.
 _CLIPPED = """() => [...document.querySelectorAll("article pre")]
@@ -73,6 +86,20 @@ def misfits(browser: Any, address: str, names: list[str]) -> dict[str, list[str]
     return {where: blocks for where, blocks in found.items() if blocks}
 
 
+def lost(browser: Any, address: str) -> list[str]:
+    """Returns the searches that do not find their page among the first."""
+    page, missed = browser.new_page(), []
+    for words, wanted in SEARCHES.items():
+        page.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
+        page.wait_for_selector("ul.search li a")
+        page.wait_for_timeout(500)  # until all results are there
+        links = "[...document.querySelectorAll('ul.search li > a')].map(link => link.getAttribute('href'))"
+        found = [link.split("#")[0] for link in page.evaluate(links)]
+        if wanted not in found[:_FIRST]:
+            missed.append(f"{words}: {found[:_FIRST]}")
+    return missed
+
+
 def take_pictures(browser: Any, address: str, folder: Path, names: tuple[str, ...]) -> None:
     """Pictures pages on a laptop, on a phone and in dark mode."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -86,7 +113,7 @@ def take_pictures(browser: Any, address: str, folder: Path, names: tuple[str, ..
 
 
 def main() -> int:
-    """Prints what does not fit, and returns 1 if anything does not."""
+    """Prints what does not fit or is not found, and returns 1 if there is anything."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("site", type=Path)
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="take pictures of some pages too")
@@ -95,6 +122,7 @@ def main() -> int:
     names = options.page or pages(options.site)
     with served(options.site) as address, visits() as browser:
         found = misfits(browser, address, names)
+        missed = [] if options.page else lost(browser, address)
         if options.pictures:
             take_pictures(browser, address, options.pictures, tuple(options.page or PICTURED))
     for where, blocks in found.items():
@@ -102,7 +130,9 @@ def main() -> int:
     for width, _ in (LAPTOP, PHONE):
         count = sum(len(blocks) for where, blocks in found.items() if where.endswith(f"{width} px"))
         print(f"{count} blocks on {len(names)} pages do not fit at {width} px")
-    return int(bool(found))
+    if missed:
+        print("searches that do not find their page:", *missed, sep="\n    ")
+    return int(bool(found or missed))
 
 
 if __name__ == "__main__":
