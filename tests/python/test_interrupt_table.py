@@ -62,7 +62,7 @@ def walled_in() -> list[bik.obstacles.Box]:
 def table() -> dict[str, Callable[[], Callable[[], object]]]:
     """For each call a function that prepares its input, and returns the long call."""
     far = bik.paths.circle((5.0, 5.0, 5.0), diameter=0.2, duration=3600.0)
-    slow = bik.BAS(explorations=10**9)
+    slow = bik.papers.BAS(explorations=10**9)
     return {
         "Path.position": lambda: with_times(CIRCLE.position),
         "Path.velocity": lambda: with_times(CIRCLE.velocity),
@@ -101,9 +101,9 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "plan_point_to_point": lambda: (
             lambda: bik.plan_point_to_point(CAPSULES, **ENCLOSED, obstacles=walled_in(), stop=ENDLESS)
         ),
-        "planar_posture": lambda: (
-            lambda: bik.planar_posture(
-                PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+        "papers.planar_posture": lambda: (
+            lambda: bik.papers.planar_posture(
+                PLANAR, [0.5, 0.5, 0.0], swarm=bik.papers.CircleSwarm(population=1000, generations=10**6)
             )
         ),
         "self_motion": lambda: lambda: bik.self_motion(IIWA, IIWA.fk(START), spacing=1e-3),
@@ -114,9 +114,13 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Viewer.wait": lambda: bik.view(IIWA, port=0).wait,
         "view": lambda: lambda: bik.view(IIWA, port=0, block=True),
         "time_optimal": lambda: waypoints(100_000),
-        "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
+        "track": lambda: (
+            lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.papers.BAS(), position_tolerance=1e-12)
+        ),
         "track_model_free": lambda: (
-            lambda: bik.track_model_free(bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS())
+            lambda: bik.track_model_free(
+                bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.papers.ZNNBAS()
+            )
         ),
     }
 
