@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::session::Session;
-use super::track::TipPaths;
+use super::tip_paths::TipPaths;
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};

@@ -62,7 +62,7 @@ impl Session {
         let space = clear_space(&surroundings, &arm.robot)?;
         let filters = !arm.has_one_tip() || space.is_some();
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, &arm.limits)?)) } else { None };
-        let running = options.rule.start(&arm);
+        let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
         Ok(Self { arm, rule, running, goals, surroundings, safety, stopping: false, seed, rng })
     }
@@ -381,7 +381,7 @@ impl Session {
 
     /// The rule starts anew.
     fn start_rule(&mut self) {
-        self.running = self.rule.start(&self.arm);
+        self.running = self.rule.start(self.arm.limited.is_some(), !self.arm.has_one_tip());
     }
 
     /// Resets the session to `q` (n,) at t = 0, at rest.

@@ -3,8 +3,7 @@
 use super::approach_motion::ApproachMotion;
 use super::record::Record;
 use super::session::Session;
-use super::step::Step;
-use super::target_stream::Arrival;
+use super::tip_paths::TipPaths;
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::ik::{Prefer, SolveOptions, solve_tips};
@@ -14,7 +13,7 @@ use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
-use crate::task::{Goal, NamedTask, Target, TargetRow, Tolerance};
+use crate::task::{Goal, NamedTask, Target, Tolerance};
 
 /// Follows `path` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
 ///
@@ -30,15 +29,6 @@ pub fn track(
 ) -> Result<Record> {
     robot.require_one_tip("track")?;
     track_tips(robot, &TipPaths { tips: &[], paths: std::slice::from_ref(path) }, start, options, monitor)
-}
-
-/// Paths that are followed at the same time.
-#[derive(Debug, Clone, Copy)]
-pub struct TipPaths<'a> {
-    /// The tasks of several tips, in the order of their paths; empty for a robot with one tip.
-    pub tips: &'a [NamedTask],
-    /// The paths, sampled at the same times.
-    pub paths: &'a [Reference],
 }
 
 /// [`track`] with each of several tips. Pairs of tips that are where they are to be are held there before anything else: where one arm
@@ -89,57 +79,6 @@ pub fn track_tips(
         record.out_of_reach = farthest_out_of_reach(asked, record.joined().unwrap_or(0), &mut session)?;
     }
     Ok(record)
-}
-
-impl<'a> TipPaths<'a> {
-    /// The first path, of which there is one at least; all are sampled at the same times.
-    fn first(&self) -> Result<&'a Reference> {
-        let [first, others @ ..] = self.paths else {
-            return Err(Error::WrongLength { what: "paths".into(), expected: "one at least".into(), got: 0 });
-        };
-        match others.iter().find(|path| path.len() != first.len() || path.dt() != first.dt()) {
-            None => Ok(first),
-            Some(other) => {
-                let expected = format!("{} samples of {} s, as the first path has", first.len(), first.dt());
-                Err(Error::WrongLength { what: "a path of several".into(), expected, got: other.len() })
-            }
-        }
-    }
-
-    /// Number of rows.
-    pub(super) fn len(&self) -> usize {
-        self.paths[0].len()
-    }
-
-    /// Time of row `i` (s).
-    pub(super) fn time(&self, i: usize) -> f64 {
-        self.paths[0].time(i)
-    }
-
-    /// Targets of row `i`: poses of paths with orientations, else positions.
-    fn targets(&self, i: usize) -> TargetRow {
-        let target =
-            |path: &Reference| path.pose(i).map_or(Target::Position(path.position(i)), |pose| Target::from(&pose));
-        let mut targets = TargetRow::new();
-        self.paths.iter().for_each(|path| targets.push(target(path)));
-        targets
-    }
-
-    /// The targets of row `i` as they arrive.
-    pub(super) fn arrival(&self, i: usize) -> Arrival {
-        Arrival { tips: self.tips.to_vec(), targets: self.targets(i), velocity: self.paths[0].velocity(i), stamp: None }
-    }
-
-    /// Appends the result of the next tick to `record`.
-    fn push(&self, session: &Session, step: &Step, record: &mut Record) {
-        let row = record.rows();
-        let references = self.paths.iter().map(|path| path.position(row));
-        record.push(&session.accepted(), self.paths[0].position(row), step);
-        if !self.tips.is_empty() {
-            record.tips.push(session.tip_positions(), references, session.tip_errors());
-            record.position[row] = record.tips.positions[row * self.paths.len()];
-        }
-    }
 }
 
 /// Returns the largest distance by which a path is provably out of reach from row `first` on, and its time (s).

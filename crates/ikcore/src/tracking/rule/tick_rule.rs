@@ -10,7 +10,6 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
 use crate::tracking::safety_filter::SafetyFilter;
-use crate::tracking::tracked_arm::TrackedArm;
 
 /// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -84,11 +83,11 @@ impl TickRule {
         *self == Self::MidStep && under_acceleration
     }
 
-    /// Starts the rule.
-    pub(in crate::tracking) fn start(&self, arm: &TrackedArm) -> RunningRule {
+    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without, with several tips or one.
+    pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
         match self {
-            Self::MidStep if arm.limited.is_some() => RunningRule::GoalPursuit(Box::default()),
-            Self::MidStep if !arm.has_one_tip() => RunningRule::TipStep(TipStep::default()),
+            Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
+            Self::MidStep if several_tips => RunningRule::TipStep(TipStep::default()),
             Self::MidStep => RunningRule::MidStep(MidStepState::default()),
             Self::Solver(solver) => RunningRule::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
