@@ -6,12 +6,12 @@ use super::endpoint::{EndName, Endpoint};
 use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{PointToPointMethod, PointToPointOptions};
-use super::several_tips::plan_tips;
+use super::several_tips::tip_ends;
 use super::{minmax, tpbso};
 use crate::error::{Error, Result};
 use crate::obstacle::kept_margin;
 use crate::robot::Robot;
-use crate::solver::Monitor;
+use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
 
 /// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
@@ -32,14 +32,20 @@ pub fn plan_point_to_point(
     check_point_to_point(robot, start, ends, options)?;
     require_joint_space(robot, options)?;
     let names_tips = |end: &Endpoint| matches!(end, Endpoint::Targets { tips, .. } if !tips.is_empty());
-    match std::iter::once(start).chain(ends).any(names_tips) {
-        true => plan_tips(robot, start, ends, options, monitor),
-        false => plan_joined(robot, start, ends, options, monitor),
+    if !std::iter::once(start).chain(ends).any(names_tips) {
+        return plan_joined(robot, start, ends, options, monitor);
     }
+    let stopwatch = Stopwatch::start();
+    let tips = tip_ends(robot, start, ends, options, monitor)?;
+    let mut plan = plan_joined(robot, &tips.start, &tips.ends, options, monitor)?;
+    plan.chosen_end = plan.chosen_end.and_then(|chosen| tips.origins.get(chosen).copied());
+    plan.evaluations += tips.evaluations;
+    plan.elapsed = stopwatch.elapsed();
+    Ok(plan)
 }
 
 /// [`plan_point_to_point`] between configurations, or plain targets of the only tip, which have been checked.
-pub(super) fn plan_joined(
+fn plan_joined(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],

@@ -3,32 +3,38 @@
 use super::collision_checks::{RESERVE, can_collide};
 use super::endpoint::{EndName, Endpoint, no_usable_end};
 use super::motion_limits::MotionLimits;
-use super::plan::Plan;
 use super::planner_options::PointToPointOptions;
-use super::point_to_point::plan_joined;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status, Stopwatch};
+use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;
 
-/// Plans the motion of several tips. Targets of the start are solved first; each end is taken at the solution that a descent from the
-/// start leads to, and at a few others: the motion with the lowest cost is returned.
+/// Configurations of the ends of a motion of several tips.
+pub(super) struct TipEnds {
+    pub start: Endpoint,
+    pub ends: Vec<Endpoint>,
+    /// The number of the end that each of `ends` is a configuration of.
+    pub origins: Vec<usize>,
+    pub evaluations: usize,
+}
+
+/// Finds configurations of the ends. Targets of the start are solved first; each end is taken at the solution that a descent from the
+/// start leads to, and at a few others.
 ///
 /// # Errors
 /// As [`plan_point_to_point`](super::plan_point_to_point()).
-pub(super) fn plan_tips(
+pub(super) fn tip_ends(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
-) -> Result<Plan> {
-    let stopwatch = Stopwatch::start();
+) -> Result<TipEnds> {
     let mut search = EndSearch::new(robot, options)?;
     let start = search.start(start, monitor)?;
     let (mut found, mut origins, mut problems) = (vec![], vec![], vec![]);
@@ -45,11 +51,8 @@ pub(super) fn plan_tips(
     if found.is_empty() {
         return Err(no_usable_end(ends.len(), problems));
     }
-    let mut plan = plan_joined(robot, &Endpoint::Configuration(start), &found, options, monitor)?;
-    plan.chosen_end = plan.chosen_end.and_then(|chosen| origins.get(chosen).copied());
-    plan.evaluations += search.evaluations;
-    plan.elapsed = stopwatch.elapsed();
-    Ok(plan)
+    let start = Endpoint::Configuration(start);
+    Ok(TipEnds { start, ends: found, origins, evaluations: search.evaluations })
 }
 
 /// Solves for configurations of the ends.
