@@ -1,17 +1,14 @@
 //! Point to point for robots with several tips: targets of the tips become configurations, between which the planner joins.
 
-use super::collision_checks::{RESERVE, can_collide};
-use super::endpoint::{EndName, Endpoint, no_usable_end};
-use super::motion_limits::MotionLimits;
-use super::plan::Plan;
-use super::planner_options::PointToPointOptions;
 use super::point_to_point::{check_point_to_point, plan_point_to_point};
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, checked_tasks, reduce, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
+use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, RESERVE, can_collide, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::{Target, TipTask};
+use crate::timing::MotionLimits;
 
 /// The start of a motion of several tips, or one of its possible ends.
 #[derive(Debug, Clone, PartialEq)]
