@@ -23,7 +23,7 @@ fn to(end: Endpoint, options: &Arc<PointToPointOptions>) -> PlanProblem {
 }
 
 fn at(position: [f64; 3]) -> Endpoint {
-    Endpoint::Target(Target::Position(position))
+    Endpoint::from(Target::Position(position))
 }
 
 /// Around a ball, beside it, and out of reach.

@@ -102,7 +102,7 @@ impl LineSearch<'_> {
                 self.position_limits.require_inside(&name.of_target(), 0.0, q)?;
                 return Ok(vec![q.clone()]);
             }
-            Endpoint::Target(target) => target,
+            Endpoint::Targets { targets, .. } => &targets[0],
         };
         let space = self.along_line.as_ref().map(|(space, _)| *space);
         let each = SolveOptions {

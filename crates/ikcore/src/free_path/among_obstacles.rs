@@ -41,7 +41,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
     let refusal = |name: EndName, end: &Endpoint| match end {
         Endpoint::Configuration(q) => refuse_collision(&name.of_target(), &scene, q, margin),
-        Endpoint::Target(_) => Ok(()),
+        Endpoint::Targets { .. } => Ok(()),
     };
     refusal(EndName::Start, search.start)?;
     let refused: Vec<Error> =

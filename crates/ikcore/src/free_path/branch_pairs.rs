@@ -22,13 +22,13 @@ impl PairSearch<'_> {
         let starts = self.configurations(given_start, monitor)?;
         let ends = self.configurations(given_end, monitor)?;
         let bounds = Bounds::from_ranges(self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied()));
-        let start_is_free = matches!(given_start, Endpoint::Target(_));
+        let start_is_free = matches!(given_start, Endpoint::Targets { .. });
         let mut pairs = Vec::with_capacity(starts.len() * ends.len());
         for start in &starts {
             for end in &ends {
                 let (mut start, mut end) = (start.clone(), end.clone());
                 match given_end {
-                    Endpoint::Target(_) => bring_near(self.robot, &bounds, &start, &mut end),
+                    Endpoint::Targets { .. } => bring_near(self.robot, &bounds, &start, &mut end),
                     Endpoint::Configuration(_) if start_is_free => bring_near(self.robot, &bounds, &end, &mut start),
                     Endpoint::Configuration(_) => {}
                 }
@@ -43,7 +43,7 @@ impl PairSearch<'_> {
     fn configurations(&mut self, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
         let target = match end {
             Endpoint::Configuration(q) => return Ok(vec![q.as_slice().into()]),
-            Endpoint::Target(target) => target,
+            Endpoint::Targets { targets, .. } => &targets[0],
         };
         let each = self.solve_options();
         let options = AllOptions { each, limit: Some(BRANCHES), redundancy: 0, ..AllOptions::default() };

@@ -110,7 +110,7 @@ impl<'a> PairSearch<'a> {
             let Some(first) = first.map_err(Missing::Start)? else { continue };
             // The second end is solved from the first, so that the solution is usually near. If the first is given,
             // only once: every attempt would find the same.
-            let another = attempt == 0 || matches!(start, Endpoint::Target(_));
+            let another = attempt == 0 || matches!(start, Endpoint::Targets { .. });
             let near = another.then_some(&first[..]);
             let second = self.configuration(self.name(chosen), end, near, attempt, monitor);
             let Some(second) = second.map_err(Missing::End)? else { continue };
@@ -181,7 +181,7 @@ impl<'a> PairSearch<'a> {
     fn require_inside(&self, name: EndName, end: &Endpoint) -> Result<()> {
         match end {
             Endpoint::Configuration(q) => self.position_limits.require_inside(&name.of_target(), 0.0, q),
-            Endpoint::Target(_) => Ok(()),
+            Endpoint::Targets { .. } => Ok(()),
         }
     }
 
@@ -196,7 +196,7 @@ impl<'a> PairSearch<'a> {
     ) -> Result<Option<Point>> {
         let target = match end {
             Endpoint::Configuration(q) => return Ok(Some(q.as_slice().into())),
-            Endpoint::Target(target) => target,
+            Endpoint::Targets { targets, .. } => &targets[0],
         };
         let start = match near {
             Some(q) => Some(q.to_vec()),
@@ -230,7 +230,7 @@ impl<'a> PairSearch<'a> {
     /// Returns the pair moved along its self-motion, or unchanged if that does not help.
     fn improved(&mut self, pair: EndPair, monitor: &mut dyn Monitor) -> EndPair {
         let free = [self.start, &self.ends[pair.chosen]].map(|end| match end {
-            Endpoint::Target(target) => Some(target),
+            Endpoint::Targets { targets, .. } => targets.first(),
             Endpoint::Configuration(_) => None,
         });
         let mut moved = pair.clone();

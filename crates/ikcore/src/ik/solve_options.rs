@@ -2,6 +2,7 @@
 
 use crate::limits::Limits;
 use crate::obstacle::Surroundings;
+use crate::robot::Robot;
 use crate::solver::{AnySolver, Stop};
 use crate::task::{Goal, Task, TipTask, Tolerance};
 use crate::wording::words;
@@ -50,4 +51,12 @@ pub struct SolveOptions {
     /// Seed of the random draws; the same seed gives the same bits. Most targets are solved without a random draw, and
     /// so independently of the seed.
     pub seed: u64,
+}
+
+impl SolveOptions {
+    /// The task of the only tip; `None` for a robot with several.
+    pub(super) fn only_task(&self, robot: &Robot) -> Option<Task> {
+        let named = || self.tips.first().and_then(|tip| tip.task);
+        self.task.or_else(named).filter(|_| robot.tip_count() == 1)
+    }
 }

@@ -1,16 +1,30 @@
 //! The start or end of a motion.
 
+use smallvec::smallvec;
+
 use crate::error::{Error, Result};
+use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Target, Task};
+use crate::task::{Target, TargetRow, Task, TipTask, Tolerance};
 
 /// The start of a motion, or one of its possible ends.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Endpoint {
-    /// A target of the tip; the planner chooses the configuration.
-    Target(Target),
+    /// Targets of the tips; the planner chooses the configuration.
+    Targets {
+        /// The tasks of several tips, in the order of their targets; tips without one are free. Empty for a plain target of the only tip.
+        tips: Vec<TipTask>,
+        /// The targets.
+        targets: TargetRow,
+    },
     /// A configuration (n,) (rad, m).
     Configuration(Vec<f64>),
+}
+
+impl From<Target> for Endpoint {
+    fn from(target: Target) -> Self {
+        Self::Targets { tips: vec![], targets: smallvec![target] }
+    }
 }
 
 /// Number of ends that a message lists.
@@ -21,15 +35,21 @@ impl Endpoint {
     /// kind; `name` names the end.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::WrongLength`] or [`Error::WrongTarget`].
+    /// [`Error::NotFinite`], [`Error::WrongLength`], [`Error::WrongTarget`], or those of wrong tasks of several tips.
     pub(crate) fn check(&self, name: EndName, robot: &Robot, task: Option<&Task>) -> Result<()> {
         match self {
-            Self::Target(target) => {
-                target.validate().map_err(|error| match error {
+            Self::Targets { tips, targets } if tips.is_empty() => {
+                robot.require_one_tip("a plain target of plan_point_to_point")?;
+                targets.iter().try_for_each(Target::validate).map_err(|error| match error {
                     Error::NotFinite { place, value, .. } => Error::NotFinite { what: name.of_target(), place, value },
                     other => other,
                 })?;
-                task.map_or(Ok(()), |task| task.target(target).map(|_| ()))
+                let only = TipTask::of_only(task.copied(), Tolerance::default()).validated()?;
+                reduce(robot, &[only], &mut targets.clone())
+            }
+            Self::Targets { tips, targets } => {
+                targets.iter().try_for_each(Target::validate)?;
+                reduce(robot, &checked_tasks(robot, tips)?, &mut targets.clone())
             }
             Self::Configuration(q) => robot.check(&name.of_configuration(), q),
         }

@@ -29,5 +29,5 @@ pub use crate::plan::{
 };
 pub use crate::timing::{JointPath, SplineEnds, TimingLimits, TimingOptions, Violation, time_optimal};
 pub use along_path::plan_along_path;
+pub(crate) use point_to_point::check_point_to_point;
 pub use point_to_point::plan_point_to_point;
-pub use several_tips::{MotionEnd, TipsEndpoint, plan_point_to_point_tips};

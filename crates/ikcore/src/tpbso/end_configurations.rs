@@ -59,7 +59,7 @@ impl EndConfigurations {
                 robot.require_within(what, q, &limits.lower, &limits.upper)?;
                 return Ok(Self::Fixed(q.clone()));
             }
-            Endpoint::Target(target) => target,
+            Endpoint::Targets { targets, .. } => &targets[0],
         };
         if let Some((arm, place)) = planar(robot, target) {
             if let Some(problem) = arm.problem(&place) {

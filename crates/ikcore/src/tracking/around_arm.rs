@@ -6,9 +6,8 @@
 
 use std::sync::Arc;
 
-use super::row_motion::RowMotion;
-use super::stop_motion::StopMotion;
-use super::wish::Wish;
+use super::constrained_step::ConstrainedStep;
+use super::step_context::StepContext;
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
@@ -120,8 +119,9 @@ impl Around {
     }
 
     /// Finds the pairs near the place of rest.
-    pub fn find_near(&mut self, wish: &Wish<'_>, rest: &[f64]) {
-        let reach: f64 = wish.lower().iter().zip(wish.upper()).map(|(lower, upper)| upper - lower).sum();
+    pub fn find_near(&mut self, context: &StepContext<'_>, rest: &[f64]) {
+        let [lower, upper] = context.ends();
+        let reach: f64 = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).sum();
         let far = self.obstacles.fastest() * (self.since + WARNING);
         let up_to = self.space.margin() + reach.clamp(NEAR[0], NEAR[1]) + 2.0 * far;
         self.space.find_rows(rest, up_to, &mut self.near);
@@ -169,25 +169,25 @@ impl Around {
     /// `command` breaks one.
     pub fn set_rows(
         &self,
-        wish: &Wish<'_>,
+        context: &StepContext<'_>,
         (rest, stop_ticks): (&[f64], f64),
         command: &[f64],
-        RowMotion { rows, wanted, .. }: &mut RowMotion,
+        ConstrainedStep { rows, wanted, .. }: &mut ConstrainedStep,
     ) -> bool {
         if self.near.rows().is_empty() && self.coming.rows().is_empty() {
             return false;
         }
-        let response = Response::new(wish, rest);
-        let stop_time = wish.dt * stop_ticks;
-        let pace = (wish.dt / PACE).min(1.0);
+        let response = Response::new(context, rest);
+        let stop_time = context.dt * stop_ticks;
+        let pace = (context.dt / PACE).min(1.0);
         for near in self.near.rows() {
             // The obstacle moves on while the command is carried out.
-            let [until_rest, while_leaving] = self.approach_of(near, wish.dt + stop_time);
+            let [until_rest, while_leaving] = self.approach_of(near, context.dt + stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
-            let whole = missing + self.room(wish.limited.is_some()) + while_leaving;
+            let whole = missing + self.room(context.limited.is_some()) + while_leaving;
             // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
             // velocity at once also comes nearer in time, so that it can give way.
-            let paced = if whole > 0.0 || wish.limited.is_some() { pace * whole } else { whole };
+            let paced = if whole > 0.0 || context.limited.is_some() { pace * whole } else { whole };
             if near.distance < 0.0 {
                 // The deepest counts most: bodies on both sides of an obstacle want opposite ways out.
                 let weight = (near.distance / self.near.rows()[0].distance).powi(2);
@@ -204,8 +204,9 @@ impl Around {
             }
         }
         for coming in self.coming.rows() {
-            let paced = if coming.short > 0.0 || wish.limited.is_some() { pace * coming.short } else { coming.short };
-            let row = response.row(&coming.gradient, paced + GIVING_WAY * wish.dt);
+            let paced =
+                if coming.short > 0.0 || context.limited.is_some() { pace * coming.short } else { coming.short };
+            let row = response.row(&coming.gradient, paced + GIVING_WAY * context.dt);
             rows.push(Row { softness: WISHED, ..row });
         }
         rows.iter().chain(&*wanted).any(|row| dot(&row.gradient, command) < row.least)
@@ -214,15 +215,15 @@ impl Around {
     /// Sets the rows of the place where the arm comes to rest after the command `q`: they bend on the way there.
     pub fn set_rows_after(
         &mut self,
-        wish: &Wish<'_>,
+        context: &StepContext<'_>,
         (rest, stop_ticks): (&[f64], f64),
         q: &[f64],
         rows: &mut Vec<Row>,
     ) {
-        let slope = Response::new(wish, rest).slope;
+        let slope = Response::new(context, rest).slope;
         self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
         for near in self.after.rows().iter().filter(|near| near.distance >= 0.0) {
-            let [until_rest, _] = self.approach_of(near, wish.dt * stop_ticks);
+            let [until_rest, _] = self.approach_of(near, context.dt * stop_ticks);
             let least = self.space.margin() + until_rest + LEAST_ROOM - near.distance;
             let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
             (0..q.len()).for_each(|j| row.gradient[j] = near.gradient[j] * slope[j]);
@@ -259,14 +260,14 @@ pub(super) struct Response {
 }
 
 impl Response {
-    pub fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
+    pub fn new(context: &StepContext<'_>, rest: &[f64]) -> Self {
         let at_once =
             Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
-        let Some(limited) = wish.limited else { return at_once };
-        let (braking, state) = (limited.braking(), limited.state());
+        let Some(limited) = context.limited else { return at_once };
+        let braking = limited.braking();
         let Self { mut slope, mut offset } = at_once;
-        let [lower, upper] = [wish.lower(), wish.upper()];
-        let [low, high] = [lower, upper].map(|command| StopMotion::new(wish.q, command, Some((braking, state))));
+        let [lower, upper] = context.ends();
+        let [low, high] = [lower, upper].map(|command| context.stop_after(command));
         for j in 0..rest.len() {
             let width = upper[j] - lower[j];
             if width > 0.0 && braking[j].acceleration < f64::INFINITY {

@@ -1,20 +1,18 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that runs in it.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::around_arm::ObstacleMotion;
-use super::kept_motion::{Kept, KeptMotion};
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::repeated_targets::RepeatedTargets;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
+use super::safety_filter::{Kept, SafetyFilter};
 use super::step::Step;
-use super::target_stream::{Arrival, Arriving, TargetStream, TipArrival};
-use super::tick_aim::TickAim;
-use super::tip_order::TipOrder;
+use super::step_context::StepContext;
+use super::target_stream::{Arrival, TargetStream};
+use super::tip_tasks::TipTasks;
 use super::track_options::TrackOptions;
-use super::wish::Wish;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -25,10 +23,28 @@ use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goals, Target, TargetRow, Task, TipAims, TipError, TipTask};
+use crate::task::{Aims, Assessment, Goals, Region, Target, TipError};
 
 /// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
+
+/// The context of the next tick of a session; a macro, because a method would borrow the whole session.
+macro_rules! context {
+    ($session:ident) => {
+        StepContext {
+            robot: &$session.robot,
+            q: &$session.q,
+            aims: $session.tasks.with($session.targets.last()),
+            tick_box: &$session.tick_box,
+            limits: &$session.limits,
+            limit_at: $session.limit_at,
+            limited: $session.limited.as_ref(),
+            last_value: $session.last_value,
+            time: $session.ticks as f64 * $session.dt,
+            dt: $session.dt,
+        }
+    };
+}
 
 /// A tracker in progress.
 #[derive(Debug)]
@@ -38,10 +54,7 @@ pub struct Session {
     limit_at: LimitAt,
     rule: TickRule,
     running: RunningRule,
-    task: Option<Task>,
-    criterion: Criterion,
-    /// What was last asked of several tips; `None` for one.
-    tips: Option<Box<TipOrder>>,
+    tasks: TipTasks,
     goals: Goals,
     dt: f64,
     ticks: usize,
@@ -56,7 +69,7 @@ pub struct Session {
     limited: Option<LimitedMotion>,
     surroundings: Surroundings,
     /// Where something is to be kept clear of, or pairs of tips may be held.
-    kept: Option<Box<KeptMotion>>,
+    safety: Option<Box<SafetyFilter>>,
     /// The arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -76,7 +89,7 @@ impl Session {
         require_positive("dt", dt)?;
         options.rule.validate()?;
         options.rule.validate_for(robot, dt)?;
-        let criterion = options.criterion()?;
+        let tasks = TipTasks::new(robot, options)?;
         options.check_goals(robot)?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
@@ -84,22 +97,22 @@ impl Session {
         let running = options.rule.start(limited.is_some(), several_tips);
         let repeated = running.extrapolates().then(|| RepeatedTargets::new(dt));
         let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
-        if criterion.region.is_some() {
+        if tasks.region().is_some() {
             require_room_to_stop(&limits)?;
         }
         robot.check("start", start)?;
         let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
-        require_inside(&robot, &limits, &criterion, "start", start)?;
+        require_inside(&robot, &limits, tasks.region(), "start", start)?;
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
         let surroundings = options.surroundings.clone();
         let space = clear_space(&surroundings, &robot)?;
-        let keeps = several_tips || space.is_some();
-        let kept = if keeps { Some(Box::new(KeptMotion::new(space, &limits)?)) } else { None };
+        let filters = several_tips || space.is_some();
+        let safety = if filters { Some(Box::new(SafetyFilter::new(space, &limits)?)) } else { None };
         Ok(Self {
-            kept,
-            tips: several_tips.then(Box::default),
+            safety,
+            tasks,
             surroundings,
             robot,
             tick_box: TickBox::around(start, &limits),
@@ -108,8 +121,6 @@ impl Session {
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
-            task: options.task,
-            criterion,
             goals,
             dt,
             ticks: 0,
@@ -153,57 +164,34 @@ impl Session {
         &self.tick_box.velocity
     }
 
-    pub(super) fn criterion(&self) -> &Criterion {
-        &self.criterion
+    /// Tasks and targets; empty before the first target.
+    fn aims(&self) -> Aims<'_> {
+        self.tasks.with(self.targets.last())
     }
 
-    /// Returns the part of `wanted` that the task uses, validated.
-    fn read<'a>(&self, wanted: &'a Target) -> Result<Cow<'a, Target>> {
-        wanted.validate()?;
-        self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
-    }
-
-    /// What is to be achieved, once a target has arrived.
-    fn aim(&self) -> Option<TickAim<'_>> {
-        aim(&self.targets, self.tips.as_deref(), &self.criterion)
-    }
-
-    /// Tasks and targets of several tips, once they have arrived.
+    /// Errors of each target of several tips, once these have arrived.
     pub fn tip_errors(&self) -> Vec<TipError> {
-        let aim = self.aim();
-        aim.as_ref().and_then(TickAim::tips).map_or(vec![], |aims| aims.errors(&self.robot, &self.q).to_vec())
+        if self.has_one_tip() { vec![] } else { self.aims().errors(&self.robot, &self.q).to_vec() }
     }
 
     /// Positions (m) of the tips that have targets, in the order of these; of pairs as seen from the first tip.
     pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
         let mut positions = vec![];
-        if let Some(TickAim::Tips(aims)) = self.aim() {
-            aims.positions(&self.robot, &self.q, |position| positions.push(position));
-        }
+        self.aims().positions(&self.robot, &self.q, |position| positions.push(position));
         positions
     }
 
-    /// Returns how far `wanted` is provably out of reach within `bounds`.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
-    pub(super) fn reach_shortfall(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
-        let target = self.read(wanted)?;
-        Ok(Problem::new(&self.robot, &target, self.criterion).reach_shortfall(bounds))
+    fn has_one_tip(&self) -> bool {
+        self.robot.tip_count() == 1
     }
 
-    /// [`reach_shortfall`](Self::reach_shortfall) for several tips.
+    /// Returns how far the targets of `arrival` are provably out of reach within `bounds`.
     ///
     /// # Errors
-    /// As [`advance_tips`](Self::advance_tips).
-    pub(super) fn reach_shortfall_of_tips(
-        &mut self,
-        wanted: &[(TipTask, Target)],
-        bounds: &Bounds,
-    ) -> Result<Option<ReachShortfall>> {
-        let targets = self.read_tips(wanted)?;
-        let tasks = self.tips.as_ref().map_or(&[][..], |tips| tips.tasks());
-        Ok(Problem::of_moving_tips(&self.robot, TipAims { tasks, targets: &targets }).reach_shortfall(bounds))
+    /// As [`advance`](Self::advance).
+    pub(super) fn reach_shortfall(&mut self, arrival: Arrival, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
+        let targets = &self.read(arrival)?.targets;
+        Ok(Problem::new(&self.robot, self.tasks.with(targets)).reach_shortfall(bounds))
     }
 
     /// Configuration and box of the last tick.
@@ -219,32 +207,19 @@ impl Session {
         &self.robot
     }
 
-    /// Evaluates the start without moving; its error to `target`, which moves at `velocity` (m/s), is the value that
-    /// the first tick must beat.
+    /// Evaluates the start without moving; its error to the targets is the value that the first tick must beat.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
-    pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
-        self.robot.require_one_tip("a plain target")?;
-        let target = self.read(target)?;
-        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
-        Ok(self.beginning())
-    }
-
-    /// [`begin`](Self::begin) for several tips.
-    ///
-    /// # Errors
-    /// As [`advance_tips`](Self::advance_tips).
-    pub fn begin_tips(&mut self, targets: &[(TipTask, Target)]) -> Result<Step> {
-        let targets = self.read_tips(targets)?;
-        self.targets.place(targets, None);
+    /// As [`advance`](Self::advance).
+    pub fn begin(&mut self, arrival: Arrival) -> Result<Step> {
+        let arrival = self.read(arrival)?;
+        self.targets.place(arrival);
         Ok(self.beginning())
     }
 
     /// The start as a step.
     fn beginning(&mut self) -> Step {
-        let assessment = self.aim().map(|aim| aim.assess(&self.robot, &self.q));
-        let Assessment { score, error } = assessment.unwrap_or(TickResult::at(&self.q).assessment);
+        let Assessment { score, error } = self.aims().assess(&self.robot, &self.q);
         self.last_value = Some(score.value);
         let status = match score.solved {
             true if self.is_blocked_by_region() => Status::HeldInRegion,
@@ -256,71 +231,40 @@ impl Session {
         Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
     }
 
-    /// Whether the region keeps the tip from its target.
+    /// Whether the region keeps the only tip from its target.
     fn is_blocked_by_region(&self) -> bool {
-        match self.aim() {
-            Some(TickAim::Tip { target, criterion }) => criterion.blocked_by_region(target).is_some(),
-            _ => false,
-        }
+        let only = self.aims().only(&self.robot);
+        only.is_some_and(|(target, criterion)| criterion.blocked_by_region(target).is_some())
     }
 
-    /// Moves by one tick towards `target`, inside the limits. Time advances whether or not the target is reached.
+    /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is reached.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
     /// [`Error::WrongTarget`](crate::Error::WrongTarget) if the target lacks a component that the task needs. The session
     /// has not moved then.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
-        self.step_moving(target, None, monitor)
+        self.advance(Some(Arrival::from(*target)), monitor)
     }
 
-    /// Like [`step`](Self::step), with the velocity (m/s) of the target at the end of the tick, for rules that work
-    /// with velocities. `None` derives it from the previous target.
+    /// Moves by one tick, with the targets that have arrived since the last tick, if any; tips without one are free. Without a new target
+    /// the arm follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
+    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes. Pairs of tips that are where they are
+    /// to be are held there, before anything else.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
-    pub fn step_moving(
-        &mut self,
-        target: &Target,
-        velocity: Option<[f64; 3]>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Step> {
-        self.advance(Some(Arrival { target: *target, velocity, stamp: None }), monitor)
-    }
-
-    /// Moves by one tick, with the target that has arrived since the last tick, if any. Without a new target the arm
-    /// follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
-    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step), and [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
-    /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use.
+    /// As [`step`](Self::step), [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
+    /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use or for targets that contradict each
+    /// other.
     pub fn advance(&mut self, arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let arrival = arrival.map(|arrival| self.read_arrival(&arrival)).transpose()?;
-        self.tick(arrival, monitor)
-    }
-
-    /// [`advance`](Self::advance) for several tips, each with a target or free. Pairs that are where they are to be are held there,
-    /// before anything else.
-    ///
-    /// # Errors
-    /// As [`advance`](Self::advance), and [`Error::Contradiction`](crate::Error::Contradiction) for targets that contradict each other.
-    pub fn advance_tips(&mut self, arrival: Option<TipArrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let arrival = arrival.map(|TipArrival { targets, stamp }| {
-            self.check_stamp(stamp)?;
-            Ok(Arriving { targets: self.read_tips(&targets)?, velocity: None, stamp })
-        });
-        self.tick(arrival.transpose()?, monitor)
-    }
-
-    fn tick(&mut self, arrival: Option<Arriving>, monitor: &mut dyn Monitor) -> Result<Step> {
+        let arrival = arrival.map(|arrival| self.read(arrival)).transpose()?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let sampled_ago = self.targets.take(arrival, to)?.map(|ago| ago / self.dt);
         self.update_stopping(sampled_ago.is_some(), to);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
         let (q, tick_box) = (&self.q, &mut self.tick_box);
         let can_stop = self.limited.as_mut().is_none_or(|limited| limited.narrow(q, from, &self.limits, tick_box));
-        let mut found = if self.stopping || self.targets.last().is_none() {
+        let mut found = if self.stopping || self.targets.last().is_empty() {
             self.brake()
         } else {
             self.run_rule(sampled_ago, monitor)
@@ -336,26 +280,16 @@ impl Session {
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// Reduces an arrival to the part that the task uses, validated.
-    fn read_arrival(&self, arrival: &Arrival) -> Result<Arriving> {
-        self.robot.require_one_tip("a plain target")?;
-        self.check_stamp(arrival.stamp)?;
-        Ok(Arriving::of_one(*self.read(&arrival.target)?, arrival.velocity, arrival.stamp))
-    }
-
-    /// The parts of targets of several tips that their tasks use, validated. Other tasks than before begin anew.
-    fn read_tips(&mut self, asked: &[(TipTask, Target)]) -> Result<TargetRow> {
-        let Some(tips) = &mut self.tips else {
-            let problem = format!("robot '{}' has one tip: give a plain target", self.robot.name());
-            return Err(Error::Contradiction { problem });
-        };
-        let (targets, are_new) = tips.read(&self.robot, asked)?;
-        if are_new {
+    /// Checks an arrival, and reduces its targets to the parts that their tasks use. Other tasks than before begin anew.
+    fn read(&mut self, arrival: Arrival) -> Result<Arrival> {
+        let Arrival { tips, mut targets, velocity, stamp } = arrival;
+        self.check_stamp(stamp)?;
+        if self.tasks.read(&self.robot, &tips, &mut targets)? {
             self.targets.begin_anew();
             self.running.forget();
             self.last_value = None;
         }
-        Ok(targets)
+        Ok(Arrival { tips: vec![], targets, velocity, stamp })
     }
 
     /// Err for a stamp that the rule cannot use.
@@ -384,36 +318,17 @@ impl Session {
     }
 
     fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
-        let tips = self.tips.as_deref();
-        let Some([target, ..]) = self.targets.last() else { return TickResult::at(&self.q) };
-        let tick = Tick {
-            robot: &self.robot,
-            target,
-            criterion: &self.criterion,
-            tips: tips.zip(self.targets.last()).map(|(tips, targets)| TipAims { tasks: tips.tasks(), targets }),
-            goals: &mut self.goals,
-            velocity: self.targets.velocity(),
-            before: self.targets.before(),
-            moves: tips.is_some() && self.targets.moves(),
-            time: self.ticks as f64 * self.dt,
-            dt: self.dt,
-            limits: &self.limits,
-            velocity_limit: &self.tick_box.velocity,
-            limited: self.limited.as_ref(),
-            kept: self.kept.as_deref_mut(),
-            sampled_ago,
-            tick_box: &self.tick_box.bounds,
-            last_value: self.last_value,
-            rng: &mut self.rng,
-            monitor,
-        };
-        self.running.advance(&self.q, tick)
+        let (context, targets) = (context!(self), &self.targets);
+        let Some((task, target)) = context.aims.iter().next() else { return TickResult::at(&self.q) };
+        let (criterion, goals, rng) = (&task.criterion, &mut self.goals, &mut self.rng);
+        let tick = Tick { context, target, criterion, goals, targets, sampled_ago, rng, monitor };
+        self.running.advance(tick, self.safety.as_deref_mut())
     }
 
     /// Moves by one tick of the stop that was certified with the last command.
     fn brake(&mut self) -> TickResult {
         let mut found = TickResult::at(&self.q);
-        let held = self.kept.as_mut().filter(|_| self.stopping).and_then(|kept| kept.stop_on(self.dt));
+        let held = self.safety.as_mut().filter(|_| self.stopping).and_then(|safety| safety.stop_on(self.dt));
         let fastest = || self.limited.as_ref().map(|limited| limited.stopping(&self.q));
         if let Some(next) = held.or_else(fastest) {
             found.q = next;
@@ -426,9 +341,9 @@ impl Session {
     /// Assesses what has been found, with one evaluation.
     fn assess(&self, found: &mut TickResult) {
         found.evaluations += 1;
-        match self.aim() {
-            Some(aim) => found.assess(&self.robot, &aim),
-            None => found.position = self.robot.tip_position(&found.q),
+        match self.targets.last() {
+            [] => found.position = self.robot.tip_position(&found.q),
+            _ => found.assess(&self.robot, &self.aims()),
         }
     }
 
@@ -446,26 +361,14 @@ impl Session {
 
     /// Whether obstacles keep the goal of an arm that does not stop from its target.
     fn goal_is_held(&self) -> bool {
-        !self.stopping && self.kept.as_ref().is_some_and(|kept| kept.goal_is_held())
+        !self.stopping && self.safety.as_ref().is_some_and(|safety| safety.goal_is_held())
     }
 
     /// Changes what the rule has `found` to a command that keeps the arm clear and pairs of tips held. Returns whether it had to, because
     /// of what is around the arm.
     fn keep(&mut self, found: &mut TickResult) -> bool {
-        let Some(kept) = &mut self.kept else { return false };
-        let wish = Wish {
-            robot: &self.robot,
-            q: &self.q,
-            tick_box: &self.tick_box,
-            limits: &self.limits,
-            limit_at: self.limit_at,
-            limited: self.limited.as_ref(),
-            aim: aim(&self.targets, self.tips.as_deref(), &self.criterion),
-            error_after: self.last_value.filter(|value| value.is_finite()).map(f64::sqrt),
-            time: self.ticks as f64 * self.dt,
-            dt: self.dt,
-        };
-        let Kept { changed, by_obstacles } = kept.keep(&wish, &mut found.q);
+        let Some(safety) = &mut self.safety else { return false };
+        let Kept { changed, by_obstacles } = safety.keep(&context!(self), &mut found.q);
         if changed {
             self.assess(found);
             if self.limited.is_none() {
@@ -482,12 +385,12 @@ impl Session {
 
     /// What the arm keeps clear of, if anything.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
-        self.kept.as_ref().and_then(|kept| kept.space())
+        self.safety.as_ref().and_then(|safety| safety.space())
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
-        self.kept.as_ref().map_or(&[], |kept| kept.velocities())
+        self.safety.as_ref().map_or(&[], |safety| safety.velocities())
     }
 
     /// What is around the arm.
@@ -505,14 +408,14 @@ impl Session {
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
         let space = if surroundings.is_given() { clear_space(&surroundings, &self.robot)? } else { None };
-        if space.is_some() || self.tips.is_some() {
-            let kept = match self.kept.take() {
-                Some(kept) => self.kept.insert(kept),
-                None => self.kept.insert(Box::new(KeptMotion::new(None, &self.limits)?)),
+        if space.is_some() || !self.has_one_tip() {
+            let safety = match self.safety.take() {
+                Some(safety) => self.safety.insert(safety),
+                None => self.safety.insert(Box::new(SafetyFilter::new(None, &self.limits)?)),
             };
-            kept.replace(space, motion, &self.limits)?;
+            safety.replace(space, motion, &self.limits)?;
         } else {
-            self.kept = None;
+            self.safety = None;
         }
         self.surroundings = surroundings;
         Ok(())
@@ -533,7 +436,7 @@ impl Session {
     /// an arm that may stop at once.
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
-        let held = self.kept.as_ref().and_then(|kept| kept.ticks_to_stop());
+        let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
         let fastest = || self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
         held.map_or_else(fastest, |ticks| self.dt * ticks)
     }
@@ -543,17 +446,17 @@ impl Session {
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    pub(super) fn drive(&mut self, q: &[f64], target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
-        let target = self.read(target)?;
+    pub(super) fn drive(&mut self, q: &[f64], arrival: Arrival) -> Result<Step> {
+        let arrival = self.read(arrival)?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        let Assessment { score, error } = target.assess(&self.robot, q, &self.criterion);
+        self.targets.place(arrival);
+        let Assessment { score, error } = Problem::new(&self.robot, self.aims()).assess(q);
         let status = match self.last_value {
             _ if score.solved => Status::Solved,
             Some(last) if score.value >= last => Status::Capped,
             _ => Status::Improved,
         };
-        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
         self.accept(q, score.value);
         self.start_rule();
         let (position, error) = (self.robot.tip_position(q), error.into());
@@ -563,9 +466,7 @@ impl Session {
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
     /// convex, so any fraction of the tick ends in the box.
     fn keep_in_region(&mut self, found: &mut TickResult) {
-        let Some([target]) = self.targets.last() else { return };
-        let region = self.criterion.region.as_ref().filter(|region| !region.contains(&found.position));
-        let Some(region) = region else { return };
+        let Some(region) = self.tasks.region().filter(|region| !region.contains(&found.position)) else { return };
         let (mut kept, mut past) = (0.0, 1.0);
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
@@ -575,14 +476,14 @@ impl Session {
             (kept, past) = if inside { (share, past) } else { (kept, share) };
         }
         between(&self.q, &end, kept, &mut found.q);
-        found.set_tip(&self.robot.tip(&found.q), target, &self.criterion);
+        found.assess(&self.robot, &self.aims());
         found.evaluations += BISECTIONS + 1;
         self.running.forget();
     }
 
     /// The rule starts anew.
     fn start_rule(&mut self) {
-        self.running = self.rule.start(self.limited.is_some(), self.tips.is_some());
+        self.running = self.rule.start(self.limited.is_some(), !self.has_one_tip());
     }
 
     /// Resets the session to `q` (n,) at t = 0, at rest.
@@ -601,7 +502,7 @@ impl Session {
     /// stop inside its limits.
     pub fn reset_moving(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
         self.robot.check("q", q)?;
-        require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
+        require_inside(&self.robot, &self.limits, self.tasks.region(), "q", q)?;
         let zero = Point::from_elem(0.0, q.len());
         let (qd, qdd) = (qd.unwrap_or(&zero), qdd.unwrap_or(&zero));
         self.robot.check("qd", qd)?;
@@ -614,20 +515,11 @@ impl Session {
         (self.ticks, self.last_value, self.stopping) = (0, None, false);
         self.start_rule();
         self.targets.clear();
-        if let Some(kept) = &mut self.kept {
-            kept.forget();
+        if let Some(safety) = &mut self.safety {
+            safety.forget();
         }
         self.rng = rng::stream(self.seed, 0);
         Ok(())
-    }
-}
-
-/// What is to be achieved, once a target has arrived.
-fn aim<'a>(targets: &'a TargetStream, tips: Option<&'a TipOrder>, criterion: &'a Criterion) -> Option<TickAim<'a>> {
-    match (tips, targets.last()?) {
-        (Some(tips), targets) => Some(TickAim::Tips(TipAims { tasks: tips.tasks(), targets })),
-        (None, [target, ..]) => Some(TickAim::Tip { target, criterion }),
-        (None, []) => None,
     }
 }
 
@@ -637,9 +529,9 @@ fn clear_space(surroundings: &Surroundings, robot: &Arc<Robot>) -> Result<Option
 }
 
 /// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
-fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &str, q: &[f64]) -> Result<()> {
+fn require_inside(robot: &Robot, limits: &Limits, region: Option<&Region>, what: &str, q: &[f64]) -> Result<()> {
     limits.require_inside(what, 0.0, q)?;
-    criterion.region.map_or(Ok(()), |region| region.require_inside(what, &robot.tip_position(q)))
+    region.map_or(Ok(()), |region| region.require_inside(what, &robot.tip_position(q)))
 }
 
 /// Checks that the arm can stop at any time, without which it cannot be kept in a region.

@@ -3,8 +3,7 @@
 use super::leeway::{Borders, Displacement, Leeway};
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
-use crate::objective::{LeastSquares, Linearization};
-use crate::problem::Problem;
+use crate::objective::Linearization;
 use crate::robot::Robot;
 use crate::task::{Target, Tolerance};
 
@@ -22,7 +21,7 @@ impl PathTarget {
     /// Residual and Jacobian at `q` of what exceeds the leeway; returns the sum of squares.
     pub fn linearize(&self, robot: &Robot, q: &[f64], borders: &mut Borders, out: &mut Linearization) -> f64 {
         let criterion = self.leeway.map_or_else(|| Tolerance::default().into(), |_| Leeway::criterion());
-        let value = Problem::new(robot, &self.target, criterion).linearize(q, out).value;
+        let value = self.target.linearize(robot, q, &criterion, &mut out.first).score.value;
         match (&self.leeway, &self.place) {
             (None, _) => value,
             (Some(leeway), None) => leeway.reduce(&self.target, borders, q.len(), &mut out.first),

@@ -9,6 +9,7 @@ use super::weighted_pseudo_inverse::{self, WeightedPseudoInverse};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
+use crate::tracking::safety_filter::SafetyFilter;
 
 /// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -106,14 +107,22 @@ impl RunningRule {
         matches!(self, Self::GoalPursuit(_))
     }
 
-    /// Runs one tick from `q`.
-    pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
+    /// Runs one tick. `safety` moves samples of a goal away from obstacles.
+    pub(crate) fn advance(&mut self, mut tick: Tick<'_>, safety: Option<&mut SafetyFilter>) -> TickResult {
         match self {
-            Self::MidStep(memory) => mid_step::advance(memory, q, tick),
-            Self::GoalPursuit(pursuit) => pursuit.advance(q, tick),
-            Self::TipStep(step) => step.advance(q, tick),
-            Self::Solver(solver) => any_solver::advance(solver, q, tick),
-            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
+            Self::MidStep(memory) => mid_step::advance(memory, tick),
+            Self::GoalPursuit(pursuit) => {
+                let found = pursuit.find_sample(&mut tick);
+                if let (Some(safety), Some(_)) = (safety, tick.sampled_ago) {
+                    let (from, sample) = pursuit.sample_to_clear(tick.context.q);
+                    let held = safety.clear_goal(&tick.context, from, sample);
+                    pursuit.note_held(held);
+                }
+                pursuit.pursue(found, &tick)
+            }
+            Self::TipStep(step) => step.advance(tick),
+            Self::Solver(solver) => any_solver::advance(solver, tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, tick),
         }
     }
 }

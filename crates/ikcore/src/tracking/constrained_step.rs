@@ -1,8 +1,7 @@
-//! Steps beside rows: nearest to where they begin, or to the target, measured by their effect on the task or by the joints.
+//! Constrained steps: nearest to their start or to the target, measured by the effect on the task or by the joints.
 
 use smallvec::SmallVec;
 
-use super::tick_aim::TickAim;
 use crate::math::MAX_DOF;
 use crate::math::block_step::TaskRows;
 use crate::math::box_step::ROWS;
@@ -10,7 +9,7 @@ use crate::math::row_step::{Row, RowSolver, RowStep, SOFTNESS};
 use crate::math::vector::{dot, squared_size};
 use crate::objective::{Linearization, Point, TaskBlock};
 use crate::robot::Robot;
-use crate::task::TipAims;
+use crate::task::Aims;
 
 /// Damping of the joints beside the task, relative to the squared size of the Jacobian.
 const DAMPING: f64 = 1e-5;
@@ -27,9 +26,9 @@ const HELD: f64 = 1e-10;
 /// Rows that a pair has at most.
 const ROWS_OF_PAIR: usize = ROWS;
 
-/// Solves steps beside rows; owns its scratch.
+/// Solver of constrained steps, with its constraints and scratch.
 #[derive(Debug, Default)]
-pub(super) struct RowMotion {
+pub(super) struct ConstrainedStep {
     /// Inequalities.
     pub rows: Vec<Row>,
     /// Inequalities that cannot be kept at once, to be approached before the task; the first few count.
@@ -54,16 +53,13 @@ pub(super) enum Towards {
 
 /// The step of a robot.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Beside<'a> {
+pub(super) struct StepRequest<'a> {
     pub robot: &'a Robot,
-    /// What the joints are for; None: nothing.
-    pub aim: Option<&'a TickAim<'a>>,
-    /// The box.
-    pub lower: &'a [f64],
-    pub upper: &'a [f64],
+    /// Pairs of tips are held; other targets weigh joint motions. Empty: the first tip weighs them.
+    pub aims: Aims<'a>,
+    /// Lower and upper ends of the box.
+    pub ends: [&'a [f64]; 2],
     pub towards: Towards,
-    /// Whether pairs of tips are held.
-    pub holds_pairs: bool,
 }
 
 /// Where the arm rests after a `command`, and how far that place moves with the command, for each joint.
@@ -74,7 +70,7 @@ pub(super) struct Resting<'a> {
     pub command: &'a [f64],
 }
 
-impl RowMotion {
+impl ConstrainedStep {
     /// With room for steps of `n` joints beside this many rows.
     pub fn with_room(n: usize, rows: usize) -> Self {
         Self {
@@ -93,13 +89,13 @@ impl RowMotion {
     }
 
     /// Writes the point after the step from `start` into `out`.
-    pub fn write(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
+    pub fn write(&mut self, step: &StepRequest<'_>, start: &[f64], out: &mut [f64]) {
         self.linearize(step, start);
         self.write_linearized(step, start, out);
     }
 
     /// Writes the command after the step of the place of rest into `out`.
-    pub fn write_resting(&mut self, step: &Beside<'_>, resting: &Resting<'_>, out: &mut [f64]) {
+    pub fn write_resting(&mut self, step: &StepRequest<'_>, resting: &Resting<'_>, out: &mut [f64]) {
         self.linearize(step, resting.rest);
         for block in self.linearization.blocks_mut() {
             for (column, slope) in block.columns.iter_mut().zip(resting.slope) {
@@ -110,17 +106,14 @@ impl RowMotion {
     }
 
     /// Writes the point after the step from `start`, where the linearization is, into `out`.
-    fn write_linearized(&mut self, step: &Beside<'_>, start: &[f64], out: &mut [f64]) {
+    fn write_linearized(&mut self, step: &StepRequest<'_>, start: &[f64], out: &mut [f64]) {
         let n = start.len();
         let short = self.set_wanted_columns(start);
-        let tips = step.aim.and_then(TickAim::tips);
+        let StepRequest { aims, ends: [lower, upper], towards, .. } = *step;
         self.held.clear();
-        if let Some(aims) = tips.filter(|_| step.holds_pairs) {
-            self.hold_pairs(aims, start);
-        }
-        let Beside { lower, upper, towards, .. } = *step;
-        let counts = |i: usize| tips.is_none_or(|aims| aims.tasks.get(i).is_some_and(|task| !task.subject.is_pair()));
-        let counts = |i: usize| towards != Towards::Joints && counts(i);
+        self.hold_pairs(&aims, start);
+        let is_pair = |i: usize| aims.tasks.get(i).is_some_and(|task| task.subject.is_pair());
+        let counts = |i: usize| towards != Towards::Joints && !is_pair(i);
         let blocks = self.linearization.blocks().enumerate().filter(|(i, _)| counts(*i));
         let tasks = blocks.map(|(_, TaskBlock { columns, residual })| match towards {
             Towards::Target => TaskRows { columns, residual },
@@ -150,9 +143,9 @@ impl RowMotion {
     }
 
     /// Moves `q` to the poses of all pairs, by as little as they allow. Returns whether they are held there.
-    pub fn hold(&mut self, step: &Beside<'_>, q: &mut Point) -> bool {
-        let Some(aims) = step.aim.and_then(TickAim::tips) else { return true };
-        let step = Beside { towards: Towards::Joints, holds_pairs: true, ..*step };
+    pub fn hold(&mut self, step: &StepRequest<'_>, q: &mut Point) -> bool {
+        let aims = &step.aims;
+        let step = StepRequest { towards: Towards::Joints, ..*step };
         for _ in 0..HOLDING_STEPS {
             let start = q.clone();
             self.linearize(&step, &start);
@@ -165,27 +158,24 @@ impl RowMotion {
     }
 
     /// How far pairs are from where they are to be, where the linearization is.
-    fn missed(&self, aims: &TipAims<'_>) -> f64 {
+    fn missed(&self, aims: &Aims<'_>) -> f64 {
         let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.subject.is_pair());
         blocks.map(|(block, _)| dot(&block.residual, &block.residual)).fold(0.0, f64::max).sqrt()
     }
 
     /// Residuals and Jacobians at `start`.
-    fn linearize(&mut self, step: &Beside<'_>, start: &[f64]) {
-        match step.aim {
-            Some(aim) => {
-                aim.linearize(step.robot, start, &mut self.linearization);
-            }
-            None => {
-                self.linearization.more.clear();
-                self.linearization.first.residual = [0.0; ROWS];
-                step.robot.tip_and_jacobian(start, &mut self.linearization.first.columns);
-            }
+    fn linearize(&mut self, step: &StepRequest<'_>, start: &[f64]) {
+        if !step.aims.is_empty() {
+            step.aims.linearize(step.robot, start, &mut self.linearization, |_| ());
+            return;
         }
+        self.linearization.more.clear();
+        self.linearization.first.residual = [0.0; ROWS];
+        step.robot.tip_and_jacobian(start, &mut self.linearization.first.columns);
     }
 
     /// The rows of all pairs: r + J (x - start) = 0.
-    fn hold_pairs(&mut self, aims: &TipAims<'_>, start: &[f64]) {
+    fn hold_pairs(&mut self, aims: &Aims<'_>, start: &[f64]) {
         for (block, task) in self.linearization.blocks().zip(aims.tasks) {
             for k in (0..ROWS).filter(|_| task.subject.is_pair()) {
                 let mut gradient = [0.0; MAX_DOF];

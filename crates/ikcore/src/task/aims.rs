@@ -1,4 +1,4 @@
-//! Tasks of several tips: each tip has a target of its own, or is to be seen from another in a given pose.
+//! Tasks and targets of the only tip or of several: each tip has a target of its own, or is to be seen from another in a given pose.
 
 use smallvec::SmallVec;
 
@@ -6,7 +6,7 @@ use super::assessment::Assessment;
 use super::criterion::Criterion;
 use super::target::Target;
 use super::tip_error::{SquaredError, TipError, Tolerance};
-use super::tip_task::Task;
+use super::tip_task::{Task, TaskKind};
 use crate::error::{Error, Result};
 use crate::math::Columns;
 use crate::math::Frame;
@@ -29,7 +29,7 @@ pub enum Subject {
     },
 }
 
-/// A task of one of several tips, or of a pair of them.
+/// A task of a tip, or of a pair of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipTask {
     /// The pose that counts.
@@ -42,10 +42,13 @@ pub struct TipTask {
 
 /// A validated task.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TipCriterion {
-    pub subject: Subject,
-    task: Option<Task>,
-    pub criterion: Criterion,
+pub struct TipCriterion {
+    /// The pose that counts.
+    pub(crate) subject: Subject,
+    /// The part of it that matters. `None` means all of it.
+    kind: Option<TaskKind>,
+    /// When its target counts as reached.
+    pub(crate) criterion: Criterion,
     /// The tool of the task, in the frame of the tip that is moved.
     tool: Option<Frame>,
     /// Factor on its residual, beside those of the other tasks.
@@ -53,6 +56,11 @@ pub(crate) struct TipCriterion {
 }
 
 impl TipTask {
+    /// That of the only tip of a robot.
+    pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
+        Self { subject: Subject::Tip(0), task, tolerance }
+    }
+
     /// Checks the task.
     ///
     /// # Errors
@@ -63,7 +71,14 @@ impl TipTask {
         let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
         criterion.validate()?;
         let tool = task.and_then(|task| task.tool).map(|tool| Frame::from(&tool));
-        Ok(TipCriterion { subject, task, criterion, tool, weight: 1.0 })
+        Ok(TipCriterion { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
+    }
+}
+
+impl<T: Into<Criterion>> From<T> for TipCriterion {
+    /// The whole target of the only tip, by this criterion.
+    fn from(criterion: T) -> Self {
+        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), tool: None, weight: 1.0 }
     }
 }
 
@@ -75,8 +90,13 @@ impl Subject {
 }
 
 impl TipCriterion {
+    /// The same task of a robot that carries its tool.
+    pub(crate) fn without_own_tool(self) -> Self {
+        Self { tool: None, ..self }
+    }
+
     /// The same task, weighing `weight` beside the others.
-    pub fn weighing(self, weight: f64) -> Self {
+    pub(crate) fn weighing(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
@@ -104,12 +124,12 @@ impl TipCriterion {
     ///
     /// # Errors
     /// [`Error::WrongTarget`].
-    pub fn part_used(&self, wanted: &Target) -> Result<Target> {
-        self.task.as_ref().map_or(Ok(*wanted), |task| task.target(wanted))
+    pub(crate) fn part_used(&self, wanted: &Target) -> Result<Target> {
+        self.kind.as_ref().map_or(Ok(*wanted), |kind| kind.target(wanted))
     }
 
     /// Where the tip itself is to be for a target of its tool.
-    pub fn without_tool(&self, target: &Target) -> Target {
+    pub(crate) fn without_tool(&self, target: &Target) -> Target {
         match (self.tool, target) {
             (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
             _ => *target,
@@ -168,26 +188,64 @@ fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[
 }
 
 /// Tasks and their targets, in the same order.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TipAims<'a> {
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Aims<'a> {
+    /// The tasks: one for a robot with one tip.
     pub tasks: &'a [TipCriterion],
+    /// Their targets.
     pub targets: &'a [Target],
 }
 
-impl<'a> TipAims<'a> {
+impl<'a> Aims<'a> {
+    /// The target of the only tip.
+    pub fn of_one(task: &'a TipCriterion, target: &'a Target) -> Self {
+        Self { tasks: std::slice::from_ref(task), targets: std::slice::from_ref(target) }
+    }
+
+    /// Target and criterion of the only tip; `None` for a `robot` with several.
+    #[inline]
+    pub(crate) fn only(&self, robot: &Robot) -> Option<(&'a Target, &'a Criterion)> {
+        match (self.tasks, self.targets) {
+            ([task], [target]) if robot.tip_count() == 1 => Some((target, &task.criterion)),
+            _ => None,
+        }
+    }
+
+    /// Whether nothing is asked.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.targets.is_empty()
+    }
+
     /// Each task with its target.
-    pub fn iter(&self) -> impl Iterator<Item = (&'a TipCriterion, &'a Target)> + use<'a> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a TipCriterion, &'a Target)> + use<'a> {
         self.tasks.iter().zip(self.targets)
     }
 
     /// The assessment of `q`: the sum of the values, solved where all are; the largest errors.
-    pub fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
+    pub(crate) fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
         let assess = |(task, target): (&TipCriterion, &Target)| task.assess(target, &task.frame(robot, q));
         self.iter().map(assess).fold(nothing_asked(), together)
     }
 
-    /// The assessment of `q`, with residuals and Jacobians. Calls `solved` with the number of each task that is solved.
-    pub fn linearize(
+    /// The assessment of `q`, with residuals and Jacobians. Calls `solved` with the number of each task of several tips that is solved.
+    #[inline]
+    pub(crate) fn linearize(
+        &self,
+        robot: &Robot,
+        q: &[f64],
+        out: &mut Linearization,
+        solved: impl FnMut(usize),
+    ) -> Assessment {
+        match self.only(robot) {
+            Some((target, criterion)) => target.linearize(robot, q, criterion, &mut out.first),
+            None => self.linearize_several(robot, q, out, solved),
+        }
+    }
+
+    // Kept out of line: inlined, it would make that of one tip slower.
+    #[cold]
+    #[inline(never)]
+    fn linearize_several(
         &self,
         robot: &Robot,
         q: &[f64],
@@ -208,23 +266,23 @@ impl<'a> TipAims<'a> {
     }
 
     /// Positions (m) that count for each task at `q`.
-    pub fn positions(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 3])) {
+    pub(crate) fn positions(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 3])) {
         self.tasks.iter().for_each(|task| keep(task.frame(robot, q).origin));
     }
 
     /// Whether a task is for a pair of tips.
-    pub fn has_pairs(&self) -> bool {
+    pub(crate) fn has_pairs(&self) -> bool {
         self.tasks.iter().any(|task| task.subject.is_pair())
     }
 
     /// Whether all pairs of tips are where they are to be at `q`; true without any.
-    pub fn pairs_are_held(&self, robot: &Robot, q: &[f64]) -> bool {
+    pub(crate) fn pairs_are_held(&self, robot: &Robot, q: &[f64]) -> bool {
         let mut pairs = self.iter().filter(|(task, _)| task.subject.is_pair());
         pairs.all(|(task, target)| task.assess(target, &task.frame(robot, q)).score.solved)
     }
 
     /// The residual of each task at `q`, and the assessment.
-    pub fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
+    pub(crate) fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
         let mut block = TaskBlock::default();
         let residual = |(task, target): (&TipCriterion, &Target)| {
             let assessment = task.linearize(target, &task.frame(robot, q), 0, &mut block);
@@ -235,7 +293,7 @@ impl<'a> TipAims<'a> {
     }
 
     /// The errors of each task at `q`.
-    pub fn errors(&self, robot: &Robot, q: &[f64]) -> SmallVec<[TipError; 4]> {
+    pub(crate) fn errors(&self, robot: &Robot, q: &[f64]) -> SmallVec<[TipError; 4]> {
         let error = |(task, target): (&TipCriterion, &Target)| {
             TipError::from(target.assess_tip(&task.frame(robot, q), &task.criterion).error)
         };
@@ -246,7 +304,7 @@ impl<'a> TipAims<'a> {
     ///
     /// # Errors
     /// [`Error::Contradiction`].
-    pub fn require_consistent(&self, robot: &Robot) -> Result<()> {
+    pub(crate) fn require_consistent(&self, robot: &Robot) -> Result<()> {
         let pose_of = |tip: usize| {
             self.iter().find_map(|(task, target)| match (task.subject, task.without_tool(target)) {
                 (Subject::Tip(of), Target::Pose(frame)) if of == tip && task.criterion.fixes_pose(target) => {
@@ -350,7 +408,7 @@ mod tests {
             let task = |subject| TipTask { subject, task: Some(kind), tolerance }.validated().unwrap();
             let tasks = subjects.map(|subject| task(subject).weighing(if subject.is_pair() { 3.0 } else { 1.0 }));
             let targets = tasks.map(|task| task.part_used(&wanted).unwrap());
-            let aims = TipAims { tasks: &tasks, targets: &targets };
+            let aims = Aims { tasks: &tasks, targets: &targets };
             let linearized = |q: &[f64]| {
                 let mut out = Linearization::default();
                 let assessment = aims.linearize(&robot, q, &mut out, |_| ());

@@ -1,7 +1,7 @@
-//! A stop that keeps pairs of tips together: all joints brake in proportion, and are led back to the poses of the pairs.
+//! Coupled stops, which keep pairs of tips together: all joints brake in proportion, and are led back to the poses of the pairs.
 
-use super::row_motion::{Beside, RowMotion, Towards};
-use super::wish::Wish;
+use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
+use super::step_context::StepContext;
 use crate::math::vector::dot;
 use crate::motion::{Braking, JointState};
 use crate::objective::Point;
@@ -16,7 +16,7 @@ const REST: f64 = 1e-8;
 
 /// The configurations of a stop, tick by tick.
 #[derive(Debug, Clone, Default)]
-pub(super) struct HeldStop {
+pub(super) struct CoupledStop {
     /// Before the command, after it, and at the ends of the ticks of the stop.
     places: Vec<Point>,
     /// Displacements in the tick before.
@@ -29,7 +29,7 @@ pub(super) struct HeldStop {
     limited: bool,
 }
 
-impl HeldStop {
+impl CoupledStop {
     /// Forgets it.
     pub fn clear(&mut self) {
         self.places.clear();
@@ -57,34 +57,32 @@ impl HeldStop {
     }
 
     /// Finds the stop after `command`. Returns whether there is one that holds the pairs within all limits.
-    pub fn find(&mut self, wish: &Wish<'_>, command: &[f64], rows: &mut RowMotion) -> bool {
+    pub fn find(&mut self, context: &StepContext<'_>, command: &[f64], rows: &mut ConstrainedStep) -> bool {
         self.clear();
-        self.places.extend([Point::from_slice(wish.q), Point::from_slice(command)]);
-        self.limited = wish.limited.is_some();
-        let Some(limited) = wish.limited else { return true };
+        self.places.extend([Point::from_slice(context.q), Point::from_slice(command)]);
+        self.limited = context.limited.is_some();
+        let Some(limited) = context.limited else { return true };
         self.before.clone_from(&limited.state().step);
         self.acceleration = limited.braking().iter().map(|braking| braking.acceleration).collect();
         let mut state = limited.state().clone();
-        state.advance(command.iter().zip(wish.q).map(|(to, from)| to - from));
-        let mut tick_box = wish.tick_box.clone();
+        state.advance(command.iter().zip(context.q).map(|(to, from)| to - from));
+        let mut tick_box = context.tick_box.clone();
         let mut q = Point::from_slice(command);
         let most = MORE_TICKS + (SLOWER * state.ticks_to_stop(limited.braking())) as usize;
         for tick in 1..=most {
             if is_at_rest(&state, limited.braking()) {
                 return true;
             }
-            let from = wish.time + tick as f64 * wish.dt;
-            let Wish { robot, limits, limit_at, dt, .. } = *wish;
+            let from = context.time + tick as f64 * context.dt;
+            let StepContext { limits, limit_at, dt, .. } = *context;
             if !(limits.narrow(&q, [from, from + dt], dt, limit_at, &mut tick_box)
                 && limited.narrow_ahead(&q, &state, from, limits, &mut tick_box))
             {
                 return false;
             }
-            let mut next = braked(wish, &state, &q);
+            let mut next = braked(context, &state, &q);
             tick_box.bounds.clip(&mut next);
-            let (lower, upper) = (tick_box.bounds.lower(), tick_box.bounds.upper());
-            let (aim, towards, holds_pairs) = (wish.aim.as_ref(), Towards::Start, true);
-            if !rows.hold(&Beside { robot, aim, lower, upper, towards, holds_pairs }, &mut next) {
+            if !rows.hold(&StepRequest { ends: tick_box.bounds.ends(), ..context.request(Towards::Start) }, &mut next) {
                 return false;
             }
             state.advance(next.iter().zip(&q).map(|(to, from)| to - from));
@@ -104,9 +102,9 @@ fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
 }
 
 /// The next place of a stop: all joints slow down by the same share, by which the first of them may.
-fn braked(wish: &Wish<'_>, state: &JointState, q: &Point) -> Point {
+fn braked(context: &StepContext<'_>, state: &JointState, q: &Point) -> Point {
     let mut step = Point::from_elem(0.0, q.len());
-    let Some(limited) = wish.limited else { return q.clone() };
+    let Some(limited) = context.limited else { return q.clone() };
     state.brake(limited.braking(), &mut step);
     // By how much each would slow down, as a share: weighed by its speed, so that slow joints do not count.
     let squared = dot(&state.step, &state.step);
@@ -118,7 +116,7 @@ fn braked(wish: &Wish<'_>, state: &JointState, q: &Point) -> Point {
     q.iter().zip(&step).map(|(q, step)| q + step).collect()
 }
 
-impl JointMotion for HeldStop {
+impl JointMotion for CoupledStop {
     fn write(&self, tick: f64, q: &mut [f64]) {
         let Some(first) = self.places.first() else { return };
         if tick < 0.0 && self.limited {
