@@ -11,7 +11,7 @@ from coal_distance import distance_by_coal
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 ARM = bik.Robot.named("panda").with_capsules(radius=0.06)
 UR5 = bik.Robot.named("ur5e").with_capsules(radius=0.05)
@@ -216,7 +216,7 @@ def test_a_tracker_has_no_goal_of_clearance() -> None:
         bik.Tracker(ARM, Q, dt=0.01, goals=bik.goals.Clearance())
 
 
-@pytest.mark.parametrize("solver", [bik.PSO(), bik.DifferentialEvolution(), bik.BAS(variant="greedy")])
+@pytest.mark.parametrize("solver", [bik.papers.PSO(), bik.DifferentialEvolution(), bik.papers.BAS(variant="greedy")])
 def test_solvers_of_values_take_obstacles_as_a_penalty(solver: Any) -> None:
     rng = np.random.default_rng(9)
     found = avoided = 0

@@ -32,7 +32,7 @@ const ROUNDED: f64 = 1e-4;
 
 /// How a look at scattered values ends without a solution.
 enum Scattered {
-    /// No solution is within the limits; None where that is not proven.
+    /// No solution is within the limits.
     Unreachable,
     /// None is at these values, but may be near others.
     Open(Vec<f64>),
