@@ -71,7 +71,7 @@ fn the_cheapest_of_several_configurations_is_taken() {
 fn the_cheapest_of_several_poses_is_taken() {
     let robot = panda();
     let poses: Vec<Target> = configurations(&robot, 6).iter().map(|q| Target::from(&robot.fk(q).unwrap())).collect();
-    let ends: Vec<Endpoint> = poses.iter().copied().map(Endpoint::Target).collect();
+    let ends: Vec<Endpoint> = poses.iter().copied().map(Endpoint::from).collect();
     let options = PointToPointOptions { self_collision: Some(false), ..options(&robot) };
     let plan = planned(&robot, &ends, &options);
     let alone: Vec<f64> = ends.iter().map(|end| planned(&robot, std::slice::from_ref(end), &options).cost).collect();

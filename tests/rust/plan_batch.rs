@@ -65,7 +65,7 @@ fn each_item_is_what_a_single_plan_is_on_any_number_of_threads() {
         let status: Vec<Status> = results.iter().map(plan_status).collect();
         assert_eq!((status[0], status[8]), (Status::Solved, Status::OutOfReach), "{status:?}");
     }
-    assert!(plan_batch::<Endpoint>(&robot, &[], None, &mut Unattended).unwrap().is_empty());
+    assert!(plan_batch(&robot, &[], None, &mut Unattended).unwrap().is_empty());
 }
 
 #[test]

@@ -123,9 +123,9 @@ fn arms_find_their_way_around_a_box() {
                 let clearance = plan.clearance.unwrap();
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
-                if let [Endpoint::from(target)] = &ends {
+                if let [Endpoint::Targets { targets, .. }] = &ends {
                     let error = ikcore::task::TipError::from(
-                        target.assess(&robot, &reached, &Tolerance::default().into()).error,
+                        targets[0].assess(&robot, &reached, &Tolerance::default().into()).error,
                     );
                     assert!(error.position < 2e-6 && error.rotation < 2e-6, "{error}");
                 }

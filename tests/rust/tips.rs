@@ -16,7 +16,7 @@ use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Goal, Subject, Target, Task, TaskKind, TipTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 
 /// A lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
 pub fn two_arms() -> String {
@@ -70,8 +70,8 @@ fn tip(name: &str, q: &[f64]) -> Pose {
     PAIR.link_fk(name, q).unwrap()
 }
 
-fn task(subject: Subject) -> TipTask {
-    TipTask { subject, task: None, tolerance: Tolerance::default() }
+fn task(subject: Subject) -> NamedTask {
+    NamedTask { subject, task: None, tolerance: Tolerance::default() }
 }
 
 const LEFT: Subject = Subject::Tip(0);
@@ -164,8 +164,8 @@ fn each_tip_has_its_own_task_tolerance_and_tool() {
     let with_tool = tip("left_tool", &q) * tool;
     let asked = SolveOptions {
         tips: vec![
-            TipTask { task: Some(Task { tool: Some(tool), ..TaskKind::Pose.into() }), ..task(LEFT) },
-            TipTask {
+            NamedTask { task: Some(Task { tool: Some(tool), ..TaskKind::Pose.into() }), ..task(LEFT) },
+            NamedTask {
                 task: Some(TaskKind::Position.into()),
                 tolerance: Tolerance { position: 1e-3, rotation: 1e-6 },
                 ..task(RIGHT)

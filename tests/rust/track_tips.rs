@@ -7,7 +7,7 @@ use ikcore::math::{Pose, pose};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::task::{Goal, Subject, Target, TipTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 use ikcore::tracking::{Arrival, Session, TrackOptions};
 
 use crate::tips::two_arms;
@@ -25,19 +25,19 @@ fn tray() -> Pose {
     pose::from_rpy([0.0; 3], [0.0, -0.5, 0.0])
 }
 
-fn task(subject: Subject) -> TipTask {
-    TipTask { subject, task: None, tolerance: Tolerance::default() }
+fn task(subject: Subject) -> NamedTask {
+    NamedTask { subject, task: None, tolerance: Tolerance::default() }
 }
 
 /// The left hand to `left`, with the tray.
-fn targets(left: &Pose) -> Vec<(TipTask, Target)> {
+fn targets(left: &Pose) -> Vec<(NamedTask, Target)> {
     vec![(task(Subject::Tip(0)), Target::from(left)), (task(PAIR), Target::from(&tray()))]
 }
 
 fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
-    let (tips, wanted): (Vec<TipTask>, Vec<Target>) = targets(left).into_iter().unzip();
+    let (tips, wanted): (Vec<NamedTask>, Vec<Target>) = targets(left).into_iter().unzip();
     let tight = Tolerance { position: 1e-9, rotation: 1e-9 };
-    let tips = tips.into_iter().map(|task| TipTask { tolerance: tight, ..task }).collect();
+    let tips = tips.into_iter().map(|task| NamedTask { tolerance: tight, ..task }).collect();
     let options = SolveOptions { tips, goals: vec![Goal::Centring { weight: 1.0 }], ..SolveOptions::default() };
     solve_tips(robot, &wanted, &options, &mut Unattended).unwrap().q.to_vec()
 }

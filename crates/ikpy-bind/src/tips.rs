@@ -3,7 +3,7 @@
 use ikcore::ik::SolveOptions;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Subject, TargetRow, Task, TipError, TipTask, Tolerance};
+use ikcore::task::{NamedTask, Subject, TargetRow, Task, TipError, Tolerance};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -190,11 +190,11 @@ impl TipSettings {
     }
 
     /// The tasks of the targets that were `asked` of several tips; none of one.
-    pub fn tasks<T>(&self, asked: &Asked<T>) -> Vec<TipTask> {
+    pub fn tasks<T>(&self, asked: &Asked<T>) -> Vec<NamedTask> {
         let Asked::Tips { keys, subjects, .. } = asked else { return vec![] };
         let task = |(key, subject): (_, &Subject)| {
             let (task, tolerance) = self.of(key);
-            TipTask { subject: *subject, task, tolerance }
+            NamedTask { subject: *subject, task, tolerance }
         };
         keys.iter().zip(subjects).map(task).collect()
     }

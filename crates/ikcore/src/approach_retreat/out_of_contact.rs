@@ -1,7 +1,7 @@
 //! The way out of a contact: from a configuration that is nearer to something than the margin to one that keeps it.
 
 use crate::error::Result;
-use crate::obstacle::{ClearSpace, Edge, KeptDistance};
+use crate::obstacle::{ClearSpace, Edge, RequiredDistance};
 use crate::timing::{MotionLimits, scaled};
 use crate::trajectory::Trajectory;
 
@@ -25,7 +25,7 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
     let mut near = space.near_rows();
     space.find_rows(from, space.margin(), &mut near);
-    let kept = KeptDistance { at_rest: near.rows(), leeway: LEEWAY, ..KeptDistance::constant(space.margin()) };
+    let kept = RequiredDistance { at_rest: near.rows(), leeway: LEEWAY, ..RequiredDistance::constant(space.margin()) };
     let mut motion: Option<Trajectory> = None;
     let mut at = 0;
     // Each line as far along the descent as it is certified to come no nearer.
@@ -46,7 +46,7 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
 }
 
 /// Whether all bodies keep these distances on the straight line.
-fn comes_no_nearer(space: &ClearSpace<'_>, kept: &KeptDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
+fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
     let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let parts = (longest / PART).ceil().max(1.0) as usize;
     let mut check = space.chord_check();

@@ -156,25 +156,11 @@ fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
 fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
     let cost = objective.of(search.robot, &trajectory);
     Plan {
-        objective,
-        cost,
         history: vec![Improvement { evaluations: search.evaluations, cost }],
-        clearance: None,
-        nearest: None,
-        obstruction: None,
-        surroundings: None,
-        chosen_end: None,
-        freed: None,
-        accuracy: None,
-        reference: None,
-        redundancy: vec![],
-        path: vec![],
-        peak: None,
         violations: search.limits.violations(&trajectory),
-        status: Status::Solved,
         evaluations: search.evaluations,
         elapsed: search.deadline.elapsed(),
-        trajectory,
+        ..Plan::of(trajectory, objective, cost)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::plan::{
     Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines, can_collide, joined, nearest_at, scene,
 };
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
 
 /// Relative excess over a velocity limit that counts as rounding.
@@ -72,25 +72,14 @@ pub(super) fn begin(
             _ => None,
         };
         return Ok(Beginning::Whole(Box::new(Plan {
-            objective: options.objective,
-            cost,
             history: vec![Improvement { evaluations, cost }],
             clearance: closest.map(|near| near.contact.distance.max(margin)),
             nearest,
-            obstruction: None,
-            surroundings: None,
             chosen_end: Some(chosen),
-            freed: None,
-            accuracy: None,
-            reference: None,
-            redundancy: vec![],
-            path: vec![],
-            peak: None,
             violations: search.limits.violations(&trajectory),
-            status: Status::Solved,
             evaluations,
             elapsed: search.deadline.elapsed(),
-            trajectory,
+            ..Plan::of(trajectory, options.objective, cost)
         })));
     }
     if velocity.iter().all(|v| *v == 0.0) {

@@ -27,27 +27,14 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
     let (cost, chosen, trajectory) = best.ok_or_else(no_pair)?;
     let violations = search.limits.violations(&trajectory);
     let status = if violations.is_empty() { Status::Solved } else { Status::Stalled };
-    let evaluations = search.evaluations;
     Ok(Plan {
-        trajectory,
-        objective,
-        cost,
         history,
-        clearance: None,
-        nearest: None,
-        obstruction: None,
-        surroundings: None,
         chosen_end: Some(chosen),
-        freed: None,
-        accuracy: None,
-        reference: None,
-        redundancy: vec![],
-        path: vec![],
-        peak: None,
         violations,
         status,
-        evaluations,
+        evaluations: search.evaluations,
         elapsed: search.deadline.elapsed(),
+        ..Plan::of(trajectory, objective, cost)
     })
 }
 

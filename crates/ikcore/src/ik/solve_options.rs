@@ -4,7 +4,7 @@ use crate::limits::Limits;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stop};
-use crate::task::{Goal, Task, TipTask, Tolerance};
+use crate::task::{Goal, NamedTask, Task, Tolerance};
 use crate::wording::words;
 
 /// Which solution to return if there are several.
@@ -29,7 +29,7 @@ pub struct SolveOptions {
     /// The part of the target that matters. `None` means all of it.
     pub task: Option<Task>,
     /// The tasks of several tips, in the order of their targets; then `task` and `tolerance` are not used. None for a robot with one.
-    pub tips: Vec<TipTask>,
+    pub tips: Vec<NamedTask>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
     /// Which solution to return if there are several.

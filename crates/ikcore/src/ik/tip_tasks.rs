@@ -6,13 +6,13 @@ use super::solve_options::SolveOptions;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::robot::Robot;
-use crate::task::{Aims, Subject, Target, TargetRow, TipCriterion, TipError, TipTask};
+use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
 
 /// The tasks of `options`, validated; of one tip that of plain targets.
 pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {
     if options.tips.is_empty() {
         robot.require_one_tip("a plain target")?;
-        return Ok(smallvec![TipTask::of_only(options.task, options.tolerance).validated()?]);
+        return Ok(smallvec![NamedTask::of_only(options.task, options.tolerance).validated()?]);
     }
     if options.task.is_some() {
         let problem = "task= of several tips is a dict, such as {tip: tasks.Position()}".into();
@@ -26,7 +26,7 @@ pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<Small
 /// # Errors
 /// [`Error::OutOfRange`] for a tip that the robot has not, [`Error::Contradiction`] for a tip or pair that is named twice; those of
 /// wrong tasks and tolerances.
-pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipCriterion>> {
+pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
     let tips: Vec<&str> = robot.tips().collect();
     for (i, task) in tasks.iter().enumerate() {
         let numbers = match task.subject {
@@ -41,7 +41,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipC
             let problem = format!("tip '{}' cannot be seen from itself: name two tips", tips[numbers[0]]);
             return Err(Error::Contradiction { problem });
         }
-        let same = |other: &TipTask| other.subject == task.subject || other.subject == turned(task.subject);
+        let same = |other: &NamedTask| other.subject == task.subject || other.subject == turned(task.subject);
         if tasks[..i].iter().any(same) {
             let [from, of] = numbers.map(|number| tips[number]);
             let problem = match task.subject {
@@ -51,7 +51,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipC
             return Err(Error::Contradiction { problem });
         }
     }
-    tasks.iter().map(TipTask::validated).collect()
+    tasks.iter().map(NamedTask::validated).collect()
 }
 
 /// The same pair, seen from the other tip.
@@ -71,9 +71,7 @@ pub(crate) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Targe
         let expected = format!("{} targets, one for each task", tasks.len());
         return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });
     }
-    for (task, target) in tasks.iter().zip(&mut *targets) {
-        *target = task.part_used(target)?;
-    }
+    tasks.iter().zip(&mut *targets).try_for_each(|(task, target)| task.reduce(target))?;
     Aims { tasks, targets }.require_consistent(robot)
 }
 

@@ -5,7 +5,7 @@ use smallvec::smallvec;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Target, TargetRow, Task, TipTask, Tolerance};
+use crate::task::{NamedTask, Target, TargetRow, Task, Tolerance};
 
 /// The start of a motion, or one of its possible ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub enum Endpoint {
     /// Targets of the tips; the planner chooses the configuration.
     Targets {
         /// The tasks of several tips, in the order of their targets; tips without one are free. Empty for a plain target of the only tip.
-        tips: Vec<TipTask>,
+        tips: Vec<NamedTask>,
         /// The targets.
         targets: TargetRow,
     },
@@ -44,7 +44,7 @@ impl Endpoint {
                     Error::NotFinite { place, value, .. } => Error::NotFinite { what: name.of_target(), place, value },
                     other => other,
                 })?;
-                let only = TipTask::of_only(task.copied(), Tolerance::default()).validated()?;
+                let only = NamedTask::of_only(task.copied(), Tolerance::default()).validated()?;
                 reduce(robot, &[only], &mut targets.clone())
             }
             Self::Targets { tips, targets } => {

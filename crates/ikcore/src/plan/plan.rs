@@ -99,6 +99,31 @@ const ADVICE_ALONG_PATH: &str =
 const NAMED_IN_MESSAGE: usize = 3;
 
 impl Plan {
+    /// A solved plan of a motion of which only the value `cost` of its `objective` is known.
+    pub(crate) fn of(trajectory: Trajectory, objective: Cost, cost: f64) -> Self {
+        Self {
+            trajectory,
+            objective,
+            cost,
+            history: vec![],
+            clearance: None,
+            nearest: None,
+            obstruction: None,
+            chosen_end: None,
+            freed: None,
+            surroundings: None,
+            accuracy: None,
+            reference: None,
+            redundancy: vec![],
+            path: vec![],
+            peak: None,
+            violations: vec![],
+            status: Status::Solved,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+        }
+    }
+
     /// The plan that [`to_bytes`](crate::stored::to_bytes) stored.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use crate::obstacle::{Surroundings, kept_margin};
 use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, RESERVE, can_collide, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::{Target, TipTask};
+use crate::task::{NamedTask, Target};
 use crate::timing::MotionLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
@@ -107,7 +107,7 @@ impl<'a> EndSearch<'a> {
         Ok(std::iter::once(first.q.to_vec()).chain(others.solutions.iter().map(|other| other.q.to_vec())).collect())
     }
 
-    fn options_of(&self, tips: &[TipTask]) -> SolveOptions {
+    fn options_of(&self, tips: &[NamedTask]) -> SolveOptions {
         SolveOptions { tips: tips.to_vec(), ..self.options.clone() }
     }
 

@@ -31,7 +31,7 @@ pub enum Subject {
 
 /// A task of a tip, or of a pair of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TipTask {
+pub struct NamedTask {
     /// The pose that counts.
     pub subject: Subject,
     /// The part of it that matters. `None` means all of it.
@@ -55,7 +55,7 @@ pub struct TipCriterion {
     weight: f64,
 }
 
-impl TipTask {
+impl NamedTask {
     /// That of the only tip of a robot.
     pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
         Self { subject: Subject::Tip(0), task, tolerance }
@@ -120,12 +120,15 @@ impl TipCriterion {
         assessment
     }
 
-    /// The part of `wanted` that its task uses.
+    /// Reduces `target` to the part that its task uses.
     ///
     /// # Errors
     /// [`Error::WrongTarget`].
-    pub(crate) fn part_used(&self, wanted: &Target) -> Result<Target> {
-        self.kind.as_ref().map_or(Ok(*wanted), |kind| kind.target(wanted))
+    pub(crate) fn reduce(&self, target: &mut Target) -> Result<()> {
+        if let Some(kind) = &self.kind {
+            *target = kind.target(target)?;
+        }
+        Ok(())
     }
 
     /// Where the tip itself is to be for a target of its tool.
@@ -405,9 +408,10 @@ mod tests {
         for kind in kinds {
             let subjects = [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }];
             let tolerance = Tolerance::default();
-            let task = |subject| TipTask { subject, task: Some(kind), tolerance }.validated().unwrap();
+            let task = |subject| NamedTask { subject, task: Some(kind), tolerance }.validated().unwrap();
             let tasks = subjects.map(|subject| task(subject).weighing(if subject.is_pair() { 3.0 } else { 1.0 }));
-            let targets = tasks.map(|task| task.part_used(&wanted).unwrap());
+            let mut targets = [wanted; 3];
+            tasks.iter().zip(&mut targets).for_each(|(task, target)| task.reduce(target).unwrap());
             let aims = Aims { tasks: &tasks, targets: &targets };
             let linearized = |q: &[f64]| {
                 let mut out = Linearization::default();

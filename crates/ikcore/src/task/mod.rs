@@ -20,7 +20,7 @@ mod tip_assessment;
 mod tip_error;
 mod tip_task;
 
-pub use aims::{Aims, Subject, TipCriterion, TipTask};
+pub use aims::{Aims, NamedTask, Subject, TipCriterion};
 pub use assessment::Assessment;
 pub use components::Components;
 pub use criterion::Criterion;

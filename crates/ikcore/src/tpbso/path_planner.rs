@@ -37,26 +37,17 @@ pub(crate) fn along_path(
     let mut violations = limits.violations(&trajectory);
     let deviation = cost.deviation(tip_path);
     violations.extend(deviation.violations(tip_path, accuracy));
+    let value = options.objective.of(robot, &trajectory);
     Ok(Plan {
-        objective: options.objective,
-        cost: options.objective.of(robot, &trajectory),
-        clearance: None,
-        nearest: None,
-        obstruction: None,
-        surroundings: None,
-        chosen_end: None,
-        freed: None,
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),
-        path: vec![],
-        peak: None,
         status: found.status(violations.is_empty()),
         violations,
         history: found.history,
         evaluations: found.evaluations,
         elapsed: stopwatch.elapsed(),
-        trajectory,
+        ..Plan::of(trajectory, options.objective, value)
     })
 }
 

@@ -47,25 +47,16 @@ pub(crate) fn point_to_point(
         }
     };
     let status = found.status(violations.is_empty());
+    let cost = options.objective.of(robot, &trajectory);
     Ok(Plan {
-        objective: options.objective,
-        cost: options.objective.of(robot, &trajectory),
         nearest,
-        obstruction: None,
-        surroundings: None,
         chosen_end: Some(0),
-        freed: None,
-        accuracy: None,
-        reference: None,
-        redundancy: vec![],
-        path: vec![],
-        peak: None,
         history: found.history,
         clearance,
         status,
         violations,
         evaluations: found.evaluations,
         elapsed: stopwatch.elapsed(),
-        trajectory,
+        ..Plan::of(trajectory, options.objective, cost)
     })
 }

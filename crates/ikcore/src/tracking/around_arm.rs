@@ -1,8 +1,8 @@
-//! What is around a tracked arm, as rows that its command is to keep.
+//! Constraints on the command of a tracked arm, from the bodies around it.
 //!
-//! Near pairs of bodies say how far the place where the arm comes to rest may move towards them. What comes nearer is given way to before
-//! it is near: rows of its closest approach lead the arm aside, out of its way; those of where it is now would only drive the arm ahead of
-//! it, into a corner. They are wishes, softer than the rows of what stands still.
+//! A near pair of bodies limits how far the place of rest may move towards the other body. The arm gives way to a body that approaches
+//! before it is near: rows of its closest approach lead the arm aside, out of its way; rows of its present place would only drive the arm
+//! ahead of it, into a corner. Constraints from moving bodies are soft; static ones are hard.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::math::MAX_DOF;
 use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, norm};
 use crate::objective::Point;
-use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, KeptDistance, NearRow, NearRows};
+use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, NearRow, NearRows, RequiredDistance};
 
 /// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
 const ROOM: f64 = 2e-4;
@@ -26,7 +26,7 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
 const WARNING: f64 = 0.2;
 
-/// What comes is given way to so early that this speed is enough (m/s), as far as it is foreseen (s).
+/// Speed of giving way (m/s): the arm begins early enough for it to suffice. Horizon of the prediction (s).
 const GIVING_WAY: f64 = 0.05;
 const FORESEEN: f64 = 3.0;
 
@@ -34,14 +34,14 @@ const FORESEEN: f64 = 3.0;
 /// certificate of a motion between ticks would refuse to let it start.
 const ROOM_TO_START: f64 = 3e-3;
 
-/// Softness of rows of what moves, and of what is wanted in time: they give way to what stands still.
+/// Softness of rows of moving bodies, and of rows wanted in time: they give way to rows of static bodies.
 const MOVING: f64 = 1e-7;
 const WISHED: f64 = 1e-5;
 
 /// Time in which a distance that is wanted, but not needed, comes about (s).
 const PACE: f64 = 0.1;
 
-/// What an obstacle may do between two calls that say where it is.
+/// Motion of obstacles between two calls that give their places.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ObstacleMotion {
     /// Velocity of each obstacle (m/s); empty if all are at rest.
@@ -49,18 +49,18 @@ pub(super) struct ObstacleMotion {
     speeds: Vec<f64>,
 }
 
-/// What is around an arm.
+/// Bodies around an arm.
 #[derive(Debug)]
 pub(super) struct Around {
     pub space: Arc<ClearSpace<'static>>,
     pub obstacles: ObstacleMotion,
     /// Time since the obstacles were where they are said to be (s).
     pub since: f64,
-    /// Near pairs where the arm comes to rest if it brakes now.
+    /// Near pairs at the place of rest if the arm brakes now.
     near: NearRows,
-    /// Where it would come to rest after the command.
+    /// Near pairs at the place of rest after the command.
     after: NearRows,
-    /// What comes too near where the arm comes to rest.
+    /// Bodies that will come too near to the place of rest.
     coming: ComingRows,
     check: ChordCheck,
 }
@@ -87,7 +87,7 @@ impl ObstacleMotion {
 }
 
 impl Around {
-    /// What is in `space` and moves like `obstacles`, for an arm with these limits.
+    /// The bodies in `space`, which move like `obstacles`, for an arm with these limits.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -153,7 +153,7 @@ impl Around {
 
     /// Whether a motion until `end` (ticks) is certainly clear.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
-        let kept = KeptDistance {
+        let kept = RequiredDistance {
             margin: self.space.margin(),
             speeds: &self.obstacles.speeds,
             since: self.since,

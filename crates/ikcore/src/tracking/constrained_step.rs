@@ -14,13 +14,13 @@ use crate::task::Aims;
 /// Damping of the joints beside the task, relative to the squared size of the Jacobian.
 const DAMPING: f64 = 1e-5;
 
-/// How much more what is wanted counts than the task does.
+/// Weight of wanted rows, relative to the task.
 const URGENT: f64 = 10.0;
 
 /// Newton steps onto the poses of pairs; they converge quadratically.
 const HOLDING_STEPS: usize = 5;
 
-/// Pairs this near (m, rad) to where they are to be are held.
+/// Largest error of a held pair (m, rad).
 const HELD: f64 = 1e-10;
 
 /// Rows that a pair has at most.
@@ -31,16 +31,16 @@ const ROWS_OF_PAIR: usize = ROWS;
 pub(super) struct ConstrainedStep {
     /// Inequalities.
     pub rows: Vec<Row>,
-    /// Inequalities that cannot be kept at once, to be approached before the task; the first few count.
+    /// Inequalities that cannot be kept at once; approached before the task, the first few of them.
     pub wanted: Vec<Row>,
     wanted_columns: Vec<[f64; ROWS]>,
-    /// Equations: pairs of tips stay where they are to be.
+    /// Equations that keep pairs of tips at their relative poses.
     held: Vec<Row>,
     solver: RowSolver,
     linearization: Box<Linearization>,
 }
 
-/// What a step leads to.
+/// The point that a step comes nearest to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Towards {
     /// The target.
@@ -51,7 +51,7 @@ pub(super) enum Towards {
     Joints,
 }
 
-/// The step of a robot.
+/// A step of a robot in a box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepRequest<'a> {
     pub robot: &'a Robot,

@@ -7,7 +7,7 @@ use crate::motion::{Braking, JointState};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
-/// How many times as long as the fastest stop one may take that holds pairs, and ticks beside that.
+/// Longest coupled stop, as a multiple of the fastest, plus ticks.
 const SLOWER: f64 = 3.0;
 const MORE_TICKS: usize = 8;
 

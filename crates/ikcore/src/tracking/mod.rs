@@ -14,7 +14,8 @@
 //! | `track`, `track_options` | the call for a whole path, and its options |
 //! | `approach_motion` | the approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
-//! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
+//! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
+//! | `tracked_arm` | accepted configuration, clock, limits and targets |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | what is around an arm, as rows that its command is to keep |
 //! | `safety_filter`, `stop_motion`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
@@ -53,6 +54,7 @@ mod tip_pose;
 mod tip_tasks;
 mod track;
 mod track_options;
+mod tracked_arm;
 
 pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};

@@ -1,4 +1,4 @@
-//! Whether an arm that obstacles hold still comes nearer to its target.
+//! Progress of an arm held by obstacles towards its target.
 //!
 //! Commands beside obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles hold and
 //! that has come no nearer for a while therefore takes only commands after which its place of rest is nearer to the target, by a share of

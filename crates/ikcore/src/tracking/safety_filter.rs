@@ -39,12 +39,12 @@ pub(super) struct SafetyFilter {
     stop: CoupledStop,
     /// That of the command in question.
     next_stop: CoupledStop,
-    /// Rows keep the last goal from its target.
+    /// Obstacles keep the last goal from its target.
     goal_is_held: bool,
     progress: ArmProgress,
 }
 
-/// What became of a command.
+/// Outcome of the filter for a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Kept {
     /// Whether it was changed.

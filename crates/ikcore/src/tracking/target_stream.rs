@@ -5,7 +5,7 @@ use smallvec::smallvec;
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::task::{Target, TargetMotion, TargetRow, TipTask, Twist};
+use crate::task::{NamedTask, Target, TargetMotion, TargetRow, Twist};
 
 /// A target is extrapolated over this time (s) at most, however old it is.
 const LONGEST_AGE: f64 = 0.25;
@@ -14,7 +14,7 @@ const LONGEST_AGE: f64 = 0.25;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Arrival {
     /// The tasks of several tips, in the order of their targets; tips without one are free. Empty for a robot with one tip.
-    pub tips: Vec<TipTask>,
+    pub tips: Vec<NamedTask>,
     /// The targets.
     pub targets: TargetRow,
     /// Velocity of the target of the only tip (m/s), for rules that work with velocities.
@@ -29,8 +29,8 @@ impl From<Target> for Arrival {
     }
 }
 
-impl FromIterator<(TipTask, Target)> for Arrival {
-    fn from_iter<T: IntoIterator<Item = (TipTask, Target)>>(aims: T) -> Self {
+impl FromIterator<(NamedTask, Target)> for Arrival {
+    fn from_iter<T: IntoIterator<Item = (NamedTask, Target)>>(aims: T) -> Self {
         let (tips, targets) = aims.into_iter().unzip();
         Self { tips, targets, ..Self::default() }
     }

@@ -4,7 +4,7 @@ use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Aims, Region, Target, TipCriterion, TipTask};
+use crate::task::{Aims, NamedTask, Region, Target, TipCriterion};
 
 /// Weight of pairs beside other tasks, so that what is not within reach costs them little: they are then held exactly.
 const PAIR_WEIGHT: f64 = 100.0;
@@ -12,7 +12,7 @@ const PAIR_WEIGHT: f64 = 100.0;
 /// The tasks of the last targets; the task of the only tip never changes.
 #[derive(Debug)]
 pub(super) struct TipTasks {
-    asked: Vec<TipTask>,
+    asked: Vec<NamedTask>,
     tasks: Vec<TipCriterion>,
 }
 
@@ -42,7 +42,7 @@ impl TipTasks {
     ///
     /// # Errors
     /// Those of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region; the tasks are then as before.
-    pub fn read(&mut self, robot: &Robot, asked: &[TipTask], targets: &mut [Target]) -> Result<bool> {
+    pub fn read(&mut self, robot: &Robot, asked: &[NamedTask], targets: &mut [Target]) -> Result<bool> {
         targets.iter().try_for_each(Target::validate)?;
         if asked.is_empty() && !targets.is_empty() {
             robot.require_one_tip("a plain target")?;
@@ -61,7 +61,7 @@ impl TipTasks {
     }
 }
 
-fn checked(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipCriterion>> {
+fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
     if tasks.is_empty() {
         let problem = "no tip has a target: name one tip at least".into();
         return Err(Error::Contradiction { problem });

@@ -14,7 +14,7 @@ use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
-use crate::task::{Goal, Target, TargetRow, TipTask, Tolerance};
+use crate::task::{Goal, NamedTask, Target, TargetRow, Tolerance};
 
 /// Follows `path` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
 ///
@@ -36,7 +36,7 @@ pub fn track(
 #[derive(Debug, Clone, Copy)]
 pub struct TipPaths<'a> {
     /// The tasks of several tips, in the order of their paths; empty for a robot with one tip.
-    pub tips: &'a [TipTask],
+    pub tips: &'a [NamedTask],
     /// The paths, sampled at the same times.
     pub paths: &'a [Reference],
 }
@@ -205,7 +205,7 @@ fn first_configuration(
     let targets = asked.targets(0);
     let choices = SolveOptions {
         task: options.task,
-        tips: asked.tips.iter().map(|task| TipTask { tolerance: tight(task.tolerance), ..*task }).collect(),
+        tips: asked.tips.iter().map(|task| NamedTask { tolerance: tight(task.tolerance), ..*task }).collect(),
         goals: if options.goals.is_empty() { start_goals(robot, &targets[0]) } else { options.goals.clone() },
         tolerance: tight(options.tolerance),
         limits: Some(limits_at_start(robot, limits)?),

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
-use crate::task::{Goal, Task, TipCriterion, TipTask, Tolerance};
+use crate::task::{Goal, NamedTask, Task, TipCriterion, Tolerance};
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
@@ -39,7 +39,7 @@ pub struct TrackOptions {
 impl TrackOptions {
     /// The task of the only tip, which decides whether a tick is in its band.
     pub(super) fn only_task(&self) -> Result<TipCriterion> {
-        TipTask::of_only(self.task, self.tolerance).validated()
+        NamedTask::of_only(self.task, self.tolerance).validated()
     }
 
     /// Checks that rule and task serve this robot's number of tips.

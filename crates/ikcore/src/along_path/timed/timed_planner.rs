@@ -99,27 +99,16 @@ impl PathProblem<'_> {
         let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
         let mut violations = self.limits.violations(&trajectory);
         violations.extend(deviation.violations(tip_path, self.accuracy));
-        let keeps_everything = violations.is_empty();
+        let cost = options.objective.of(robot, &trajectory);
         Plan {
-            objective: options.objective,
-            cost: options.objective.of(robot, &trajectory),
-            clearance: None,
-            nearest: None,
-            obstruction: None,
-            surroundings: None,
-            chosen_end: None,
-            freed: None,
             accuracy: Some(deviation.distance.value),
             reference: Some(tip_path.positions().to_vec()),
-            redundancy: vec![],
             path: stretches,
-            peak: None,
+            status: if violations.is_empty() { Status::Solved } else { Status::Stalled },
             violations,
-            status: if keeps_everything { Status::Solved } else { Status::Stalled },
             evaluations: 1,
-            history: vec![],
             elapsed: self.stopwatch.elapsed(),
-            trajectory,
+            ..Plan::of(trajectory, options.objective, cost)
         }
     }
 

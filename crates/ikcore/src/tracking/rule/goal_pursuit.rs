@@ -27,13 +27,13 @@ const NO_GAIN: f64 = 1e-3;
 /// A descent that lowers the error by less than this for each unit of its way (m/rad) goes along a flat valley, which need not end.
 const FLAT: f64 = 1e-5;
 
-/// So many samples after obstacles changed one, the goal begins anew: what it remembers are motions along obstacles, not noise.
+/// Restarts the goal this many samples after obstacles changed one: its memory holds motions along obstacles, not noise.
 const RELEASED: usize = 5;
 
 /// A goal farther from the arm than this (rad, m) does not show the way along an obstacle.
 const FAR: f64 = 0.1;
 
-/// After so many ticks in which an arm that holds pairs gets no nearer to a goal that is far, there is no way to it.
+/// Ticks without progress of an arm that holds pairs, after which there is no way to a far goal.
 const NO_WAY: usize = 10;
 
 /// State of the rule between ticks.

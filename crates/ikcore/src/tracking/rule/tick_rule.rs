@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
 use crate::tracking::safety_filter::SafetyFilter;
+use crate::tracking::tracked_arm::TrackedArm;
 
 /// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -78,11 +79,16 @@ impl TickRule {
         }
     }
 
-    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without, with several tips or one.
-    pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
+    /// Whether the rule extrapolates targets, and so can use their stamps, `under_acceleration` or jerk limits or without.
+    pub(in crate::tracking) fn extrapolates(&self, under_acceleration: bool) -> bool {
+        *self == Self::MidStep && under_acceleration
+    }
+
+    /// Starts the rule.
+    pub(in crate::tracking) fn start(&self, arm: &TrackedArm) -> RunningRule {
         match self {
-            Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
-            Self::MidStep if several_tips => RunningRule::TipStep(TipStep::default()),
+            Self::MidStep if arm.limited.is_some() => RunningRule::GoalPursuit(Box::default()),
+            Self::MidStep if !arm.has_one_tip() => RunningRule::TipStep(TipStep::default()),
             Self::MidStep => RunningRule::MidStep(MidStepState::default()),
             Self::Solver(solver) => RunningRule::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
@@ -100,11 +106,6 @@ impl RunningRule {
             Self::GoalPursuit(pursuit) => pursuit.forget(),
             Self::TipStep(_) | Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
         }
-    }
-
-    /// Whether the rule extrapolates targets, and so can use their stamps.
-    pub(crate) fn extrapolates(&self) -> bool {
-        matches!(self, Self::GoalPursuit(_))
     }
 
     /// Runs one tick. `safety` moves samples of a goal away from obstacles.

@@ -5,7 +5,7 @@ use super::near_rows::NearRow;
 
 /// The distances to keep. Obstacles count as moved, in any direction, by as far as their speed takes them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct KeptDistance<'a> {
+pub(crate) struct RequiredDistance<'a> {
     /// Distance to keep (m).
     pub margin: f64,
     /// Largest speed of each obstacle (m/s); empty if all are at rest.
@@ -23,14 +23,14 @@ pub(crate) struct KeptDistance<'a> {
     pub only_parts: bool,
 }
 
-impl KeptDistance<'static> {
+impl RequiredDistance<'static> {
     /// The same distance (m) from everything, all of it at rest.
     pub fn constant(margin: f64) -> Self {
         Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], leeway: 0.0, only_parts: false }
     }
 }
 
-impl KeptDistance<'_> {
+impl RequiredDistance<'_> {
     /// How far an obstacle, or another link, should be at a tick (m).
     pub fn wanted(&self, obstacle: Option<usize>, tick: f64) -> f64 {
         let speed = obstacle.and_then(|i| self.speeds.get(i)).copied().unwrap_or(0.0);
