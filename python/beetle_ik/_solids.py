@@ -39,8 +39,8 @@ _MAKERS = {
     "fr3": Look("#F4F4F2", "#E9EAEA", _DARK, 1.15),
     "iiwa": Look("#D9DCDF", "#D9DCDF", "#F08A24", 1.35),
     "kr210": Look("#F2691B", "#F2691B", _DARK, 1.35),
-    "ur": Look("#D5DADF", "#C3C9CF", "#4F9BD9", 1.0),
-    "gen3": Look("#F2F2F2", _DARK, _DARK, 1.0),
+    **dict.fromkeys(("ur3", "ur5", "ur10"), Look("#D5DADF", "#C3C9CF", "#4F9BD9")),
+    "gen3": Look("#F2F2F2", _DARK, _DARK),
 }
 
 
