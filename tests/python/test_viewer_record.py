@@ -19,7 +19,7 @@ from beetle_ik.viewing import write_player
 from beetle_ik.viewing.camera import FIELD, _corners, _fitting
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
-from viewer_pictures import chromium, visits
+from viewer_pictures import chromium, hide_notes, visits
 
 ROBOT = bik.Robot.named("panda").with_capsules(radius=0.06)
 START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
@@ -256,11 +256,10 @@ def plays(browser: Any, address: str, *, width: int = 320, height: int = 240) ->
     page.goto(address)
     clock = page.locator("input[type=text], input:not([type])").first
     clock.wait_for()
-    first, note = clock.input_value(), page.locator(".mantine-Notification-root button")
+    hide_notes(page)
+    first = clock.input_value()
     for _ in range(PATIENCE // 50):
-        if note.count():  # that there is no graphics card; it covers what is drawn
-            note.first.dispatch_event("click")
-        elif clock.input_value() != first and colours(page) > 100:
+        if clock.input_value() != first and colours(page) > 100:
             break
         page.wait_for_timeout(50)
     else:
