@@ -60,7 +60,7 @@ class Solid(NamedTuple):
 
 
 def solids(robot: Robot, q: Array) -> list[Solid]:
-    """Returns what is seen of the links of a robot that has no meshes. `q` (n,) is any configuration.
+    """Returns solids for the links of a robot that has no meshes. `q` (n,) is any configuration.
 
     One with bodies of other shapes than capsules and balls, which usually stand for an arm, looks like these: nothing
     is returned.
@@ -108,7 +108,7 @@ class _Drawing:
             self._arrival(part, each)
 
     def part(self, part: Part) -> None:
-        """Draws a part that moves: what is about its own axis, and the way to the next ones and to the tips."""
+        """Draws a part that moves: the housing of its joint, the links to the next joints and to the tips."""
         axis, r = part.about, self._radius(part)
         if axis.travel is not None:
             self._rod(
