@@ -7,7 +7,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from mistakes import INSIDE, Invalid, Limit, Unknown, assert_told, told
+from mistakes import INSIDE, RADIANS, Invalid, Limit, Unknown, assert_told, told
 from typer.testing import CliRunner
 
 import beetle_ik as bik
@@ -149,8 +149,7 @@ SOLVERS = (
         (
             lambda: bik.solve(PANDA, TARGET, start=[0, -45, 0, -135, 0, 90, 45]),
             Limit,
-            "start: joint 'panda_joint2' at -45 is outside its limits [-1.7628, 1.7628]: angles are in radians; "
-            "np.radians converts degrees",
+            f"start: joint 'panda_joint2' at -45 is outside its limits [-1.7628, 1.7628]{RADIANS}",
         ),
         (
             lambda: bik.reachability(PANDA, voxel_size=0.1),  # type: ignore[call-arg]
