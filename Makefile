@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-rust test-python zoo campaign soak test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
-    bench coverage docs papers
+    bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
 unexport MAKEFLAGS MFLAGS
@@ -113,6 +113,11 @@ coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Pytho
 docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in target/doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build/html
+
+# Needs Chromium or Chrome.
+docs-check: docs  ## the site in a browser: blocks that do not fit, searches that find nothing
+	$(BIN)/pip install --quiet --disable-pip-version-check 'playwright>=1.50'
+	PYTHONPATH=tools $(BIN)/python tools/check_site.py docs/build/html
 
 papers: $(VENV)/with-test  ## the papers run again, reports in target/papers/; the tables and claims that README and site quote
 	$(BIN)/beetle-ik reproduce all --out target/papers

@@ -11,7 +11,7 @@ a busy machine counts less; of a call that takes less than 50 ms, the median of 
 A judge that shares no code with any planner samples every motion so densely that no sphere moves more than 1 mm from
 sample to sample (`peers/sphere_judge.py`).
 
-`--docs docs` writes the tables and the figures of `docs/planning.md`.
+`--docs docs` writes the tables and the figures of `docs/benchmarks_motion.md`.
 """
 
 # ruff: noqa: E402

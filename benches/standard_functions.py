@@ -166,22 +166,24 @@ SEPARABLE: dict[str, Any] = {
     "mutation_decay": 0.98,
 }
 PAIRS = [
-    Pair("PSO", bik.PSO(form="inertia", **SAME), CLERC),
-    Pair("QPSO", bik.QPSO(**SAME), CLERC),
+    Pair("PSO", bik.papers.PSO(form="inertia", **SAME), CLERC),
+    Pair("QPSO", bik.papers.QPSO(**SAME), CLERC),
     # A beetle takes three evaluations a generation: a third of the particles, for as many generations.
-    Pair("BeetleSwarm, 17 beetles", bik.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
-    Pair("BeetleSwarm, 50 beetles", bik.BeetleSwarm(**SAME), CLERC),
+    Pair("BeetleSwarm, 17 beetles", bik.papers.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
+    Pair("BeetleSwarm, 50 beetles", bik.papers.BeetleSwarm(**SAME), CLERC),
     # As mealpy's does: what left the box is drawn anew in it, and nothing limits a velocity.
     Pair(
-        'PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY
+        'PSO, accept="improving", walls="random"',
+        bik.papers.PSO(walls="random", velocity_limit=np.inf, **IMPROVING),
+        GREEDY,
     ),
-    Pair('PSO, accept="improving", walls="absorbing"', bik.PSO(**IMPROVING), GREEDY),
-    Pair("Genetic, single coordinates mutated", bik.Genetic(**SEPARABLE, **SAME), GA),
-    Pair("Genetic, its defaults", bik.Genetic(**SAME), GA),
+    Pair('PSO, accept="improving", walls="absorbing"', bik.papers.PSO(**IMPROVING), GREEDY),
+    Pair("Genetic, single coordinates mutated", bik.papers.Genetic(**SEPARABLE, **SAME), GA),
+    Pair("Genetic, its defaults", bik.papers.Genetic(**SAME), GA),
     # Karaboga's colony of 50 bees is 25 employed at 25 sources, and 25 onlookers.
-    Pair("BeeColony, 25 sources", bik.BeeColony(limit=25, **{**SAME, "population": 25}), ABC),
-    Pair("BeeColony, 50 sources", bik.BeeColony(limit=25, **SAME), ABC),
-    Pair("Firefly", bik.Firefly(absorption=0.999, **SAME), FFA),
+    Pair("BeeColony, 25 sources", bik.papers.BeeColony(limit=25, **{**SAME, "population": 25}), ABC),
+    Pair("BeeColony, 50 sources", bik.papers.BeeColony(limit=25, **SAME), ABC),
+    Pair("Firefly", bik.papers.Firefly(absorption=0.999, **SAME), FFA),
     Pair('DifferentialEvolution, update="immediate"', bik.DifferentialEvolution(update="immediate", **SAME), DE),
     Pair('DifferentialEvolution, update="generation"', bik.DifferentialEvolution(**SAME), DE),
 ]

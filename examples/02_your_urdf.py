@@ -2,8 +2,8 @@
 Your robot from a URDF
 ======================
 
-``Robot.from_urdf`` reads a URDF file or its text. Base and tip may be any two links; by default they are the root and
-the only leaf.
+``Robot.from_urdf`` reads a URDF file or its text. Base and tip may be any two
+links; by default they are the root and the only leaf.
 """
 
 import matplotlib.pyplot as plt
@@ -20,18 +20,38 @@ LINK = """
   </joint>"""
 
 
-def joint(name: str, kind: str, parent: str, child: str, **numbers: float | str) -> str:
+def joint(
+    name: str, kind: str, parent: str, child: str, **numbers: float | str
+) -> str:
     """Returns the XML of one joint and the link that it moves."""
-    given = {"offset": 0.3, "turn": 0.0, "axis": "0 1 0", "lower": -2.0, "upper": 2.0, "velocity": 1.5} | numbers
+    given = {
+        "offset": 0.3,
+        "turn": 0.0,
+        "axis": "0 1 0",
+        "lower": -2.0,
+        "upper": 2.0,
+        "velocity": 1.5,
+    } | numbers
     return LINK.format(name=name, kind=kind, parent=parent, child=child, **given)
 
 
 urdf = (
     '<robot name="crane"><link name="world"/>'
-    + joint("turn", "revolute", "world", "column", axis="0 0 1", lower=-3.0, upper=3.0)
+    + joint(
+        "turn", "revolute", "world", "column", axis="0 0 1", lower=-3.0, upper=3.0
+    )
     + joint("shoulder", "revolute", "column", "boom")
     + joint("elbow", "revolute", "boom", "arm", offset=0.5)
-    + joint("telescope", "prismatic", "arm", "hook", axis="0 0 1", lower=0.0, upper=0.4, velocity=0.2)
+    + joint(
+        "telescope",
+        "prismatic",
+        "arm",
+        "hook",
+        axis="0 0 1",
+        lower=0.0,
+        upper=0.4,
+        velocity=0.2,
+    )
     + "</robot>"
 )
 

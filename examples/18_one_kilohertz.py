@@ -2,9 +2,10 @@
 A loop of 1 kHz with a noisy, slow camera
 =========================================
 
-A camera at 60 Hz sees the target 50 ms late and with 2 mm of noise; the arm wants a command every millisecond, inside
-limits up to jerk. The loop runs in a thread of its own: it waits for the next millisecond, asks the camera for a new
-target and steps the tracker. At the end it prints how late its ticks were.
+A camera at 60 Hz sees the target 50 ms late and with 2 mm of noise; the arm wants a
+command every millisecond, inside limits up to jerk. The loop runs in a thread of
+its own: it waits for the next millisecond, asks the camera for a new target and
+steps the tracker. At the end it prints how late its ticks were.
 """
 
 import threading
@@ -33,7 +34,7 @@ def hand(t: float) -> np.ndarray:
 
 
 def camera(tick: int) -> tuple[np.ndarray, float] | None:
-    """What the camera delivers in this tick: a noisy target and when it was seen, or nothing."""
+    """Returns a noisy target and when the camera saw it, if this tick has one."""
     seen = tick * DT - LATENCY
     if tick % 17 or seen < 0.0:
         return None
@@ -41,7 +42,8 @@ def camera(tick: int) -> tuple[np.ndarray, float] | None:
 
 
 # %%
-# The loop. Python's own threads can hold it up; a tick itself takes a few microseconds.
+# The loop. Python's own threads can hold it up; a tick itself takes a few
+# microseconds.
 commands = np.empty((TICKS, robot.dof))
 lateness = np.empty(TICKS)
 
@@ -56,7 +58,11 @@ def loop() -> None:
                 time.sleep(left - 0.0002)
         lateness[tick] = -left
         image = camera(tick)
-        step = tracker.step(None) if image is None else tracker.step(image[0], stamp=image[1])
+        step = (
+            tracker.step(None)
+            if image is None
+            else tracker.step(image[0], stamp=image[1])
+        )
         commands[tick] = step.q
 
 
@@ -64,7 +70,10 @@ thread = threading.Thread(target=loop)
 thread.start()
 thread.join()
 late = 1e6 * np.percentile(lateness, [50.0, 99.0, 100.0])
-print(f"ticks begin late by {late[0]:.0f} us (median), {late[1]:.0f} us (99 %), {late[2]:.0f} us (most)")
+print(
+    f"ticks begin late by {late[0]:.0f} us (median), "
+    f"{late[1]:.0f} us (99 %), {late[2]:.0f} us (most)"
+)
 print(f"stops within {tracker.stop():.2f} s from here")
 
 # %%
@@ -74,7 +83,10 @@ tip = robot.fk(commands)[:, :3, 3]
 truth = np.array([hand(instant) for instant in t])
 error = np.linalg.norm(tip - truth, axis=1)[1000:]
 jerk = np.abs(np.diff(commands, 3, axis=0)).max() / DT**3
-print(f"tip error {1e3 * np.sqrt(np.mean(error**2)):.1f} mm rms, largest jerk {jerk:.0f} rad/s^3")
+print(
+    f"tip error {1e3 * np.sqrt(np.mean(error**2)):.1f} mm rms, "
+    f"largest jerk {jerk:.0f} rad/s^3"
+)
 
 figure, axes = plt.subplots(figsize=(8, 4), layout="constrained")
 axes.plot(t, truth[:, 1], color="black", linestyle=":", label="hand")

@@ -20,16 +20,27 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for RandomSearch {
     type State = State;
 
-    fn start(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
+    fn start(
+        &self,
+        State { x }: &mut State,
+        evaluator: &mut Evaluator<'_, O>,
+        x0: &[f64],
+    ) -> Result<(), Status> {
         *x = Point::from_slice(x0);
         evaluator.evaluate(x)?;
         Ok(())
     }
 
-    fn step(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
+    fn step(
+        &self,
+        State { x }: &mut State,
+        evaluator: &mut Evaluator<'_, O>,
+    ) -> Result<(), Status> {
         let bounds = evaluator.bounds();
         for _ in 0..self.draws {
-            for (x, (lower, upper)) in x.iter_mut().zip(bounds.lower().iter().zip(bounds.upper())) {
+            for (x, (lower, upper)) in
+                x.iter_mut().zip(bounds.lower().iter().zip(bounds.upper()))
+            {
                 *x = lower + (upper - lower) * evaluator.rng().uniform();
             }
             evaluator.evaluate(x)?;
@@ -59,11 +70,18 @@ impl Objective for Reach {
 
 fn main() -> ikcore::Result<()> {
     let bounds = Bounds::new(&[-3.0; 3], &[3.0; 3])?;
-    let (mut objective, mut rng, mut monitor) = (Reach, rng::stream(0, 0), Unattended);
+    let (mut objective, mut rng, mut monitor) =
+        (Reach, rng::stream(0, 0), Unattended);
     let stop = Stop { max_evaluations: 100_000, ..Stop::default() };
-    let mut evaluator = Evaluator::new(&mut objective, &bounds, stop, &mut rng, &mut monitor);
+    let mut evaluator =
+        Evaluator::new(&mut objective, &bounds, stop, &mut rng, &mut monitor);
     let status = run(&RandomSearch { draws: 100 }, &mut evaluator, &[0.0; 3]);
     let best = evaluator.best();
-    println!("{status:?} after {} evaluations: value {:.2e} at {:.3?}", evaluator.evaluations(), best.value, best.x);
+    println!(
+        "{status:?} after {} evaluations: value {:.2e} at {:.3?}",
+        evaluator.evaluations(),
+        best.value,
+        best.x
+    );
     Ok(())
 }

@@ -33,7 +33,7 @@ def values() -> dict[str, object]:
         "limits": limits,
         "falling_limits": bik.Limits(velocity=bik.Sinusoid(mean=2.0, amplitude=0.1, angular_frequency=1.0)),
         "stop": bik.Stop(max_evaluations=100, max_time=0.5),
-        "solver": bik.MultiStart(bik.PSO(population=20)),
+        "solver": bik.MultiStart(bik.papers.PSO(population=20)),
         "sphere": sphere,
         "box": bik.obstacles.Box([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]),
         "task": bik.tasks.Position(tolerance=[1e-4, 1e-4, 1e-3]),
@@ -50,8 +50,8 @@ def values() -> dict[str, object]:
         "trajectory": bik.time_optimal(
             waypoints, bik.Limits(velocity=np.ones(7), acceleration=np.full(7, 5.0)), gridpoints=30
         ),
-        "minimum": bik.minimize(lambda x: float(x @ x), [-1.0, -1.0], [1.0, 1.0], solver=bik.PSO(), seed=1),
-        "posture": bik.planar_posture(bik.Robot.planar([1.0] * 5), [1.0, 1.0, 0.0]),
+        "minimum": bik.minimize(lambda x: float(x @ x), [-1.0, -1.0], [1.0, 1.0], solver=bik.papers.PSO(), seed=1),
+        "posture": bik.papers.planar_posture(bik.Robot.planar([1.0] * 5), [1.0, 1.0, 0.0]),
         "status": bik.Status.SOLVED,
     }
 

@@ -176,7 +176,7 @@ def publish(out: Path, docs: Path, data: Path, acceleration: float) -> None:
         (docs / name).write_bytes((out / name).read_bytes())
     plan_figures.success(table(out, "planning_problems.csv"), NAMES, docs / "images" / "planning_success.png")
     plan_figures.pictures(data, acceleration, docs / "images" / "planning_scenes.png")
-    page = docs / "planning.md"
+    page = docs / "benchmarks_motion.md"
     page.write_text(with_section(page.read_text(encoding="utf-8"), section(docs)), encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""What both nodes share: the robot of the parameters, joint states in its order, poses of messages."""
+"""Robot, configuration and pose from the parameters and messages of both nodes."""
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped
@@ -14,20 +14,32 @@ def robot_of(node: Node) -> bik.Robot:
         node.declare_parameter(name, "")
     description = node.get_parameter("robot_description").value
     if not description:
-        raise ValueError("the parameter robot_description is empty: pass the URDF of the arm as text")
+        raise ValueError(
+            "the parameter robot_description is empty: "
+            "pass the URDF of the arm as text"
+        )
     base, tip = (node.get_parameter(name).value or None for name in ("base", "tip"))
     return bik.Robot.from_urdf(description, base=base, tip=tip)
 
 
 def limits_of(node: Node) -> bik.Limits:
-    """Limits of the parameters acceleration (rad/s^2, m/s^2) and jerk (rad/s^3, m/s^3); the others are the URDF's."""
+    """Returns the limits of the URDF with those of the parameters.
+
+    The parameters are acceleration (rad/s^2, m/s^2) and jerk (rad/s^3, m/s^3).
+    """
     node.declare_parameter("acceleration", 5.0)
     node.declare_parameter("jerk", 100.0)
-    return bik.Limits(acceleration=node.get_parameter("acceleration").value, jerk=node.get_parameter("jerk").value)
+    return bik.Limits(
+        acceleration=node.get_parameter("acceleration").value,
+        jerk=node.get_parameter("jerk").value,
+    )
 
 
 def configuration(robot: bik.Robot, message: JointState) -> np.ndarray | None:
-    """The configuration (n,) in the order of the robot; None if a joint is missing, as from grippers."""
+    """Returns the configuration (n,) in the order of the robot.
+
+    None if a joint is missing, as in the message of a gripper.
+    """
     position = dict(zip(message.name, message.position, strict=False))
     if not all(name in position for name in robot.joint_names):
         return None
@@ -37,12 +49,20 @@ def configuration(robot: bik.Robot, message: JointState) -> np.ndarray | None:
 def pose_of(message: PoseStamped) -> np.ndarray:
     """The pose (4, 4) of the message."""
     position, turn = message.pose.position, message.pose.orientation
-    return bik.pose([position.x, position.y, position.z], xyzw=[turn.x, turn.y, turn.z, turn.w])
+    return bik.pose(
+        [position.x, position.y, position.z], xyzw=[turn.x, turn.y, turn.z, turn.w]
+    )
 
 
 def refusal(robot: bik.Robot, message: PoseStamped) -> str | None:
-    """Why the pose cannot be used; None if it can. Transform poses of other frames with tf2 before you send them."""
+    """Returns why the pose cannot be used; None if it can.
+
+    Transform poses of other frames with tf2 before you send them.
+    """
     base = robot.link_names[0]
     if message.header.frame_id not in ("", base):
-        return f"the pose is given in frame '{message.header.frame_id}', and this node takes those in '{base}'"
+        return (
+            f"the pose is given in frame '{message.header.frame_id}', "
+            f"and this node takes those in '{base}'"
+        )
     return None

@@ -1,4 +1,4 @@
-"""Plans to each pose that arrives and has a joint_trajectory_controller execute the motion."""
+"""Plans to each pose that arrives; a joint_trajectory_controller executes it."""
 
 import rclpy
 from action_msgs.msg import GoalStatus
@@ -25,7 +25,9 @@ class Planner(Node):
         self.limits = limits_of(self)
         self.q = None
         self.busy = False
-        action = self.declare_parameter("action", "joint_trajectory_controller/follow_joint_trajectory").value
+        action = self.declare_parameter(
+            "action", "joint_trajectory_controller/follow_joint_trajectory"
+        ).value
         self.client = ActionClient(self, FollowJointTrajectory, action)
         self.create_subscription(JointState, "joint_states", self.on_state, 1)
         self.create_subscription(PoseStamped, "~/goal", self.on_goal, 1)
@@ -42,7 +44,9 @@ class Planner(Node):
             self.get_logger().error(problem)
             return
         try:
-            plan = bik.plan_point_to_point(self.robot, start_q=self.q, end=pose_of(message), limits=self.limits)
+            plan = bik.plan_point_to_point(
+                self.robot, start_q=self.q, end=pose_of(message), limits=self.limits
+            )
         except bik.BeetleIkError as refused:
             self.get_logger().error(str(refused))
             return
@@ -60,7 +64,10 @@ class Planner(Node):
         if self.busy:
             return "a motion is under way: send the goal when it has ended"
         if not self.client.server_is_ready():
-            return "the controller's action server is not there: is the controller active?"
+            return (
+                "the controller's action server is not there: "
+                "is the controller active?"
+            )
         return refusal(self.robot, message)
 
     def on_answer(self, future: Future) -> None:
@@ -80,14 +87,19 @@ class Planner(Node):
             self.get_logger().info("arrived")
         else:
             result = outcome.result
-            self.get_logger().error(f"the motion ended with error code {result.error_code}: {result.error_string}")
+            self.get_logger().error(
+                f"the motion ended with error code {result.error_code}: "
+                f"{result.error_string}"
+            )
 
 
 def message_of(trajectory: bik.Trajectory) -> JointTrajectory:
     """The trajectory every 10 ms, with velocities and accelerations."""
     fields = bik.interop.to_ros(trajectory, dt=0.01)
     points = [
-        JointTrajectoryPoint(**point | {"time_from_start": Duration(**point["time_from_start"])})
+        JointTrajectoryPoint(
+            **point | {"time_from_start": Duration(**point["time_from_start"])}
+        )
         for point in fields["points"]
     ]
     return JointTrajectory(joint_names=fields["joint_names"], points=points)

@@ -15,7 +15,7 @@ SILENCE = 0.2  # s without a target after which the arm stops
 
 
 class Servo(Node):
-    """Publishes a configuration every 1 / rate seconds, once the joint states have said where the arm is."""
+    """Publishes a configuration each 1 / rate seconds, once joint states arrive."""
 
     def __init__(self) -> None:
         """Finds the arm and its limits; the joint states say later where it is."""
@@ -33,10 +33,15 @@ class Servo(Node):
         self.create_timer(self.dt, self.tick)
 
     def on_state(self, message: JointState) -> None:
-        """Starts the tracker where the arm is. Later states are not fed back: the drives follow the commands."""
+        """Starts the tracker where the arm is.
+
+        Later states are not fed back: the drives follow the commands.
+        """
         q = configuration(self.robot, message)
         if self.tracker is None and q is not None:
-            self.tracker = bik.Tracker(self.robot, q, dt=self.dt, limits=self.limits, timeout=SILENCE)
+            self.tracker = bik.Tracker(
+                self.robot, q, dt=self.dt, limits=self.limits, timeout=SILENCE
+            )
             self.get_logger().info(f"starts at {q.round(3).tolist()}")
 
     def on_target(self, message: PoseStamped) -> None:
@@ -47,12 +52,18 @@ class Servo(Node):
         else:
             self.target = message
 
-    def on_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def on_stop(
+        self, request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
         """Brakes inside all limits; the next target starts the arm again."""
         del request
         self.target = None
         response.success = self.tracker is not None
-        response.message = f"stops within {self.tracker.stop():.3f} s" if self.tracker else "the arm has not started"
+        response.message = (
+            f"stops within {self.tracker.stop():.3f} s"
+            if self.tracker
+            else "the arm has not started"
+        )
         return response
 
     def tick(self) -> None:
@@ -61,15 +72,20 @@ class Servo(Node):
             return
         target, self.target = self.target, None
         try:
-            step = self.tracker.step(None) if target is None else self.follow(self.tracker, target)
-        except bik.InvalidInputError as problem:  # no pose: the tracker is as before
+            step = (
+                self.tracker.step(None)
+                if target is None
+                else self.follow(self.tracker, target)
+            )
+        # no pose: the tracker is as before
+        except bik.InvalidInputError as problem:
             self.get_logger().error(str(problem))
             step = self.tracker.step(None)
         self.commands.publish(Float64MultiArray(data=step.q.tolist()))
         self.report(step)
 
     def follow(self, tracker: bik.Tracker, target: PoseStamped) -> bik.Step:
-        """A tick towards the target, which was seen a while ago; a stamp of zero means now."""
+        """Returns a tick towards the target; a stamp of zero means now."""
         seen = Time.from_msg(target.header.stamp)
         if seen.nanoseconds == 0:
             return tracker.step(pose_of(target))

@@ -12,30 +12,20 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
 """
 
 import logging
+import warnings
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import filters, goals, obstacles, paths, tasks
+from . import filters, goals, obstacles, papers, paths, tasks
 from ._core import (
-    APPS,
-    BAS,
-    PSO,
-    QPSO,
-    TPBSO,
-    ZNNBAS,
     BatchPlan,
     BatchSolution,
-    BeeColony,
     BeetleIkError,
-    BeetleSwarm,
     Body,
     BroydenBAS,
     CallError,
-    CircleSwarm,
     ControlSession,
     DifferentialEvolution,
-    Firefly,
-    Genetic,
     InfeasibleError,
     InvalidInputError,
     JacobianTranspose,
@@ -49,7 +39,6 @@ from ._core import (
     NewtonRaphson,
     Path,
     Plan,
-    PlanarPosture,
     Robot,
     SelfMotion,
     Sinusoid,
@@ -73,7 +62,6 @@ from ._core import (
     plan_along_path,
     plan_batch,
     plan_point_to_point,
-    planar_posture,
     pose,
     self_motion,
     solve,
@@ -96,26 +84,15 @@ if TYPE_CHECKING:
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 __all__ = [
-    "APPS",
-    "BAS",
-    "PSO",
-    "QPSO",
-    "TPBSO",
-    "ZNNBAS",
     "BasePlacement",
     "BatchPlan",
     "BatchSolution",
-    "BeeColony",
     "BeetleIkError",
-    "BeetleSwarm",
     "Body",
     "BroydenBAS",
     "CallError",
-    "CircleSwarm",
     "ControlSession",
     "DifferentialEvolution",
-    "Firefly",
-    "Genetic",
     "InfeasibleError",
     "InvalidInputError",
     "InverseReachabilityMap",
@@ -130,7 +107,6 @@ __all__ = [
     "NewtonRaphson",
     "Path",
     "Plan",
-    "PlanarPosture",
     "ReachabilityMap",
     "Robot",
     "Scene",
@@ -159,11 +135,11 @@ __all__ = [
     "interop",
     "minimize",
     "obstacles",
+    "papers",
     "paths",
     "plan_along_path",
     "plan_batch",
     "plan_point_to_point",
-    "planar_posture",
     "plot",
     "pose",
     "reachability",
@@ -196,15 +172,49 @@ _LATER = {
     "view": "viewing",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _LATER:
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'", name=name, obj=import_module(__name__))
-    module = import_module(f".{_LATER[name]}", __name__)
-    value = module if name == _LATER[name] else getattr(module, name)
-    globals()[name] = value
-    return value
+# Results: annotations name them, calls do not.
+_MADE_BY_CALLS = frozenset(
+    {
+        "BasePlacement",
+        "BatchPlan",
+        "BatchSolution",
+        "Body",
+        "ControlSession",
+        "InverseReachabilityMap",
+        "Minimum",
+        "ModelFreeResult",
+        "Plan",
+        "SelfMotion",
+        "Solution",
+        "SolutionSet",
+        "Step",
+        "TrackResult",
+        "VelocityEllipsoid",
+        "Viewer",
+        "Violation",
+    }
+)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    """Returns what a completion offers: public names without those of results."""
+    return sorted(set(__all__) - _MADE_BY_CALLS)
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """Returns what is imported when it is first used, or a method of the papers under its old name."""
+        if name in _LATER:
+            module = import_module(f".{_LATER[name]}", __name__)
+            value = module if name == _LATER[name] else getattr(module, name)
+            globals()[name] = value
+            return value
+        if name in papers.__all__:
+            warnings.warn(
+                f"beetle_ik.{name} is now beetle_ik.papers.{name}; the old name goes in 0.3",
+                DeprecationWarning,
+                stacklevel=2,
+            )
+            return getattr(papers, name)
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'", name=name, obj=import_module(__name__))

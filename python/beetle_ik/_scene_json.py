@@ -41,11 +41,16 @@ _TYPES = {shape: name for name, shape in _SHAPES.items()}
 
 
 def write_obstacles(file: str | os.PathLike[str], shapes: Iterable[Obstacle]) -> None:
-    """Writes the file of a scene, an obstacle a line. Numbers are exact."""
-    lines = ",\n".join(f"    {json.dumps(_described(shape))}" for shape in shapes)
-    text = f'{{"version": {VERSION}, "obstacles": [\n{lines}\n]}}\n'
+    """Writes the file of a scene."""
+    text = scene_text(shapes)
     with whole_file(file) as stream:
         stream.write(text.encode())
+
+
+def scene_text(shapes: Iterable[Obstacle]) -> str:
+    """Returns a scene as JSON, an obstacle a line. Numbers are exact."""
+    lines = ",\n".join(f"    {json.dumps(_described(shape))}" for shape in shapes)
+    return f'{{"version": {VERSION}, "obstacles": [\n{lines}\n]}}\n'
 
 
 def _described(shape: Obstacle) -> dict[str, Any]:
@@ -60,9 +65,17 @@ def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
     Raises:
         InvalidInputError: the file is not a scene. Names the file and the obstacle.
     """
-    path, where = path_of(file), os.fspath(file)
+    return obstacles_in(path_of(file).read_bytes(), os.fspath(file))
+
+
+def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
+    """Reads the obstacles of a scene from what a file holds. `where` is the file.
+
+    Raises:
+        InvalidInputError: it is not a scene. Names the file and the obstacle.
+    """
     try:
-        scene = json.loads(path.read_text(encoding="utf-8"))
+        scene = json.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
     except json.JSONDecodeError as error:

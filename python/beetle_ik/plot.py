@@ -49,15 +49,18 @@ def robot(
     bodies: bool = True,
     meshes: bool = True,
 ) -> Figure:
-    """Draws the robot at configuration `q` (n,): its meshes or a stick figure, tool, tip, bodies and `obstacles`.
+    """Draws the robot at configuration `q` (n,): its links, tool, tip, bodies and `obstacles`.
+
+    Links look like their meshes; those of a robot without meshes are drawn along its joints, in the colours of the
+    maker if the robot is a built-in one.
 
     Args:
         robot: the robot.
         q: joint positions (n,) (rad, m).
         obstacles: obstacles in the frame of the robot's base.
         bodies: whether to draw the bodies of the links, translucent.
-        meshes: whether to draw the meshes that `robot.collision_meshes()` reads; at most about 30,000 triangles, larger
-            meshes are made coarser.
+        meshes: whether to draw the links as solids, those that `robot.collision_meshes()` reads or those along the
+            joints; at most about 30,000 triangles, larger meshes are made coarser. Without, a stick figure.
     """
     require("robot", robot, _core.Robot)
     require("bodies", bodies, bool)
@@ -87,10 +90,15 @@ def robot(
 
 
 def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
-    """Returns the meshes of the links at `q` (n,); neighbours differ in colour."""
+    """Returns the meshes of the links at `q` (n,), of which neighbours differ in colour, or how they are drawn."""
     poses = link_poses(robot, q)
     colors = dict(zip(poses, itertools.cycle(LINKS), strict=False))
     meshes = robot.collision_meshes()
+    if not meshes:
+        from ._solids import solids  # the time of an import of the package is short
+
+        drawn = solids(robot, np.asarray(q, dtype=float))
+        return [Surface(moved(solid.triangles, poses[solid.link]), solid.color) for solid in drawn]
     return [Surface(moved(mesh.triangles, poses[link]), colors[link]) for link, mesh in meshes]
 
 

@@ -13,32 +13,32 @@ PLANAR = bik.Robot.planar([1, 1, 1])
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 TARGET = (0.3, 0.3, 1.0)
-SESSION = bik.ZNNBAS().session(START, dt=0.1)
+SESSION = bik.papers.ZNNBAS().session(START, dt=0.1)
 SESSION.command(TARGET)
 RESULTS = [
     bik.solve(IIWA, TARGET),
     bik.solve_all(IIWA, TARGET, limit=2),
     bik.solve_batch(IIWA, [TARGET], threads=1),
-    bik.minimize(np.sum, [-1], [1], solver=bik.BAS(), stop=bik.Stop(max_evaluations=100)),
+    bik.minimize(np.sum, [-1], [1], solver=bik.papers.BAS(), stop=bik.Stop(max_evaluations=100)),
     bik.track(IIWA, LINE, START, dt=0.1),
     bik.Tracker(IIWA, START, dt=0.1).step(TARGET),
     SESSION.observe(TARGET),
     bik.track_model_free(bik.KinematicPlant(IIWA), LINE, START, dt=0.1),
     bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS),
-    bik.planar_posture(PLANAR, (1, 1, 0)),
+    bik.papers.planar_posture(PLANAR, (1, 1, 0)),
 ]
 IN_COMMON = ("success", "status", "message", "evaluations", "elapsed", "limits")
 SOLVERS = [
-    bik.BeeColony(),
-    bik.BeetleSwarm(),
+    bik.papers.BeeColony(),
+    bik.papers.BeetleSwarm(),
     bik.BroydenBAS(),
     bik.DifferentialEvolution(),
-    bik.Firefly(),
-    bik.Genetic(),
+    bik.papers.Firefly(),
+    bik.papers.Genetic(),
     bik.LevenbergMarquardt(),
     bik.NewtonRaphson(),
-    bik.PSO(),
-    bik.QPSO(),
+    bik.papers.PSO(),
+    bik.papers.QPSO(),
     bik.WeightedPseudoInverse(),
 ]
 
@@ -105,9 +105,9 @@ def test_a_track_tells_the_tolerance_that_was_asked_for() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: bik.ZNNBAS(delay_steps=2**62), "delay_steps must be at most 100000 ticks, got "),
-        (lambda: bik.ZNNBAS(sensor_delay=2**62), "sensor_delay must be at most 100000 ticks, got "),
-        (lambda: bik.CircleSwarm(population=10**12), "population must be at most 1000000, got "),
+        (lambda: bik.papers.ZNNBAS(delay_steps=2**62), "delay_steps must be at most 100000 ticks, got "),
+        (lambda: bik.papers.ZNNBAS(sensor_delay=2**62), "sensor_delay must be at most 100000 ticks, got "),
+        (lambda: bik.papers.CircleSwarm(population=10**12), "population must be at most 1000000, got "),
     ],
 )
 def test_numbers_beyond_memory_are_refused(call: Callable[[], object], message: str) -> None:

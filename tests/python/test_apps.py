@@ -81,7 +81,7 @@ def robot() -> bik.Robot:
 
 def solve(robot: bik.Robot, goal: Array, start: Array) -> bik.Solution:
     stop = bik.Stop(max_iterations=BUDGET)
-    solver = bik.APPS.paper()
+    solver = bik.papers.APPS.paper()
     return bik.solve(
         robot, goal, start=start, solver=solver, stop=stop, position_tolerance=1e-4, rotation_tolerance=1e-4
     )
@@ -120,7 +120,7 @@ def test_a_prismatic_joint_works_and_is_never_wrapped() -> None:
         convention="standard", lower=[0.0, -3.0, -3.0], upper=[30.0, 3.0, 3.0],
     )  # fmt: skip
     goals = robot.fk(robot.random_configurations(20, seed=2))[:, :3, 3]
-    found = bik.solve_batch(robot, goals, starts=np.tile([15.0, 0.5, 0.5], (20, 1)), solver=bik.APPS())
+    found = bik.solve_batch(robot, goals, starts=np.tile([15.0, 0.5, 0.5], (20, 1)), solver=bik.papers.APPS())
     assert found.success.mean() >= 0.9
     assert ((robot.lower <= found.q) & (found.q <= robot.upper)).all()
 
@@ -128,7 +128,7 @@ def test_a_prismatic_joint_works_and_is_never_wrapped() -> None:
 def test_a_solution_outside_the_limits_is_told() -> None:
     robot = bik.Robot.planar([1.0, 1.0], lower=-0.5, upper=0.5)
     goal = bik.Robot.planar([1.0, 1.0]).fk([0.1, 1.0])[:3, 3]
-    solution = bik.solve(robot, goal, start=[0.2, 0.4], solver=bik.APPS())
+    solution = bik.solve(robot, goal, start=[0.2, 0.4], solver=bik.papers.APPS())
     assert (solution.success, solution.status) == (False, bik.Status.OUTSIDE_LIMITS)
     assert solution.message.startswith("reached only outside the limits; inside them 0.")
     assert np.abs(solution.q).max() <= 0.5
@@ -137,7 +137,7 @@ def test_a_solution_outside_the_limits_is_told() -> None:
 def test_along_a_path_it_keeps_to_the_limits_of_the_tick() -> None:
     robot = bik.Robot.planar([1.0] * 5, velocity=0.3)
     circle = bik.paths.circle((3.0, 1.0, 0.0), diameter=0.8, duration=10.0)
-    for solver in (bik.APPS(), bik.NewtonRaphson(), bik.JacobianTranspose()):
+    for solver in (bik.papers.APPS(), bik.NewtonRaphson(), bik.JacobianTranspose()):
         result = bik.track(robot, circle, dt=0.1, solver=solver, position_tolerance=1e-4)
         assert result.success, (solver, result.message)
         assert result.max_violation == 0.0
@@ -146,14 +146,14 @@ def test_along_a_path_it_keeps_to_the_limits_of_the_tick() -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: bik.APPS(learning_rate=0.0), "learning_rate must be positive and finite, got 0"),
-        (lambda: bik.APPS(learning_rate=float("nan")), "learning_rate must be positive and finite, got NaN"),
+        (lambda: bik.papers.APPS(learning_rate=0.0), "learning_rate must be positive and finite, got 0"),
+        (lambda: bik.papers.APPS(learning_rate=float("nan")), "learning_rate must be positive and finite, got NaN"),
         (
-            lambda: bik.APPS(learning_rate="fast"),  # type: ignore[arg-type]
+            lambda: bik.papers.APPS(learning_rate="fast"),  # type: ignore[arg-type]
             "learning_rate must be a number or 'auto', got 'fast'",
         ),
-        (lambda: bik.APPS(step_limit=-0.1), "step_limit must be positive and finite, got -0.1"),
-        (lambda: bik.APPS(error_threshold=0), "error_threshold must be positive and finite, got 0"),
+        (lambda: bik.papers.APPS(step_limit=-0.1), "step_limit must be positive and finite, got -0.1"),
+        (lambda: bik.papers.APPS(error_threshold=0), "error_threshold must be positive and finite, got 0"),
         (lambda: bik.JacobianTranspose(step_size=-1), "step_size must be positive and finite, got -1"),
         (lambda: bik.NewtonRaphson(step_fraction=1.5), "step_fraction must be above 0 and at most 1, got 1.5"),
         (lambda: bik.NewtonRaphson(step_fraction=0), "step_fraction must be above 0 and at most 1, got 0"),

@@ -216,7 +216,7 @@ def test_a_tracker_has_no_goal_of_clearance() -> None:
         bik.Tracker(ARM, Q, dt=0.01, goals=bik.goals.Clearance())
 
 
-@pytest.mark.parametrize("solver", [bik.PSO(), bik.DifferentialEvolution(), bik.BAS(variant="greedy")])
+@pytest.mark.parametrize("solver", [bik.papers.PSO(), bik.DifferentialEvolution(), bik.papers.BAS(variant="greedy")])
 def test_solvers_of_values_take_obstacles_as_a_penalty(solver: Any) -> None:
     rng = np.random.default_rng(9)
     found = avoided = 0

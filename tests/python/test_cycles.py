@@ -67,9 +67,9 @@ HOLDERS: dict[str, Callable[[Owner], Any]] = {
     "SolutionSet": lambda owner: bik.solve_all(IIWA, (0.3, 0.3, 1.0), limit=1, limits=owner.limits()),
     "BatchSolution": lambda owner: bik.solve_batch(IIWA, [(0.3, 0.3, 1.0)], threads=1, limits=owner.limits()),
     "Minimum": lambda owner: restored(
-        bik.minimize(np.sum, [0.0], [1.0], solver=bik.PSO(), stop=bik.Stop(max_evaluations=100)), owner
+        bik.minimize(np.sum, [0.0], [1.0], solver=bik.papers.PSO(), stop=bik.Stop(max_evaluations=100)), owner
     ),
-    "PlanarPosture": lambda owner: restored(bik.planar_posture(PLANAR, (1, 1, 0)), owner),
+    "PlanarPosture": lambda owner: restored(bik.papers.planar_posture(PLANAR, (1, 1, 0)), owner),
     "Step": lambda owner: restored(bik.Tracker(IIWA, START, dt=0.1).step((0.3, 0.3, 1.0)), owner),
 }
 

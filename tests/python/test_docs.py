@@ -31,7 +31,18 @@ def blocks_of_readme() -> list[str]:
 def documented() -> Iterator[tuple[str, str]]:
     """Names and docstrings of everything public."""
     yield "beetle_ik", inspect.getdoc(bik) or ""
-    for space in (bik, distributed, bik.goals, bik.interop, bik.obstacles, bik.paths, bik.plot, bik.tasks, bik.vision):
+    for space in (
+        bik,
+        distributed,
+        bik.goals,
+        bik.interop,
+        bik.obstacles,
+        bik.papers,
+        bik.paths,
+        bik.plot,
+        bik.tasks,
+        bik.vision,
+    ):
         for name in space.__all__:
             thing = getattr(space, name)
             yield name, getattr(thing, "__doc__", None) or ""
@@ -61,7 +72,8 @@ def test_the_pages_of_the_site_run(page: Path, tmp_path: Path, monkeypatch: pyte
 
 def test_the_reference_has_everything_public() -> None:
     listed = "\n".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "api").glob("*.md"))
-    missing = [name for name in bik.__all__ if not name.startswith("_") and f":: beetle_ik.{name}\n" not in listed]
+    names = [*(set(bik.__all__) - {"papers"}), *(f"papers.{name}" for name in bik.papers.__all__)]
+    missing = [name for name in names if not name.startswith("_") and f":: beetle_ik.{name}\n" not in listed]
     assert not missing
 
 
@@ -82,6 +94,49 @@ def examples() -> list[object]:
 @pytest.mark.parametrize("example", examples())
 def test_examples_in_docstrings_run(example: str, tmp_path: Path) -> None:
     run(example, tmp_path)
+
+
+REFERENCE = sorted((ROOT / "docs" / "api").glob("*.md"))
+PROMPTS = re.compile(r"^```pycon\n(.*?)^```", re.MULTILINE | re.DOTALL)
+# Calls whose entry in the reference is followed by a session.
+MAIN_CALLS = [
+    "Limits",
+    "Path",
+    "Robot",
+    "Scene",
+    "StraightLine",
+    "Tracker",
+    "Trajectory",
+    "best_base",
+    "minimize",
+    "plan_along_path",
+    "plan_batch",
+    "plan_point_to_point",
+    "pose",
+    "reachability",
+    "self_motion",
+    "solve",
+    "solve_all",
+    "solve_batch",
+    "state_to_state",
+    "time_optimal",
+    "track",
+    "track_model_free",
+]
+
+
+@pytest.mark.parametrize("page", REFERENCE, ids=lambda page: page.stem)
+def test_sessions_of_the_reference_give_what_they_show(page: Path) -> None:
+    session = "\n".join(PROMPTS.findall(page.read_text(encoding="utf-8")))
+    runner = doctest.DocTestRunner()
+    runner.run(doctest.DocTestParser().get_doctest(session, {}, page.stem, None, 0))
+    assert runner.summarize(verbose=False).failed == 0
+
+
+@pytest.mark.parametrize("name", MAIN_CALLS)
+def test_each_main_call_has_a_session(name: str) -> None:
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in REFERENCE)
+    assert re.search(rf":: beetle_ik\.{name}\n```\n\n```pycon\n", pages)
 
 
 def test_the_package_has_an_example() -> None:

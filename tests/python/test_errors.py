@@ -98,7 +98,7 @@ def test_the_classes_of_errors() -> None:
             f"{SOLVERS}, got 'BAS': give an object, such as bik.LevenbergMarquardt()",
         ),
         (
-            lambda: solve(solver=bik.BAS),
+            lambda: solve(solver=bik.papers.BAS),
             Invalid,
             f"{SOLVERS}, got the class BAS itself: did you mean BAS()?",
         ),
@@ -123,24 +123,28 @@ def test_wrong_solve_arguments_are_named(call: Callable[[], object], error: type
 
 @told(
     [
-        (lambda: bik.BAS(variant="stars"), Invalid, "variant must be one of 'star', 'chain', 'greedy', got 'stars'"),
-        (lambda: bik.BAS(c1=-1.0), Invalid, "c1 must be positive and finite, got -1"),
-        (lambda: bik.BAS(c2=np.nan), Invalid, "c2 must be positive and finite, got NaN"),
-        (lambda: bik.BAS(explorations=0), Invalid, "explorations must be at least 1, got 0"),
-        (lambda: bik.BAS(explorations=-5), Invalid, "explorations must be zero or more, got -5"),
-        (lambda: bik.BAS(max_passes=0), Invalid, "max_passes must be at least 1, got 0"),
+        (
+            lambda: bik.papers.BAS(variant="stars"),
+            Invalid,
+            "variant must be one of 'star', 'chain', 'greedy', got 'stars'",
+        ),
+        (lambda: bik.papers.BAS(c1=-1.0), Invalid, "c1 must be positive and finite, got -1"),
+        (lambda: bik.papers.BAS(c2=np.nan), Invalid, "c2 must be positive and finite, got NaN"),
+        (lambda: bik.papers.BAS(explorations=0), Invalid, "explorations must be at least 1, got 0"),
+        (lambda: bik.papers.BAS(explorations=-5), Invalid, "explorations must be zero or more, got -5"),
+        (lambda: bik.papers.BAS(max_passes=0), Invalid, "max_passes must be at least 1, got 0"),
         (
             lambda: bik.LevenbergMarquardt(initial_damping=0.0),
             Invalid,
             "initial_damping must be positive and finite, got 0",
         ),
         (
-            lambda: bik.MultiStart(bik.MultiStart(bik.BAS())),
+            lambda: bik.MultiStart(bik.MultiStart(bik.papers.BAS())),
             Invalid,
             "MultiStart takes a single solver, not another MultiStart",
         ),
         (lambda: bik.MultiStart(3), Invalid, f"{SOLVERS}, got 3"),
-        (lambda: bik.MultiStart(bik.BAS(), max_starts=0), Invalid, "max_starts must be at least 1, got 0"),
+        (lambda: bik.MultiStart(bik.papers.BAS(), max_starts=0), Invalid, "max_starts must be at least 1, got 0"),
         (lambda: bik.Stop(max_evaluations=0), Invalid, "max_evaluations must be at least 1, got 0"),
         (lambda: bik.Stop(max_evaluations=-1), Invalid, "max_evaluations must be zero or more, got -1"),
         (lambda: bik.Stop(max_iterations=-1), Invalid, "max_iterations must be zero or more, got -1"),
@@ -386,7 +390,7 @@ def test_rows_in_place_of_a_path_and_numbers_in_place_of_a_name_are_told() -> No
         (lambda: track(dt="0.1"), bik.CallError, "dt must be a number, got '0.1'"),
         (lambda: track(dt=None), bik.CallError, "dt must be a number, got None"),
         (lambda: circle(diameter="wide"), bik.CallError, "diameter must be a number, got 'wide'"),
-        (lambda: bik.BAS(explorations=2.5), bik.CallError, "explorations must be a whole number, got 2.5"),
+        (lambda: bik.papers.BAS(explorations=2.5), bik.CallError, "explorations must be a whole number, got 2.5"),
         (lambda: bik.Robot.planar([1, 1]).fk([0, 0], link=3), bik.CallError, "link must be text, got 3"),
     ]
 )
@@ -399,13 +403,13 @@ def test_errors_of_functions_of_the_caller_pass_unchanged() -> None:
         raise TypeError("solve() got an unexpected keyword argument 'x'")
 
     mine = "solve() got an unexpected keyword argument 'x'"
-    assert_told(lambda: bik.minimize(fails, [-1], [1], solver=bik.BAS()), TypeError, mine)
+    assert_told(lambda: bik.minimize(fails, [-1], [1], solver=bik.papers.BAS()), TypeError, mine)
 
 
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: bik.BAS("star"),
+        lambda: bik.papers.BAS("star"),
         lambda: bik.Limits(3.0),
         lambda: bik.Stop(5),
         lambda: bik.track(IIWA, CIRCLE, START, 0.1),

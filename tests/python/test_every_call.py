@@ -71,7 +71,7 @@ TICKS = {"start": START, "dt": 0.1}
 PLAN = bik.plan_point_to_point(PLANAR, start_q=[0, 0, 0], end_q=[0.1, 0.1, 0.1], limits=LIMITS)
 TRACK = bik.track(ARM, LINE, START, dt=0.1)
 MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, START, dt=0.1)
-ASKED, IDLE = (bik.ZNNBAS().session(**TICKS) for _ in range(2))
+ASKED, IDLE = (bik.papers.ZNNBAS().session(**TICKS) for _ in range(2))
 ASKED.command((0.3, 0.3, 1.0))
 VIEWER = bik.view(ARM, port=0)
 FLAT = PLANAR.with_capsules(radius=0.05)
@@ -85,7 +85,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "KinematicPlant": {"robot": ARM},
     "KinematicPlant.move": {".": bik.KinematicPlant(ARM), "q": START},
     "ModelFreeResult.": {".": MODEL_FREE},
-    "MultiStart": {"solver": bik.BAS()},
+    "MultiStart": {"solver": bik.papers.BAS()},
     "Path.": {".": LINE},
     "Path.pose": {".": LINE.with_orientation(np.eye(3)), "t": 0.0},
     "Path.position": {"t": 0.0},
@@ -133,6 +133,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Tracker.stop": {".": bik.Tracker(ARM, **TICKS)},
     "Viewer.": {".": VIEWER},
     "Viewer.on_target": {"callback": len},
+    "Viewer.record": {"file": "motion.viser"},
     "Viewer.show": {"result": TRACK},
     "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
     "Trajectory.": {".": MOTION},
@@ -144,13 +145,13 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Trajectory.then": {"motion": bik.Trajectory.from_samples([0.0, 1.0], [[1.0, 1.0], [0.0, 0.0]])},
     "Trajectory.to_csv": {"file": "written.csv"},
     "Trajectory.to_npz": {"file": "written.npz"},
-    "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
+    "papers.ZNNBAS.session": {".": bik.papers.ZNNBAS(), **TICKS},
     "distributed.reachability": {"client": None, "robot": FLAT, "voxel": 1.0, "threads": 1},
     "distributed.solve_batch": {"client": None, "robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
     "best_base": {"robot": FLAT, "targets": FLAT.fk([[0.1, 0.2, 0.3]]), "region": [(-1, -1, 0), (1, 1, 0)], "map": MAP},
     "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
-    "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.BAS(), **QUICK},
+    "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.papers.BAS(), **QUICK},
     "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
     "obstacles.Capsule": {"a": (0, 0, 0), "b": (1, 0, 0), "radius": 0.1},
     "obstacles.ConvexMesh": {"points": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]},
@@ -176,7 +177,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
     "plan_batch": {"robot": PLANAR, "problems": [{"start": (1, 1, 0), "end": (1, 1.5, 0)}], "limits": LIMITS, **QUICK},
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
-    "planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.CircleSwarm()},
+    "papers.planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.papers.CircleSwarm()},
     "plot.animation": {"result": PLAN},
     "plot.model_free": {"result": MODEL_FREE},
     "plot.plan": {"plan": PLAN},
@@ -199,7 +200,7 @@ NEEDED: dict[str, dict[str, Any]] = {
 # A right call would change what the others are called on, or leave a film that nobody looks at.
 ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
 MODULES = {"": bik, "tasks.": bik.tasks, "goals.": bik.goals, "paths.": bik.paths, "obstacles.": bik.obstacles}
-MODULES |= {"plot.": bik.plot, "filters.": bik.filters, "distributed.": distributed}
+MODULES |= {"papers.": bik.papers, "plot.": bik.plot, "filters.": bik.filters, "distributed.": distributed}
 
 
 def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[..., object]]]:
@@ -238,7 +239,6 @@ MADE_BY_THE_LIBRARY = [
     "ModelFreeResult",
     "Path",
     "Plan",
-    "PlanarPosture",
     "ReachabilityMap",
     "Robot",
     "SelfMotion",
@@ -250,6 +250,7 @@ MADE_BY_THE_LIBRARY = [
     "Viewer",
     "Violation",
     "distributed.BatchArrays",
+    "papers.PlanarPosture",
     "obstacles.Nearest",
 ]
 

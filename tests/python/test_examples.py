@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-NEEDS_MUJOCO = {"15_wrong_model"}  # a program with an argument; the plant it drives has tests of its own
+NEEDS_MUJOCO = {"29_wrong_model"}  # a program with an argument; the plant it drives has tests of its own
 GALLERY = sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem not in NEEDS_MUJOCO)
 
 

@@ -20,7 +20,7 @@ FAR = bik.paths.circle((5.0, 5.0, 5.0), diameter=0.2, duration=3600.0)
 
 
 def track_for_minutes() -> object:
-    return bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12)
+    return bik.track(IIWA, FAR, START, dt=0.01, solver=bik.papers.BAS(), position_tolerance=1e-12)
 
 
 def solve_for_minutes() -> object:
@@ -29,13 +29,13 @@ def solve_for_minutes() -> object:
 
 
 def solve_one_endless_iteration() -> object:
-    solver = bik.BAS(explorations=10**12)
+    solver = bik.papers.BAS(explorations=10**12)
     return bik.solve(IIWA, [5.0, 5.0, 5.0], solver=solver, stop=bik.Stop(max_evaluations=10**13))
 
 
 def swarm_for_hours() -> object:
-    swarm = bik.CircleSwarm(population=1000, generations=10**6)
-    return bik.planar_posture(bik.Robot.planar([0.5] * 3), [0.5, 0.5, 0.0], swarm=swarm)
+    swarm = bik.papers.CircleSwarm(population=1000, generations=10**6)
+    return bik.papers.planar_posture(bik.Robot.planar([0.5] * 3), [0.5, 0.5, 0.0], swarm=swarm)
 
 
 def find_solutions_without_end() -> object:
@@ -83,7 +83,7 @@ def test_ctrl_c_stops_a_long_call(call: Callable[[], object]) -> None:
 @pytest.mark.usefixtures("ctrl_c_raises")
 def test_ctrl_c_stops_a_track_with_a_progress_bar() -> None:
     with interrupted(after=0.15):
-        bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12, progress=True)
+        bik.track(IIWA, FAR, START, dt=0.01, solver=bik.papers.BAS(), position_tolerance=1e-12, progress=True)
 
 
 def test_a_call_outlives_ctrl_c_where_the_process_ignores_it() -> None:
@@ -107,7 +107,7 @@ def test_what_progress_raises_stops_a_long_track() -> None:
             raise ValueError(f"enough after {done} of {total}")
 
     with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 360000$"):
-        bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12, progress=progress)
+        bik.track(IIWA, FAR, START, dt=0.01, solver=bik.papers.BAS(), position_tolerance=1e-12, progress=progress)
     assert time.monotonic() - began < 2.0
 
 

@@ -4,6 +4,7 @@ No clock decides: a signal comes every 10 ms, and its handler raises at the thir
 signals meets the handler once, after it has returned, and nothing is raised.
 """
 
+import itertools
 import signal
 import sys
 import tempfile
@@ -61,7 +62,7 @@ def walled_in() -> list[bik.obstacles.Box]:
 def table() -> dict[str, Callable[[], Callable[[], object]]]:
     """For each call a function that prepares its input, and returns the long call."""
     far = bik.paths.circle((5.0, 5.0, 5.0), diameter=0.2, duration=3600.0)
-    slow = bik.BAS(explorations=10**9)
+    slow = bik.papers.BAS(explorations=10**9)
     return {
         "Path.position": lambda: with_times(CIRCLE.position),
         "Path.velocity": lambda: with_times(CIRCLE.velocity),
@@ -100,23 +101,32 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "plan_point_to_point": lambda: (
             lambda: bik.plan_point_to_point(CAPSULES, **ENCLOSED, obstacles=walled_in(), stop=ENDLESS)
         ),
-        "planar_posture": lambda: (
-            lambda: bik.planar_posture(
-                PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+        "papers.planar_posture": lambda: (
+            lambda: bik.papers.planar_posture(
+                PLANAR, [0.5, 0.5, 0.0], swarm=bik.papers.CircleSwarm(population=1000, generations=10**6)
             )
         ),
         "self_motion": lambda: lambda: bik.self_motion(IIWA, IIWA.fk(START), spacing=1e-3),
         "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
+        "Viewer.record": lambda: recorded(bik.view(IIWA, port=0)),
         "Viewer.wait": lambda: bik.view(IIWA, port=0).wait,
         "view": lambda: lambda: bik.view(IIWA, port=0, block=True),
         "time_optimal": lambda: waypoints(100_000),
-        "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
+        "track": lambda: (
+            lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.papers.BAS(), position_tolerance=1e-12)
+        ),
         "track_model_free": lambda: (
-            lambda: bik.track_model_free(bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS())
+            lambda: bik.track_model_free(
+                bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.papers.ZNNBAS()
+            )
         ),
     }
+
+
+def recorded(viewer: bik.Viewer) -> Callable[[], object]:
+    return lambda: viewer.record("motion.viser", itertools.repeat(0.0))
 
 
 def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], object]:
@@ -235,7 +245,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
-    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show"], "hands over to a thread"),
+    **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(
         ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
          "Trajectory.from_npz", "paths.polyline"],

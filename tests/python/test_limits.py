@@ -75,7 +75,7 @@ def test_functions_are_position_limits() -> None:
     closing = bik.Limits(
         lower=lambda t: -np.pi + 0.1 * t, upper=lambda t: np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * t
     )
-    result = track(closing, solver=bik.BAS(variant="chain"))
+    result = track(closing, solver=bik.papers.BAS(variant="chain"))
     upper = np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * result.time[:, None]
     assert np.all(result.q <= upper + 1e-12)
     assert result.max_violation == 0.0

@@ -15,18 +15,18 @@ from mistakes import Case, Invalid, assert_told, told
 import beetle_ik as bik
 
 SOLVERS = [
-    bik.BAS(variant="chain"),
-    bik.BeeColony(),
-    bik.BeetleSwarm(),
+    bik.papers.BAS(variant="chain"),
+    bik.papers.BeeColony(),
+    bik.papers.BeetleSwarm(),
     bik.DifferentialEvolution(),
     bik.DifferentialEvolution(update="immediate"),
-    bik.Firefly(),
-    bik.Genetic(),
-    bik.Genetic(mutation_rate=0.5),
-    bik.PSO(),
-    bik.PSO(form="inertia"),
-    bik.QPSO(),
-    bik.MultiStart(bik.PSO()),
+    bik.papers.Firefly(),
+    bik.papers.Genetic(),
+    bik.papers.Genetic(mutation_rate=0.5),
+    bik.papers.PSO(),
+    bik.papers.PSO(form="inertia"),
+    bik.papers.QPSO(),
+    bik.MultiStart(bik.papers.PSO()),
 ]
 LOWER, UPPER = [-1.0, -1.0, 0.0], [2.0, 3.0, 1.0]
 BOTTOM = np.array([0.5, -0.25, 0.75])
@@ -41,7 +41,11 @@ def bowls(xs: np.ndarray) -> np.ndarray:
 
 
 def minimize(function: Callable[[np.ndarray], Any] = bowl, **options: Any) -> bik.Minimum:
-    arguments: dict[str, Any] = {"solver": bik.PSO(population=10), "stop": bik.Stop(max_evaluations=200), **options}
+    arguments: dict[str, Any] = {
+        "solver": bik.papers.PSO(population=10),
+        "stop": bik.Stop(max_evaluations=200),
+        **options,
+    }
     return bik.minimize(function, arguments.pop("lower", LOWER), arguments.pop("upper", UPPER), **arguments)
 
 
@@ -124,7 +128,7 @@ def test_the_message_says_how_the_search_ended() -> None:
         f"best value {spent.value:.6e} after 200 evaluations, when the budget was spent: raise it in stop=Stop(...)"
     ).replace("e-0", "e-")
     assert repr(spent) == f"<Minimum BUDGET_SPENT: {spent.message}>"
-    stalled = minimize(lambda _: 1.0, solver=bik.PSO(population=10, stall_generations=2))
+    stalled = minimize(lambda _: 1.0, solver=bik.papers.PSO(population=10, stall_generations=2))
     assert stalled.status == bik.Status.STALLED
     assert stalled.message.endswith("no further progress: try another start or seed, or MultiStart")
 
@@ -170,11 +174,16 @@ def test_progress_is_told_to_the_end_and_changes_nothing() -> None:
     told_of: list[tuple[int, int]] = []
     stop = bik.Stop(max_evaluations=900)
     followed = bik.minimize(
-        bowl, LOWER, UPPER, solver=bik.PSO(), stop=stop, progress=lambda done, total: told_of.append((done, total))
+        bowl,
+        LOWER,
+        UPPER,
+        solver=bik.papers.PSO(),
+        stop=stop,
+        progress=lambda done, total: told_of.append((done, total)),
     )
     assert told_of[-1] == (900, 900)
     assert told_of == sorted(told_of)
-    np.testing.assert_array_equal(followed.x, bik.minimize(bowl, LOWER, UPPER, solver=bik.PSO(), stop=stop).x)
+    np.testing.assert_array_equal(followed.x, bik.minimize(bowl, LOWER, UPPER, solver=bik.papers.PSO(), stop=stop).x)
 
 
 def test_an_exception_of_progress_carries_the_best_point() -> None:
@@ -186,7 +195,7 @@ def test_an_exception_of_progress_carries_the_best_point() -> None:
         raise ValueError(f"enough after {done} of {total}")
 
     with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 30000\n") as caught:
-        bik.minimize(slow_bowl, LOWER, UPPER, solver=bik.PSO(), progress=progress)
+        bik.minimize(slow_bowl, LOWER, UPPER, solver=bik.papers.PSO(), progress=progress)
     best = caught.value.best  # type: ignore[attr-defined]
     assert best.status == bik.Status.INTERRUPTED
     assert best.value == bowl(best.x)
@@ -198,12 +207,12 @@ def test_ctrl_c_carries_the_best_point() -> None:
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt) as caught:
-        minimize(stop=bik.Stop(max_evaluations=10**12), solver=bik.PSO(stall_generations=None))
+        minimize(stop=bik.Stop(max_evaluations=10**12), solver=bik.papers.PSO(stall_generations=None))
     assert caught.value.best.evaluations > 1  # type: ignore[attr-defined]
 
 
 NAMES = "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO or MultiStart of one of them"
-PSO_40 = bik.PSO()
+PSO_40 = bik.papers.PSO()
 MISTAKES: list[Case] = [
     (lambda: minimize(upper=[2.0, -2.0, 1.0]), Invalid, "lower[1] must be at most upper[1] = -2, got -1"),
     (lambda: minimize(upper=[2.0, np.inf, 1.0]), Invalid, "upper must be finite, but entry 1 is inf"),
@@ -212,7 +221,7 @@ MISTAKES: list[Case] = [
     (lambda: minimize(lower=[], upper=[]), Invalid, "lower: expected at least 1 entry, got 0"),
     (lambda: minimize(start=[0.0, 9.0, 0.5]), Invalid, "start[1] must be within [-1, 3], got 9"),
     (lambda: minimize(start=[0.0]), Invalid, "start: expected 3 entries as in lower, got 1"),
-    (lambda: minimize(solver=bik.PSO(population=1)), Invalid, "population must be between 2 and 1000000, got 1"),
+    (lambda: minimize(solver=bik.papers.PSO(population=1)), Invalid, "population must be between 2 and 1000000, got 1"),
     (lambda: bik.DifferentialEvolution(population=3), Invalid, "population must be between 4 and 1000000, got 3"),
     (
         lambda: minimize(solver=PSO_40, stop=bik.Stop(max_evaluations=30)),
@@ -244,27 +253,31 @@ MISTAKES: list[Case] = [
         f"minimize has no derivatives: solver must be {NAMES}, got LevenbergMarquardt(initial_damping=0.05)",
     ),
     (
-        lambda: bik.PSO(form="swarm"),  # type: ignore[arg-type]
+        lambda: bik.papers.PSO(form="swarm"),  # type: ignore[arg-type]
         Invalid,
         "form must be one of 'constriction', 'inertia', got 'swarm'",
     ),
-    (lambda: bik.PSO(inertia=0.5), Invalid, "inertia must be left out with form 'constriction', got 0.5"),
-    (lambda: bik.PSO(c1=1.0), Invalid, "c1 + c2 must be above 4 with form 'constriction', got 3.05"),
-    (lambda: bik.PSO(form="inertia", inertia=1.0), Invalid, "inertia must be at least 0 and below 1, got 1"),
-    (lambda: bik.QPSO(expansion=0.0), Invalid, "expansion must be positive and finite, got 0"),
-    (lambda: bik.Firefly(absorption=-1.0), Invalid, "absorption must be zero or more and finite, got -1"),
-    (lambda: bik.Firefly(randomness_decay=1.5), Invalid, "randomness_decay must be above 0 and at most 1, got 1.5"),
-    (lambda: bik.Genetic(elite_share=1.0), Invalid, "elite_share must be at least 0 and below 1, got 1"),
+    (lambda: bik.papers.PSO(inertia=0.5), Invalid, "inertia must be left out with form 'constriction', got 0.5"),
+    (lambda: bik.papers.PSO(c1=1.0), Invalid, "c1 + c2 must be above 4 with form 'constriction', got 3.05"),
+    (lambda: bik.papers.PSO(form="inertia", inertia=1.0), Invalid, "inertia must be at least 0 and below 1, got 1"),
+    (lambda: bik.papers.QPSO(expansion=0.0), Invalid, "expansion must be positive and finite, got 0"),
+    (lambda: bik.papers.Firefly(absorption=-1.0), Invalid, "absorption must be zero or more and finite, got -1"),
     (
-        lambda: bik.Genetic(tournament=51),
+        lambda: bik.papers.Firefly(randomness_decay=1.5),
+        Invalid,
+        "randomness_decay must be above 0 and at most 1, got 1.5",
+    ),
+    (lambda: bik.papers.Genetic(elite_share=1.0), Invalid, "elite_share must be at least 0 and below 1, got 1"),
+    (
+        lambda: bik.papers.Genetic(tournament=51),
         Invalid,
         "tournament must be between 1 and the population of 50, got 51",
     ),
-    (lambda: bik.Genetic(mutation_rate=0.0), Invalid, "mutation_rate must be above 0 and at most 1, got 0"),
-    (lambda: bik.BeeColony(limit=0), Invalid, "limit must be at least 1, got 0"),
-    (lambda: bik.BeetleSwarm(velocity_share=2.0), Invalid, "velocity_share must be between 0 and 1, got 2"),
+    (lambda: bik.papers.Genetic(mutation_rate=0.0), Invalid, "mutation_rate must be above 0 and at most 1, got 0"),
+    (lambda: bik.papers.BeeColony(limit=0), Invalid, "limit must be at least 1, got 0"),
+    (lambda: bik.papers.BeetleSwarm(velocity_share=2.0), Invalid, "velocity_share must be between 0 and 1, got 2"),
     (
-        lambda: bik.BeetleSwarm(direction="up"),  # type: ignore[arg-type]
+        lambda: bik.papers.BeetleSwarm(direction="up"),  # type: ignore[arg-type]
         Invalid,
         "direction must be one of 'printed', 'downhill', got 'up'",
     ),
@@ -274,8 +287,8 @@ MISTAKES: list[Case] = [
         Invalid,
         "update must be one of 'generation', 'immediate', got 'later'",
     ),
-    (lambda: bik.QPSO(stall_generations=0), Invalid, "stall_generations must be at least 1, got 0"),
-    (lambda: bik.QPSO(max_generations=-1), Invalid, "max_generations must be zero or more, got -1"),
+    (lambda: bik.papers.QPSO(stall_generations=0), Invalid, "stall_generations must be at least 1, got 0"),
+    (lambda: bik.papers.QPSO(max_generations=-1), Invalid, "max_generations must be zero or more, got -1"),
 ]
 
 

@@ -95,7 +95,14 @@ def test_robots_of_many_joints(joints: int) -> None:
         ahead, behind = (robot.fk(qs[0] + sign * step * np.eye(joints)[j])[:3, 3] for sign in (1, -1))
         np.testing.assert_allclose((ahead - behind) / (2 * step), jacobian[:3, j], atol=1e-8)
     assert bik.solve_batch(robot, robot.fk(qs)).success.all()
-    for solver in (bik.NewtonRaphson(), bik.JacobianTranspose(), bik.BroydenBAS(), bik.APPS(), bik.PSO(), bik.BAS()):
+    for solver in (
+        bik.NewtonRaphson(),
+        bik.JacobianTranspose(),
+        bik.BroydenBAS(),
+        bik.papers.APPS(),
+        bik.papers.PSO(),
+        bik.papers.BAS(),
+    ):
         s = bik.solve(robot, robot.fk(qs[0])[:3, 3], solver=solver, stop=bik.Stop(max_evaluations=3000))
         assert s.q.shape == (joints,)
     robot.manipulability(qs)

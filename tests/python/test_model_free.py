@@ -82,7 +82,7 @@ def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
 
 
 def test_znnbas_measures_once_a_step() -> None:
-    controller = bik.ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)
+    controller = bik.papers.ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)
     result = track(bik.KinematicPlant(IIWA), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
     assert set(result.step_evaluations.tolist()) == {1}
     assert result.success, result.message
@@ -97,8 +97,10 @@ def test_a_last_partial_tick_ends_at_the_end_of_the_path() -> None:
     np.testing.assert_allclose(result.reference[-1], SHORT.position(2.0))
 
 
-@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS(), bik.BroydenBAS(max_evaluations_per_step=1)])
-def test_a_session_gives_the_same_commands(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+@pytest.mark.parametrize(
+    "controller", [bik.BroydenBAS(), bik.papers.ZNNBAS(), bik.BroydenBAS(max_evaluations_per_step=1)]
+)
+def test_a_session_gives_the_same_commands(controller: bik.BroydenBAS | bik.papers.ZNNBAS) -> None:
     result = track(path=SHORT, controller=controller, limits=LIMITS, seed=7)
     session = controller.session(ON_CIRCLE, dt=0.2, limits=LIMITS, seed=7)
     np.testing.assert_array_equal(session.limits.velocity, 2.0)
@@ -144,7 +146,7 @@ def broken() -> Array:
     ],
 )
 def test_a_plant_that_fails_ends_the_run_with_what_was_recorded(then: Callable[[], Any], reason: str) -> None:
-    result = track(after(21, then), controller=bik.ZNNBAS())
+    result = track(after(21, then), controller=bik.papers.ZNNBAS())
     assert (result.success, result.status, len(result)) == (False, bik.Status.PLANT_FAILED, 21)
     assert result.message == f"{reason} at t = 4.2 s; the 21 rows before are recorded"
     assert isinstance(result.exception, RuntimeError) == (then is broken)
@@ -175,32 +177,32 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
     ("call", "error", "message"),
     [
         (
-            lambda: track(controller=bik.ZNNBAS(delay_steps=150)),
+            lambda: track(controller=bik.papers.ZNNBAS(delay_steps=150)),
             bik.InvalidInputError,
             "delay_steps must be less than the 150 steps of the run, got 150",
         ),
         (
-            lambda: bik.ZNNBAS(gain=0),
+            lambda: bik.papers.ZNNBAS(gain=0),
             bik.InvalidInputError,
             "gain must be finite and not zero (positive to converge), got 0",
         ),
         (
-            lambda: bik.ZNNBAS(antenna_length=0.1, c1=0.3),
+            lambda: bik.papers.ZNNBAS(antenna_length=0.1, c1=0.3),
             bik.InvalidInputError,
             "give either antenna_length, for a constant antenna, or c1, for one of c1 sqrt(h)",
         ),
         (
-            lambda: track(controller=bik.ZNNBAS(antenna_length=[0.1, 0.2])),
+            lambda: track(controller=bik.papers.ZNNBAS(antenna_length=[0.1, 0.2])),
             bik.InvalidInputError,
             "antenna_length: expected one number, or 7 (one per joint), got 2",
         ),
         (
-            lambda: bik.ZNNBAS(delay="late"),
+            lambda: bik.papers.ZNNBAS(delay="late"),
             bik.InvalidInputError,
             "delay must be one of 'sliding', 'held', got 'late'",
         ),
         (
-            lambda: bik.ZNNBAS(accept="never"),
+            lambda: bik.papers.ZNNBAS(accept="never"),
             bik.InvalidInputError,
             "accept must be one of 'always', 'improving', got 'never'",
         ),
@@ -221,7 +223,7 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
             "leave it out",
         ),
         (
-            lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
+            lambda: bik.papers.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
             "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or "
             "a Sinusoid, or use track_model_free",
@@ -321,14 +323,16 @@ def test_wrong_input_is_named(call: Callable[[], Any], error: type[Exception], m
     "value",
     [
         bik.BroydenBAS(antenna_length=0.02, max_evaluations_per_step=3, sensor_delay=1),
-        bik.ZNNBAS(),
-        bik.ZNNBAS(gain=-10.0, antenna_length=0.1, delay_steps=10, delay="held", accept="improving", sensor_delay=2),
-        bik.ZNNBAS(antenna_length=[0.1, 0.2, 0.3]),
+        bik.papers.ZNNBAS(),
+        bik.papers.ZNNBAS(
+            gain=-10.0, antenna_length=0.1, delay_steps=10, delay="held", accept="improving", sensor_delay=2
+        ),
+        bik.papers.ZNNBAS(antenna_length=[0.1, 0.2, 0.3]),
     ],
 )
 def test_controllers_are_values(value: Any) -> None:
     assert pickle.loads(pickle.dumps(value)) == value
-    assert eval(repr(value), {"BroydenBAS": bik.BroydenBAS, "ZNNBAS": bik.ZNNBAS}) == value
+    assert eval(repr(value), {"BroydenBAS": bik.BroydenBAS, "ZNNBAS": bik.papers.ZNNBAS}) == value
 
 
 def test_plants_are_values_too() -> None:
@@ -369,7 +373,7 @@ def test_poses_are_tracked_by_an_arm_built_wrong(plant: Any) -> None:
 def test_znnbas_reduces_both_errors_as_far_as_it_can() -> None:
     path = CIRCLE.with_orientation(BUILT.fk(ON_CIRCLE)[:3, :3])
     plant = bik.KinematicPlant(BUILT, rotation_noise=0.0)
-    free, held = (track(plant, p, dt=1e-3, controller=bik.ZNNBAS(), seed=1) for p in (CIRCLE, path))
+    free, held = (track(plant, p, dt=1e-3, controller=bik.papers.ZNNBAS(), seed=1) for p in (CIRCLE, path))
     late = slice(len(held) // 2, None)
     turned = [angle(BUILT.fk(result.q[late]), BUILT.fk(ON_CIRCLE)).max() for result in (free, held)]
     assert turned[1] < 0.1 < turned[0]
@@ -382,8 +386,10 @@ def angle(poses: Array, pose: Array) -> Array:
     return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))
 
 
-@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS()])
-def test_a_measured_orientation_that_is_not_asked_for_is_ignored(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.papers.ZNNBAS()])
+def test_a_measured_orientation_that_is_not_asked_for_is_ignored(
+    controller: bik.BroydenBAS | bik.papers.ZNNBAS,
+) -> None:
     with_pose, without = (
         track(plant, SHORT, controller=controller)
         for plant in (bik.KinematicPlant(IIWA, rotation_noise=0.0), lambda q: IIWA.fk(q)[:3, 3])
@@ -393,8 +399,8 @@ def test_a_measured_orientation_that_is_not_asked_for_is_ignored(controller: bik
     assert " rad" not in with_pose.message
 
 
-@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS()])
-def test_a_session_takes_poses(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.papers.ZNNBAS()])
+def test_a_session_takes_poses(controller: bik.BroydenBAS | bik.papers.ZNNBAS) -> None:
     result = track(BUILT.fk, TURNED, controller=controller, seed=7)
     session = controller.session(ON_CIRCLE, dt=0.2, seed=7)
     for row, time in enumerate(result.time):

@@ -257,7 +257,7 @@ def test_a_link_that_does_not_exist_is_named() -> None:
 def test_obstacles_and_capsules_are_drawn() -> None:
     plt = pytest.importorskip("matplotlib.pyplot")
     figure = bik.plot.robot(PANDA, CENTRE, obstacles=[CRATE, bik.obstacles.Sphere([0, 0.5, 0.5], 0.1)])
-    assert len(figure.axes[0].collections) == 2 + len(PANDA.capsules)
+    assert len(figure.axes[0].collections) == 2 + 1 + len(PANDA.capsules)
     plt.close(figure)
 
 

@@ -15,11 +15,11 @@ SINUSOIDS = [
     bik.Sinusoid(mean=[1.0, 2.0], amplitude=0.1, angular_frequency=[3.0, 4.0], phase=-0.5),
 ]
 SOLVERS = [
-    bik.APPS(),
-    bik.APPS.paper(),
-    bik.APPS(learning_rate=0.1, step_limit=0.5, error_threshold=1e-7),
-    bik.BAS(),
-    bik.BAS(variant="chain", c1=0.3, c2=0.5, explorations=7, max_passes=9),
+    bik.papers.APPS(),
+    bik.papers.APPS.paper(),
+    bik.papers.APPS(learning_rate=0.1, step_limit=0.5, error_threshold=1e-7),
+    bik.papers.BAS(),
+    bik.papers.BAS(variant="chain", c1=0.3, c2=0.5, explorations=7, max_passes=9),
     bik.BroydenBAS(),
     bik.BroydenBAS(antenna_length=0.02, max_evaluations_per_step=3, sensor_delay=1),
     bik.JacobianTranspose(),
@@ -28,19 +28,23 @@ SOLVERS = [
     bik.LevenbergMarquardt(initial_damping=0.125),
     bik.NewtonRaphson(),
     bik.NewtonRaphson(step_fraction=0.5),
-    bik.MultiStart(bik.APPS(step_limit=0.1)),
-    bik.PSO(),
-    bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25, accept="improving"),
-    bik.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
-    bik.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
-    bik.Genetic(elite_share=0.1, crossover_share=0.5, mutation_rate=0.25, mutation_scale=0.2, mutation_decay=0.9),
-    bik.BeeColony(),
-    bik.BeeColony(limit=25),
-    bik.BeetleSwarm(),
-    bik.BeetleSwarm(inertia=1.0, velocity_limit=1.0, direction="downhill"),
+    bik.MultiStart(bik.papers.APPS(step_limit=0.1)),
+    bik.papers.PSO(),
+    bik.papers.PSO(
+        population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25, accept="improving"
+    ),
+    bik.papers.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
+    bik.papers.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
+    bik.papers.Genetic(
+        elite_share=0.1, crossover_share=0.5, mutation_rate=0.25, mutation_scale=0.2, mutation_decay=0.9
+    ),
+    bik.papers.BeeColony(),
+    bik.papers.BeeColony(limit=25),
+    bik.papers.BeetleSwarm(),
+    bik.papers.BeetleSwarm(inertia=1.0, velocity_limit=1.0, direction="downhill"),
     bik.DifferentialEvolution(weight=0.75, crossover_rate=0.5, update="immediate"),
-    bik.MultiStart(bik.Firefly()),
-    bik.MultiStart(bik.BAS(variant="greedy")),
+    bik.MultiStart(bik.papers.Firefly()),
+    bik.MultiStart(bik.papers.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
 STOPS = [
@@ -64,14 +68,16 @@ OBSTACLES = [
     bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
 ]
 METHODS = [
-    bik.CircleSwarm(),
-    bik.CircleSwarm(population=7, generations=20, c1=2.5, c2=2.0, velocity_limit=0.1, signed=True),
-    bik.TPBSO(),
-    bik.TPBSO(elbows=(-1, 1), solver=bik.MultiStart(bik.PSO(), max_starts=3)),
+    bik.papers.CircleSwarm(),
+    bik.papers.CircleSwarm(population=7, generations=20, c1=2.5, c2=2.0, velocity_limit=0.1, signed=True),
+    bik.papers.TPBSO(),
+    bik.papers.TPBSO(elbows=(-1, 1), solver=bik.MultiStart(bik.papers.PSO(), max_starts=3)),
     bik.WeightedPseudoInverse(),
     bik.WeightedPseudoInverse(gain=5.0, integrator="rk4", weights=[1.0, 2.0], posture_gain=10.0, damping=0.01),
-    bik.ZNNBAS(),
-    bik.ZNNBAS(gain=10.0, antenna_length=[0.1, 0.2], delay_steps=10, delay="held", accept="improving", sensor_delay=2),
+    bik.papers.ZNNBAS(),
+    bik.papers.ZNNBAS(
+        gain=10.0, antenna_length=[0.1, 0.2], delay_steps=10, delay="held", accept="improving", sensor_delay=2
+    ),
 ]
 VALUES = [*SINUSOIDS, *SOLVERS, *STOPS, *OBSTACLES, *METHODS]
 
@@ -115,7 +121,7 @@ def test_hashes_tell_values_apart() -> None:
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)
 def test_the_repr_rebuilds_the_value(value: object) -> None:
-    assert eval(repr(value), vars(bik)) == value
+    assert eval(repr(value), vars(bik) | vars(bik.papers)) == value
 
 
 def test_different_values_differ() -> None:
@@ -125,15 +131,20 @@ def test_different_values_differ() -> None:
 
 
 def test_defaults_are_shown_in_full() -> None:
-    assert repr(bik.APPS()) == "APPS(learning_rate='auto', step_limit=0.2, error_threshold=None)"
+    assert repr(bik.papers.APPS()) == "APPS(learning_rate='auto', step_limit=0.2, error_threshold=None)"
     paper = "APPS(learning_rate=0.2, step_limit=0.017453292519943295, error_threshold=5e-10)"
-    assert repr(bik.APPS.paper()) == paper
+    assert repr(bik.papers.APPS.paper()) == paper
     assert repr(bik.JacobianTranspose()) == "JacobianTranspose(step_size='auto')"
     assert repr(bik.NewtonRaphson()) == "NewtonRaphson(step_fraction=1.0)"
-    assert repr(bik.BAS()) == "BAS(variant='star', c1=3.0, c2=1.0, explorations=50, max_passes=200)"
-    assert repr(bik.BAS(variant="chain")) == "BAS(variant='chain', c1=1.0, c2=1.0, explorations=30, max_passes=200)"
-    assert repr(bik.BAS(variant="greedy")) == "BAS(variant='greedy', c1=3.0, c2=1.0, explorations=5, max_passes=200)"
-    assert bik.BAS() == bik.BAS(variant="star", c1=3.0, c2=1.0, explorations=50)
+    assert repr(bik.papers.BAS()) == "BAS(variant='star', c1=3.0, c2=1.0, explorations=50, max_passes=200)"
+    assert (
+        repr(bik.papers.BAS(variant="chain")) == "BAS(variant='chain', c1=1.0, c2=1.0, explorations=30, max_passes=200)"
+    )
+    assert (
+        repr(bik.papers.BAS(variant="greedy"))
+        == "BAS(variant='greedy', c1=3.0, c2=1.0, explorations=5, max_passes=200)"
+    )
+    assert bik.papers.BAS() == bik.papers.BAS(variant="star", c1=3.0, c2=1.0, explorations=50)
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=repr)
@@ -302,7 +313,7 @@ def failing_plant() -> Callable[[np.ndarray], np.ndarray]:
 
 
 def step_without_a_model() -> bik.Step:
-    session = bik.ZNNBAS().session([0.1, 0.2, 0.3], dt=0.1)
+    session = bik.papers.ZNNBAS().session([0.1, 0.2, 0.3], dt=0.1)
     plant = bik.KinematicPlant(bik.Robot.planar([1.0] * 3))
     steps = (session.observe(plant.move(session.command((1.5, 1.0, 0.0)))) for _ in range(9))
     return next(step for step in steps if step is not None)
@@ -333,10 +344,14 @@ def results() -> dict[str, object]:
         "failed plant": bik.track_model_free(failing_plant(), circle, [0.1, 0.2, 0.3], dt=0.1),
         "step": bik.Tracker(arm, q[0], dt=0.1, limits=limits).step(arm.fk(q[1])),
         "step without a model": step_without_a_model(),
-        "minimum": bik.minimize(np.linalg.norm, [-1, -1], [2, 2], solver=bik.PSO(), stop=bik.Stop(value_below=1e-3)),
-        "no minimum": bik.minimize(lambda _: np.nan, [-1.0], [2.0], solver=bik.BAS(), stop=bik.Stop(max_evaluations=9)),
-        "posture": bik.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.CircleSwarm()),
-        "no posture": bik.planar_posture(planar, (4.0, 0.0, 0.0)),
+        "minimum": bik.minimize(
+            np.linalg.norm, [-1, -1], [2, 2], solver=bik.papers.PSO(), stop=bik.Stop(value_below=1e-3)
+        ),
+        "no minimum": bik.minimize(
+            lambda _: np.nan, [-1.0], [2.0], solver=bik.papers.BAS(), stop=bik.Stop(max_evaluations=9)
+        ),
+        "posture": bik.papers.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.papers.CircleSwarm()),
+        "no posture": bik.papers.planar_posture(planar, (4.0, 0.0, 0.0)),
         "nearest": bik.obstacles.nearest(planar.with_capsules(radius=0.1), [0.1] * planar.dof, [obstacle]),
     }  # fmt: skip
 

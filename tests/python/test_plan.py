@@ -60,7 +60,7 @@ def test_history_falls_to_the_cost() -> None:
 
 
 def test_elbows_are_bent_as_asked() -> None:
-    q = between(method=bik.TPBSO(elbows=(-1, 1))).trajectory.q
+    q = between(method=bik.papers.TPBSO(elbows=(-1, 1))).trajectory.q
     assert q[0, 1] < 0.0 < q[-1, 1]
 
 
@@ -70,22 +70,24 @@ def test_given_end_configurations_are_kept() -> None:
     np.testing.assert_array_equal(plan.trajectory.q[0], q)
 
 
-@pytest.mark.parametrize("solver", [bik.PSO(), bik.Genetic(), bik.DifferentialEvolution(), bik.BAS()])
+@pytest.mark.parametrize(
+    "solver", [bik.papers.PSO(), bik.papers.Genetic(), bik.DifferentialEvolution(), bik.papers.BAS()]
+)
 def test_other_searches_serve(solver: Any) -> None:
-    plan = between(method=bik.TPBSO(solver=solver))
+    plan = between(method=bik.papers.TPBSO(solver=solver))
     assert plan.evaluations <= 3000
     ends = plan.trajectory.at([0.0, plan.trajectory.duration])[0]
     np.testing.assert_allclose(ARM.fk(ends)[:, :3, 3], [START, END], atol=1e-9)
 
 
 def test_the_name_tpbso_means_its_defaults() -> None:
-    np.testing.assert_array_equal(between(method=bik.TPBSO()).trajectory.q, between().trajectory.q)
-    np.testing.assert_array_equal(along(CORNER, method=bik.TPBSO()).trajectory.q, along(CORNER).trajectory.q)
-    assert bik.TPBSO() == bik.TPBSO(elbows=(1, 1), solver=None)
-    assert repr(bik.TPBSO()) == "TPBSO(elbows=(1, 1), solver=None)"
-    assert bik.TPBSO(solver=bik.PSO()) != bik.TPBSO()
+    np.testing.assert_array_equal(between(method=bik.papers.TPBSO()).trajectory.q, between().trajectory.q)
+    np.testing.assert_array_equal(along(CORNER, method=bik.papers.TPBSO()).trajectory.q, along(CORNER).trajectory.q)
+    assert bik.papers.TPBSO() == bik.papers.TPBSO(elbows=(1, 1), solver=None)
+    assert repr(bik.papers.TPBSO()) == "TPBSO(elbows=(1, 1), solver=None)"
+    assert bik.papers.TPBSO(solver=bik.papers.PSO()) != bik.papers.TPBSO()
     with pytest.raises(bik.InvalidInputError, match=r"^TPBSO has no derivatives: solver must be BAS, "):
-        bik.TPBSO(solver=bik.LevenbergMarquardt())  # type: ignore[arg-type]
+        bik.papers.TPBSO(solver=bik.LevenbergMarquardt())  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("keyword", ["elbow", "elbows", "solver"])
@@ -95,7 +97,7 @@ def test_options_of_tpbso_are_no_keywords_of_the_call(keyword: str) -> None:
 
 
 def test_a_path_is_followed_with_the_elbow_asked_for() -> None:
-    assert (along(CORNER, method=bik.TPBSO(elbows=(-1, -1)), accuracy=0.2).trajectory.q[:, 1] < 0.0).all()
+    assert (along(CORNER, method=bik.papers.TPBSO(elbows=(-1, -1)), accuracy=0.2).trajectory.q[:, 1] < 0.0).all()
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:
@@ -173,7 +175,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
         lambda: between(objective="energy"),
         "objective must be one of 'time', 'joint_travel', 'tip_travel', got 'energy'",
     ),
-    (lambda: bik.TPBSO(elbows=(0, 1)), "elbows[0] must be 1 or -1, the sign of the second joint's angle, got 0"),
+    (lambda: bik.papers.TPBSO(elbows=(0, 1)), "elbows[0] must be 1 or -1, the sign of the second joint's angle, got 0"),
     (
         lambda: between(obstacles=[bik.obstacles.Ellipse((0.8, 0.8), (0.0, 0.2))]),
         "semi-axes of the ellipse along x must be positive and finite, got 0",
@@ -198,11 +200,11 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
         "path: expected a Path, points (k, 3) or poses (k, 4, 4), got shape (2, 2)",
     ),
     (
-        lambda: along(CORNER, method=bik.TPBSO(elbows=(1, -1))),
+        lambda: along(CORNER, method=bik.papers.TPBSO(elbows=(1, -1))),
         "elbows is (1, -1), but along a path the arm keeps one elbow: give one sign twice",
     ),
     (
-        lambda: along(CORNER, solver=bik.PSO()),
+        lambda: along(CORNER, solver=bik.papers.PSO()),
         'solver is the search of method="timed": give method=TPBSO(solver=...) its own',
     ),
     (lambda: along(CORNER, accuracy=0), "accuracy must be positive and finite, got 0"),

@@ -9,11 +9,11 @@ import beetle_ik as bik
 SOLVERS = [
     bik.LevenbergMarquardt(),
     bik.LevenbergMarquardt(initial_damping=1e-2),
-    bik.BAS(variant="star"),
-    bik.BAS(variant="chain"),
-    bik.BAS(variant="greedy"),
+    bik.papers.BAS(variant="star"),
+    bik.papers.BAS(variant="chain"),
+    bik.papers.BAS(variant="greedy"),
     bik.MultiStart(bik.LevenbergMarquardt()),
-    bik.MultiStart(bik.BAS(variant="greedy"), max_starts=50),
+    bik.MultiStart(bik.papers.BAS(variant="greedy"), max_starts=50),
 ]
 
 
@@ -131,7 +131,7 @@ def test_seeds_repeat_and_differ() -> None:
     first, again = (bik.solve(robot, target, seed=1).q for _ in range(2))
     np.testing.assert_array_equal(first, again)
     # Only a search that draws depends on its seed: the default begins at stored configurations.
-    beetles = [bik.solve(robot, target[:3, 3], solver=bik.BAS(), seed=seed).q for seed in (1, 1, 2)]
+    beetles = [bik.solve(robot, target[:3, 3], solver=bik.papers.BAS(), seed=seed).q for seed in (1, 1, 2)]
     np.testing.assert_array_equal(beetles[0], beetles[1])
     assert not np.array_equal(beetles[0], beetles[2])
     assert bik.solve(robot, target, seed=2**64 - 1).success
@@ -152,7 +152,7 @@ def test_an_evaluation_budget_is_kept_exactly(solver: object, budget: int) -> No
 def test_other_budgets_end_a_search() -> None:
     robot = bik.Robot.named("iiwa14")
     unreachable = np.array([0.0, 0.0, 0.36])  # inside the shoulder
-    few = bik.solve(robot, unreachable, solver=bik.BAS(), stop=bik.Stop(max_iterations=3))
+    few = bik.solve(robot, unreachable, solver=bik.papers.BAS(), stop=bik.Stop(max_iterations=3))
     assert (few.status, few.iterations) == (bik.Status.BUDGET_SPENT, 3)
     stop = bik.Stop(max_time=0.05, max_evaluations=10**12)
     timed = bik.solve(robot, unreachable, stop=stop)

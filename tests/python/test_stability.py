@@ -45,3 +45,22 @@ def test_a_changed_signature_is_noticed(tool: ModuleType, monkeypatch: pytest.Mo
 
     monkeypatch.setattr(bik, "solve", solve)
     assert "solve(robot, *, target)" in list(tool.lines())
+
+
+def test_an_old_name_of_the_papers_warns() -> None:
+    with pytest.warns(
+        DeprecationWarning, match=r"^beetle_ik.BAS is now beetle_ik.papers.BAS; the old name goes in 0.3$"
+    ):
+        assert bik.BAS is bik.papers.BAS  # type: ignore[attr-defined]
+
+
+def test_an_unknown_name_is_an_error() -> None:
+    with pytest.raises(AttributeError, match=r"^module 'beetle_ik' has no attribute 'Basic'$"):
+        _ = bik.Basic  # type: ignore[attr-defined]
+
+
+def test_completion_offers_what_can_be_called() -> None:
+    offered = dir(bik)
+    assert {"Limits", "Robot", "Scene", "Tracker", "obstacles", "papers", "pose", "solve", "track"} <= set(offered)
+    assert not {"BAS", "PSO", "Solution", "TrackResult", "logging", "planar_posture"} & set(offered)
+    assert sorted(set(offered) - set(bik.__all__)) == []

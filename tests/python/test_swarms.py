@@ -12,12 +12,12 @@ from iiwa_circle import CIRCLE, IIWA, LIMITS, ON_CIRCLE
 
 import beetle_ik as bik
 
-BEETLE = bik.BAS(variant="chain", explorations=5)
+BEETLE = bik.papers.BAS(variant="chain", explorations=5)
 RIVALS = [
-    bik.PSO(population=6, form="inertia", inertia=0.6, c1=1.7, c2=1.7),
-    bik.Firefly(population=6),
-    bik.QPSO(population=20),
-    bik.Genetic(population=20, mutation_decay=0.9),
+    bik.papers.PSO(population=6, form="inertia", inertia=0.6, c1=1.7, c2=1.7),
+    bik.papers.Firefly(population=6),
+    bik.papers.QPSO(population=20),
+    bik.papers.Genetic(population=20, mutation_decay=0.9),
 ]
 
 
@@ -38,7 +38,9 @@ def test_a_beetle_needs_a_third_of_the_evaluations_or_fewer(rival: Any) -> None:
     assert 3.0 * evaluations_per_step(BEETLE) < evaluations_per_step(rival)
 
 
-@pytest.mark.parametrize("solver", [*RIVALS, bik.BeeColony(), bik.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr)
+@pytest.mark.parametrize(
+    "solver", [*RIVALS, bik.papers.BeeColony(), bik.papers.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr
+)
 def test_swarms_keep_the_limits_of_a_path_they_cannot_follow(solver: Any) -> None:
     limits = bik.Limits(velocity=0.05)
     circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=2.0)
@@ -47,7 +49,7 @@ def test_swarms_keep_the_limits_of_a_path_they_cannot_follow(solver: Any) -> Non
     assert track.max_violation <= 1e-12
 
 
-@pytest.mark.parametrize("swarm", [*RIVALS, bik.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr)
+@pytest.mark.parametrize("swarm", [*RIVALS, bik.papers.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr)
 def test_swarms_solve_for_positions(swarm: Any) -> None:
     found = bik.solve(IIWA, [0.4, 0.3, 0.8], solver=bik.MultiStart(swarm), position_tolerance=1e-4)
     assert found.success, found.message
@@ -55,7 +57,7 @@ def test_swarms_solve_for_positions(swarm: Any) -> None:
 
 
 def test_a_solve_may_stop_at_a_value() -> None:
-    found = bik.solve(IIWA, [0.4, 0.3, 0.8], start=[0.1] * 7, solver=bik.PSO(), stop=bik.Stop(value_below=1e-2))
+    found = bik.solve(IIWA, [0.4, 0.3, 0.8], start=[0.1] * 7, solver=bik.papers.PSO(), stop=bik.Stop(value_below=1e-2))
     assert found.status == bik.Status.IMPROVED
     assert not found.success
     assert found.message.startswith("below the requested value, ")
@@ -63,8 +65,8 @@ def test_a_solve_may_stop_at_a_value() -> None:
 
 @pytest.mark.parametrize("walls", ["absorbing", "random"])
 def test_walls_hold_particles_of_any_speed(walls: Any) -> None:
-    swarm = bik.PSO(walls=walls, velocity_limit=np.inf, form="inertia", inertia=0.9)
-    assert eval(repr(swarm), {"PSO": bik.PSO}) == swarm
+    swarm = bik.papers.PSO(walls=walls, velocity_limit=np.inf, form="inertia", inertia=0.9)
+    assert eval(repr(swarm), {"PSO": bik.papers.PSO}) == swarm
     lower, upper = np.array([-1.0, 0.5, 2.0]), np.array([1.0, 0.5, 9.0])
     places = []
 
@@ -84,8 +86,8 @@ def test_walls_hold_particles_of_any_speed(walls: Any) -> None:
 
 def test_wrong_walls_are_named() -> None:
     with pytest.raises(bik.InvalidInputError) as refused:
-        bik.PSO(walls="soft")
+        bik.papers.PSO(walls="soft")
     assert str(refused.value) == "walls must be one of 'absorbing', 'random', got 'soft'"
     with pytest.raises(bik.InvalidInputError) as refused:
-        bik.PSO(velocity_limit=0.0)
+        bik.papers.PSO(velocity_limit=0.0)
     assert str(refused.value) == "velocity_limit must be positive, got 0"

@@ -283,7 +283,7 @@ def solve(**options: object) -> bik.Solution:
             'prefer="nearest" takes no goals: the distance to the start is its goal',
         ),
         (
-            lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.BAS(), goals=goals.Centring()),
+            lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.papers.BAS(), goals=goals.Centring()),
             Invalid,
             "goals need the library's own rule, with solver left out, or WeightedPseudoInverse",
         ),

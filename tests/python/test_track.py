@@ -23,10 +23,10 @@ def follow_paper(**options: object) -> bik.TrackResult:
     ("solver", "band", "steady", "most_evaluations"),
     # The bands and counts of Cheng et al. (2020) as the notes to it read them; greedy goes to any band.
     [
-        (bik.BAS(variant="star"), 1.7e-5, (8e-6, 1.3e-5), 200_000),
-        (bik.BAS(variant="chain"), 2.2e-5, (8e-6, 1.3e-5), 65_000),
-        (bik.BAS(variant="chain"), 1e-3, (4e-4, 7e-4), 25_000),
-        (bik.BAS(variant="greedy"), 1e-9, (0.0, 1e-9), 100_000),
+        (bik.papers.BAS(variant="star"), 1.7e-5, (8e-6, 1.3e-5), 200_000),
+        (bik.papers.BAS(variant="chain"), 2.2e-5, (8e-6, 1.3e-5), 65_000),
+        (bik.papers.BAS(variant="chain"), 1e-3, (4e-4, 7e-4), 25_000),
+        (bik.papers.BAS(variant="greedy"), 1e-9, (0.0, 1e-9), 100_000),
         (None, 1e-9, (0.0, 1e-9), 1_000),
     ],
     ids=["star", "chain", "chain, 1 mm", "greedy", "default"],
@@ -47,7 +47,7 @@ def test_the_papers_circle_is_followed_within_its_band(
 
 @pytest.fixture(scope="module")
 def followed() -> bik.TrackResult:
-    return follow_paper(solver=bik.BAS(variant="chain"), position_tolerance=1e-4)
+    return follow_paper(solver=bik.papers.BAS(variant="chain"), position_tolerance=1e-4)
 
 
 def test_columns_have_the_documented_shapes(followed: bik.TrackResult) -> None:
@@ -116,7 +116,9 @@ def test_the_trajectory_has_the_velocities_of_the_track(followed: bik.TrackResul
     np.testing.assert_allclose(trajectory.max_velocity(), np.abs(followed.qd).max(axis=0), rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("solver", [bik.BAS(), bik.BAS(variant="greedy"), None], ids=["star", "greedy", "default"])
+@pytest.mark.parametrize(
+    "solver", [bik.papers.BAS(), bik.papers.BAS(variant="greedy"), None], ids=["star", "greedy", "default"]
+)
 def test_limits_hold_where_the_path_is_out_of_reach(solver: object) -> None:
     robot = bik.Robot.planar([1.0] * 5)
     limits = bik.Limits(velocity=bik.Sinusoid(mean=0.2, amplitude=0.004, angular_frequency=1.0))
@@ -175,7 +177,7 @@ def test_a_beetle_keeps_near_to_poses(variant: str) -> None:
     first = robot.fk(start)
     line = bik.paths.polyline([first[:3, 3], first[:3, 3] + [0.0, 0.05, 0.0]], duration=1.0)
     path = line.with_orientation(first[:3, :3])
-    result = bik.track(robot, path, start, dt=0.1, solver=bik.BAS(variant=variant), position_tolerance=1e-3)
+    result = bik.track(robot, path, start, dt=0.1, solver=bik.papers.BAS(variant=variant), position_tolerance=1e-3)
     assert result.position_error.max() < 2e-2
     assert result.rotation_error.max() < 5e-2
     assert result.max_violation == 0.0
@@ -209,7 +211,9 @@ def digest_of_paper(solver: object) -> str:
     return hashlib.sha256(follow_paper(solver=solver, seed=7).q.tobytes()).hexdigest()
 
 
-@pytest.mark.parametrize("solver", [bik.BAS(variant="chain"), bik.MultiStart(bik.LevenbergMarquardt())], ids=repr)
+@pytest.mark.parametrize(
+    "solver", [bik.papers.BAS(variant="chain"), bik.MultiStart(bik.LevenbergMarquardt())], ids=repr
+)
 def test_the_same_seed_gives_the_same_bits_in_every_process(solver: object) -> None:
     here = digest_of_paper(solver)
     assert digest_of_paper(solver) == here
@@ -220,5 +224,5 @@ def test_the_same_seed_gives_the_same_bits_in_every_process(solver: object) -> N
 
 
 def test_another_seed_gives_another_motion() -> None:
-    first, second = (follow_paper(solver=bik.BAS(), seed=seed).q for seed in (1, 2))
+    first, second = (follow_paper(solver=bik.papers.BAS(), seed=seed).q for seed in (1, 2))
     assert not np.array_equal(first, second)

@@ -9,8 +9,8 @@ from iiwa_circle import CIRCLE, IIWA, LIMITS, ON_CIRCLE
 import beetle_ik as bik
 
 
-@pytest.mark.parametrize("solver", [None, bik.LevenbergMarquardt(), bik.BAS(variant="chain")])
-def test_steps_give_the_bits_of_a_track(solver: bik.BAS | bik.LevenbergMarquardt | None) -> None:
+@pytest.mark.parametrize("solver", [None, bik.LevenbergMarquardt(), bik.papers.BAS(variant="chain")])
+def test_steps_give_the_bits_of_a_track(solver: bik.papers.BAS | bik.LevenbergMarquardt | None) -> None:
     result = bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
     tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
     for i in range(1, len(result.time)):
@@ -52,7 +52,7 @@ def test_a_target_out_of_reach_keeps_the_best() -> None:
 
 
 def test_reset_begins_again_with_the_same_bits() -> None:
-    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, solver=bik.BAS(), position_tolerance=1e-4)
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, solver=bik.papers.BAS(), position_tolerance=1e-4)
     first = [tracker.step(p).q for p in CIRCLE.sample(0.2)[1][1:20]]
     tracker.reset(ON_CIRCLE)
     assert tracker.time == 0.0

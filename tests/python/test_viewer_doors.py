@@ -157,6 +157,16 @@ def test_other_machines_need_the_token(shared: bik.Viewer) -> None:
     assert websocket_status(shared, Cookie=f"beetle_ik_token={wrong}") == 403
 
 
+@pytest.mark.parametrize("before", ["", "; connect-src *@"])
+def test_a_page_loads_nothing_from_other_sites(viewer: bik.Viewer, before: str) -> None:
+    _, headers, _ = page(viewer, "/?playbackPath=https://evil.example/x.viser", Host=before + place(viewer))
+    directives = headers["Content-Security-Policy"].split("; ")
+    here = place(viewer)
+    assert [each for each in directives if each.startswith("connect-src")] == [
+        f"connect-src 'self' ws://{here} wss://{here} data: blob:"
+    ]
+
+
 def test_the_token_lasts_for_the_websocket(shared: bik.Viewer) -> None:
     status, headers, _ = page(shared, f"/?token={token(shared)}")
     assert status == 200

@@ -108,20 +108,20 @@ class SolverName(StrEnum):
 
 
 _SOLVERS: dict[SolverName, "_Single"] = {
-    SolverName.BAS: bik.BAS(variant="star"),
-    SolverName.CHAIN: bik.BAS(variant="chain"),
-    SolverName.GREEDY: bik.BAS(variant="greedy"),
+    SolverName.BAS: bik.papers.BAS(variant="star"),
+    SolverName.CHAIN: bik.papers.BAS(variant="chain"),
+    SolverName.GREEDY: bik.papers.BAS(variant="greedy"),
     SolverName.LM: bik.LevenbergMarquardt(),
     SolverName.NEWTON_RAPHSON: bik.NewtonRaphson(),
     SolverName.JACOBIAN_TRANSPOSE: bik.JacobianTranspose(),
-    SolverName.APPS: bik.APPS(),
+    SolverName.APPS: bik.papers.APPS(),
     SolverName.BROYDEN_BAS: bik.BroydenBAS(),
-    SolverName.BEETLE_SWARM: bik.BeetleSwarm(),
-    SolverName.PSO: bik.PSO(),
-    SolverName.QPSO: bik.QPSO(),
-    SolverName.FIREFLY: bik.Firefly(),
-    SolverName.GENETIC: bik.Genetic(),
-    SolverName.BEE_COLONY: bik.BeeColony(),
+    SolverName.BEETLE_SWARM: bik.papers.BeetleSwarm(),
+    SolverName.PSO: bik.papers.PSO(),
+    SolverName.QPSO: bik.papers.QPSO(),
+    SolverName.FIREFLY: bik.papers.Firefly(),
+    SolverName.GENETIC: bik.papers.Genetic(),
+    SolverName.BEE_COLONY: bik.papers.BeeColony(),
     SolverName.DIFFERENTIAL_EVOLUTION: bik.DifferentialEvolution(),
 }
 

@@ -23,7 +23,8 @@ _PATH_POINTS = 500
 
 def configuration(robot: Robot, q: ArrayLike) -> Array:
     """Returns `q` as an array (n,) of finite numbers, of its own."""
-    if robot.fk(q).ndim != 2:
+    robot.fk(q)  # refuses other lengths and NaN
+    if np.ndim(q) != 1:
         raise InvalidInputError(f"q must be one configuration ({robot.dof},), got shape {np.shape(q)}")
     return _fixed(q)
 

@@ -46,26 +46,35 @@ class Handles:
         set_value(self._part, self._arm.part)
         set_value(self._follow, self._arm.follow)
 
+    def show_handles(self, shown: bool) -> None:
+        """Shows or hides what is dragged."""
+        for handle in self._handles:
+            handle.gizmo.visible = shown
+
 
 class _Handle:
-    """The handle of one tip, which is dragged, turned or typed."""
+    """The handle of one tip, which is dragged, turned or typed.
+
+    Attributes:
+        gizmo: what is dragged and turned.
+    """
 
     def __init__(self, page: Page, tip: str) -> None:
         """Adds the handle, and the numbers of its position."""
         self._arm, self._tip = page.arm, tip
         scene, only = page.server.scene, len(page.arm.targets) == 1
         name = "/target" if only else f"/target/{node_name(tip)}"
-        self._gizmo = scene.add_transform_controls(name, scale=_SIZE * page.scale, depth_test=False)
+        self.gizmo = scene.add_transform_controls(name, scale=_SIZE * page.scale, depth_test=False)
         if not only:
             scene.add_label(f"{name}/name", tip)
         label = "target [m]" if only else f"{tip} [m]"
         self._position = page.server.gui.add_vector3(label, (0.0, 0.0, 0.0), step=0.001)
         self._shown = np.full((4, 4), np.nan)
 
-        @self._gizmo.on_update
+        @self.gizmo.on_update
         async def _(_: object) -> None:  # in the thread of the server, in order
-            target = pose(self._gizmo.position, wxyz=self._gizmo.wxyz)
-            page.ask(self._gizmo, lambda: self._drag(target))
+            target = pose(self.gizmo.position, wxyz=self.gizmo.wxyz)
+            page.ask(self.gizmo, lambda: self._drag(target))
 
         page.on_input(self._position, self._type)
 
@@ -80,7 +89,7 @@ class _Handle:
         """Shows the target of the tip."""
         target = self._arm.targets[self._tip]
         if (target != self._shown).any():
-            self._gizmo.position, self._gizmo.wxyz = target[:3, 3], wxyz(target)
+            self.gizmo.position, self.gizmo.wxyz = target[:3, 3], wxyz(target)
             self._shown = target
         if np.abs(np.subtract(self._position.value, target[:3, 3])).max() > 0.5 * 10.0**-_DECIMALS:
             x, y, z = target[:3, 3].round(_DECIMALS).tolist()

@@ -24,6 +24,7 @@ _KNOWN = frozenset(
 _FARTHEST = 1e6  # m, rad, and of any other number
 _ROUNDING = 1e-6
 _LONGEST = 100_000  # characters of a text that is typed
+_LARGEST_FILE, _MOST_PARTS, _LARGEST_PART = 16_000_000, 64, 2**20  # bytes of a file, its parts, bytes of one
 
 
 class Incoming:
@@ -63,6 +64,12 @@ class Incoming:
             return math.hypot(*fields["wxyz"]) > 1e-3  # that of a rotation is 1
         if kind in ("GuiFormDirtyMessage", "GuiFormSubmitMessage"):  # viser keeps them for later pages
             return any(fields["uuid"] in owner.gui._container_handle_from_uuid for owner in self._owners())
+        if kind == "FileTransferStartUpload":  # viser would set any control to the file
+            button = self._control(fields["source_component_uuid"])
+            small = 0 <= fields["size_bytes"] <= _LARGEST_FILE and 0 <= fields["part_count"] <= _MOST_PARTS
+            return type(button).__name__ == "GuiUploadButtonHandle" and small
+        if kind == "FileTransferPart":
+            return len(fields["content"]) <= _LARGEST_PART
         if kind != "GuiUpdateMessage":
             return True
         handle = self._control(fields["uuid"])

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._core import BeetleIkError
 from .._needs import library
+from .._solids import solids
 from .._style import LINKS, rgb
 from .._surface import simplified
 from .._text import counted
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     Color = tuple[int, ...]
 
 _MOST = 100_000  # triangles of a mesh
+_GLOSS = 0.45  # roughness of varnish
 
 
 class Look(NamedTuple):
@@ -68,6 +70,18 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
     return made, notes
 
 
+def drawn_looks(robot: Robot, q: Array) -> list[Look]:
+    """Returns how an arm without meshes is drawn. `q` (n,) is any configuration."""
+    from trimesh import Scene, Trimesh
+
+    scenes: dict[str, trimesh.Scene] = {}
+    for solid in solids(robot, q):
+        mesh = Trimesh(solid.vertices, solid.faces, vertex_normals=solid.normals, process=False)
+        mesh.visual = _painted(rgb(solid.color), roughness=_GLOSS)
+        scenes.setdefault(solid.link, Scene()).add_geometry(mesh)
+    return [Look(link, scene) for link, scene in scenes.items()]
+
+
 def _read(file: str) -> trimesh.Scene:
     """Returns the content of a mesh file, in metres."""
     scene: trimesh.Scene = library("trimesh", "trimesh", "the viewer", extra="view").load_scene(file)
@@ -93,9 +107,8 @@ def _paint(scene: trimesh.Scene, color: Color) -> None:
         visual: Any = mesh.visual
         material = getattr(visual, "material", None)
         if not visual.defined:
-            mode = "OPAQUE" if color[3:] in ((), (255,)) else "BLEND"
-            material = PBRMaterial(baseColorFactor=color, metallicFactor=0.0, roughnessFactor=1.0, alphaMode=mode)
-            mesh.visual = TextureVisuals(material=material)
+            mesh.visual = painted = _painted(color)
+            material = painted.material
         elif isinstance(material, SimpleMaterial):
             material = visual.material = material.to_pbr()
         if isinstance(material, PBRMaterial):
@@ -104,6 +117,19 @@ def _paint(scene: trimesh.Scene, color: Color) -> None:
             small = Trimesh(*soup(simplified(mesh.triangles, _MOST)))
             small.visual = TextureVisuals(material=material)
             scene.geometry[name] = small
+
+
+def _painted(color: Color, roughness: float = 1.0) -> Any:
+    """Returns a material of one colour, as trimesh keeps it."""
+    from trimesh.visual import TextureVisuals
+    from trimesh.visual.material import PBRMaterial
+
+    mode = "OPAQUE" if color[3:] in ((), (255,)) else "BLEND"
+    shade = np.array(color[:3]) / 255.0
+    linear = np.where(shade <= 0.04045, shade / 12.92, ((shade + 0.055) / 1.055) ** 2.4)  # as glTF keeps colours
+    factor = [*np.round(255 * linear).astype(int).tolist(), *color[3:]]
+    material = PBRMaterial(baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=roughness, alphaMode=mode)
+    return TextureVisuals(material=material)
 
 
 def soup(triangles: Array) -> tuple[Array, NDArray[np.int64]]:

@@ -13,6 +13,7 @@ from .._style import ORANGE, rgb
 from .displaced import displaced
 from .looks import soup
 from .page import set_value
+from .sizes import Grip, beside, grips, resized
 from .surfaces import wxyz
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 _NONE = "none"
 _SIZE = 0.15  # of a new obstacle and of the handle, as a fraction of the arm
+_ARROW = 0.08  # of an arrow that changes the size
 _BESIDE = np.array([0.4, 0.4, 0.2])  # where a new obstacle appears, as a fraction of the arm
 _OPACITY = 0.7
 _NEW: dict[str, Callable[[NDArray[np.float64], float], Obstacle]] = {
@@ -43,6 +45,7 @@ class Obstacles:
         self._shapes: list[Obstacle] = []
         self._drawn: list[_Drawn] = []
         self._handle: viser.TransformControlsHandle | None = None
+        self._grips: list[viser.TransformControlsHandle] = []
         self._list = gui.add_dropdown("chosen", (_NONE,), hint="or click one in the scene")
         page.on_input(self._list, self._choose_from_list)
         page.on_input(gui.add_button("Remove"), self._remove)
@@ -54,19 +57,28 @@ class Obstacles:
         if self._page.arm.obstacles is not self._shapes:
             self._draw(self._page.arm.obstacles)
 
+    def show_handles(self, shown: bool) -> None:
+        """Shows or hides the handles of the chosen obstacle."""
+        for handle in [*([] if self._handle is None else [self._handle]), *self._grips]:
+            handle.visible = shown
+
     def _draw(self, obstacles: list[Obstacle]) -> None:
         self._choose(None)
         for drawn in self._drawn:
             drawn.mesh.remove()
         self._shapes = obstacles
-        self._drawn = [_Drawn(self._page.server.scene, f"/obstacles/{i}", each) for i, each in enumerate(obstacles)]
+        self._drawn = [self._made(i, each) for i, each in enumerate(obstacles)]
         self._list.options = (_NONE, *(f"{i} {type(each).__name__}" for i, each in enumerate(obstacles)))
-        for i, drawn in enumerate(self._drawn):
 
-            async def clicked(_: object, i: int = i) -> None:
-                self._page.ask(self._list, lambda: self._choose(i))
+    def _made(self, i: int, shape: Obstacle, home: NDArray[np.float64] | None = None) -> _Drawn:
+        """Draws obstacle `i`, which a click chooses."""
+        drawn = _Drawn(self._page.server.scene, f"/obstacles/{i}", shape, home)
 
-            drawn.mesh.on_click(clicked)
+        async def clicked(_: object) -> None:
+            self._page.ask(self._list, lambda: self._choose(i))
+
+        drawn.mesh.on_click(clicked)
+        return drawn
 
     def _add(self, kind: str) -> None:
         scale = self._page.scale
@@ -89,9 +101,9 @@ class Obstacles:
 
     def _choose(self, i: int | None) -> None:
         """Gives obstacle `i` the handle; None: no obstacle."""
-        if self._handle is not None:
-            self._handle.remove()
-            self._handle = None
+        for old in [*([] if self._handle is None else [self._handle]), *self._grips]:
+            old.remove()
+        self._handle, self._grips = None, []
         set_value(self._list, self._list.options[0 if i is None else i + 1])
         if i is None or displaced(self._shapes[i], np.eye(4)) is None:
             return
@@ -105,12 +117,47 @@ class Obstacles:
             target = pose(handle.position, wxyz=handle.wxyz)
             self._page.ask(handle, lambda: self._move(i, target))
 
+        self._grips = [self._grip(i, k, grip) for k, grip in enumerate(grips(self._shapes[i]))]
+
+    def _grip(self, i: int, k: int, grip: Grip) -> viser.TransformControlsHandle:
+        """Adds handle `k` of the size of obstacle `i`: an arrow, which is dragged along itself."""
+        handle = self._page.server.scene.add_transform_controls(
+            f"/obstacle_size/{k}", scale=_ARROW * self._page.scale, depth_test=False, position=grip.point,
+            wxyz=wxyz(_turned(grip.along)), active_axes=(True, False, False), disable_sliders=True,
+            disable_rotations=True,
+        )  # fmt: skip
+
+        @handle.on_update
+        async def _(_: object) -> None:
+            point = np.array(handle.position)
+            self._page.ask(handle, lambda: self._resize(i, k, point))
+
+        return handle
+
+    def _resize(self, i: int, k: int, point: NDArray[np.float64]) -> None:
+        if i >= len(self._drawn):
+            return  # taken away a moment ago
+        old, points = self._drawn[i], grips(self._shapes[i])
+        if k >= len(points):
+            return
+        size = float((point - points[k].middle) @ points[k].along)
+        old.mesh.remove()
+        self._drawn[i] = self._made(i, resized(old.shape, k, size), old.place)
+        self._changed(i, but=k)
+
+    def _changed(self, i: int, but: int | None = None) -> None:
+        """Tells the arm, and moves the arrows along, `but` the one that is in the hand."""
+        self._shapes = [drawn.shape for drawn in self._drawn]
+        self._page.arm.obstacles = self._shapes
+        for k, (handle, grip) in enumerate(zip(self._grips, grips(self._shapes[i]), strict=True)):
+            if k != but:
+                handle.position, handle.wxyz = grip.point, wxyz(_turned(grip.along))
+
     def _move(self, i: int, place: NDArray[np.float64]) -> None:
         if i >= len(self._drawn):
             return  # taken away a moment ago
         self._drawn[i].move(place)
-        self._shapes = [drawn.shape for drawn in self._drawn]
-        self._page.arm.obstacles = self._shapes
+        self._changed(i)
 
 
 class _Drawn:
@@ -121,13 +168,18 @@ class _Drawn:
         place: where its handle is now, (4, 4).
     """
 
-    def __init__(self, scene: viser.SceneApi, name: str, shape: Obstacle) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, name: str, shape: Obstacle, home: NDArray[np.float64] | None = None
+    ) -> None:
+        """Draws the obstacle; its handle is at the pose `home` (4, 4), None: in its middle."""
         self._first = self.shape = shape
         corners = shape.triangles
-        self._home = self.place = pose(0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))))
+        if home is None:
+            home = pose(0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))))
+        self._home = self.place = home
         self.mesh = scene.add_mesh_simple(
-            name, *soup(corners - self._home[:3, 3]), position=self._home[:3, 3], color=rgb(ORANGE), opacity=_OPACITY,
-            flat_shading=True, side="double",
+            name, *soup((corners - home[:3, 3]) @ home[:3, :3]), position=home[:3, 3], wxyz=wxyz(home),
+            color=rgb(ORANGE), opacity=_OPACITY, flat_shading=True, side="double",
         )  # fmt: skip
 
     def move(self, place: NDArray[np.float64]) -> None:
@@ -136,3 +188,9 @@ class _Drawn:
         if shape is not None:
             self.shape, self.place = shape, place
             self.mesh.position, self.mesh.wxyz = place[:3, 3], wxyz(place)
+
+
+def _turned(along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns a rotation (3, 3) that turns the x axis to a direction."""
+    side = beside(along)
+    return np.column_stack((along, side, np.cross(along, side)))

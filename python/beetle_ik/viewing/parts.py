@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
-from .._style import BLACK, BLUE, ORANGE, rgb
+from .._style import BLACK, rgb
 from ..mapping import ReachabilityMap
-from ..mapping.map_figure import cloud
+from .arm import DT
+from .camera import Camera
 from .checks import motion_of, postures_of
+from .files import Program, SceneFiles
 from .handle import Handles
 from .joints import Joints
 from .obstacles import Obstacles
+from .planning import Planning
 from .playback import Playback
 from .postures import Postures
+from .reach import Reach
 from .report import Report
 from .surfaces import Links
 
@@ -28,11 +34,9 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_FROM = np.array([1.05, 0.9, 0.45])  # of the camera, from where it looks, as a fraction of the robot
-_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of the robot: the controls cover that side of the page
-_FIELD = 0.8  # rad
+_CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # of the floor
+_LARGE = 2.0  # m: the floor of a larger robot has larger cells
 _REFERENCE = 2.0  # pixels
-_DOT = 0.25  # of a voxel
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
 
 
@@ -46,33 +50,69 @@ class Parts:
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
-        look = 0.5 * (low + high) + _ASIDE * size
-        camera = page.server.initial_camera
-        camera.look_at, camera.position, camera.fov = look, look + _FROM * size, _FIELD
+        self._camera = Camera(page.server, low, high, size)
         gui.configure_theme(show_share_button=False)  # it would show the page to others
         floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
-        scene.add_grid("/floor", 4 * size, 4 * size, cell_size=0.1, section_size=0.5, position=floor)
+        cell = 0.1 if size < _LARGE else 0.5
+        scene.add_grid(
+            "/floor", 4 * size, 4 * size, cell_size=cell, section_size=5 * cell, position=floor,
+            cell_color=rgb(_CELLS), section_color=rgb(_SECTIONS), fade_distance=8 * size,
+        )  # fmt: skip
         self.report = Report(page, notes)
-        self._playback = Playback(page)
+        self.playback = Playback(page)
+        self._reach = Reach(page)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Target"):
             handles = Handles(page)
+            planning = Planning(page, self.playback)
+            self.program = Program(page, planning)
         with tabs.add_tab("Joints"):
             joints = Joints(page)
         with tabs.add_tab("Obstacles"):
             obstacles = Obstacles(page)
-            bodies = gui.add_checkbox("bodies around the meshes", False, visible=self._links.has_covers)
+            SceneFiles(page)
+            bodies = gui.add_checkbox("bodies that are kept clear", False, visible=self._links.has_covers)
             page.on_input(bodies, lambda: self._links.show_bodies(bodies.value))
         with tabs.add_tab("Postures"):
             self._postures = Postures(page, self._links)
         self._quick = (handles, obstacles, self._postures)
+        self._with_handles = (handles, obstacles)
         self._slow = (joints, self.report)
         self._due = 0.0
+        self._left_over = 0.0  # s
         self.refresh()
 
     def advance(self, elapsed: float) -> bool:
         """Moves the arm on by a tick, `elapsed` (s) after the last one; returns whether it still moves."""
-        return self._playback.advance(elapsed) or self._page.arm.advance()
+        return self.playback.advance(elapsed) or self._page.arm.advance()
+
+    def pass_time(self, seconds: float) -> bool:
+        """Moves the arm on by ticks, for `seconds` in all; returns whether it still moves."""
+        moves, self._left_over = self._page.arm.moves, self._left_over + seconds
+        while self._left_over > 0.5 * DT:
+            moves, self._left_over = self.advance(DT), self._left_over - DT
+        return moves
+
+    @contextmanager
+    def posed(self) -> Iterator[None]:
+        """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
+        passed = self.playback.passed(self._page.arm.q)
+        boxes = [*(self._links.bounds(q) for q in passed), *self._reach.bounds, *self._obstacles_nearby()]
+        try:
+            for part in self._with_handles:
+                part.show_handles(False)
+            with self._camera.recording(np.array(boxes)):
+                yield
+        finally:
+            for part in self._with_handles:
+                part.show_handles(True)
+
+    def _obstacles_nearby(self) -> Iterator[tuple[Array, Array]]:
+        """Yields least and greatest coordinates (3,) of obstacles that are no larger than the arm, as floors are."""
+        for obstacle in self._page.arm.obstacles:
+            low, high = obstacle.triangles.min(axis=(0, 1)), obstacle.triangles.max(axis=(0, 1))
+            if np.abs((low, high)).max() < self._page.scale:
+                yield low, high
 
     def refresh(self, *, moving: bool = False) -> None:
         """Shows the state of the arm."""
@@ -91,22 +131,10 @@ class Parts:
         scene = self._page.server.scene
         scene.add_line_segments("/path", segments, rgb(BLACK), thickness=_REFERENCE, thickness_units="screen")
 
-    def draw_map(self, found: ReachabilityMap) -> None:
-        """Draws the voxels that are reached, in place of the last ones: small, so that one sees between them."""
-        mapped, shown = found.robot.name, self._page.arm.robot.name
-        if mapped != shown:
-            raise InvalidInputError(f"result is a map of robot '{mapped}', not of '{shown}'")
-        points, share = cloud(found)
-        low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
-        colors = (low + share[:, None] * (high - low)).astype(np.uint8)
-        self._page.server.scene.add_point_cloud(
-            "/map", points.astype(np.float32), colors, point_size=_DOT * found.voxel, point_shape="circle"
-        )
-
     def show(self, result: Any) -> None:
         """Shows a result of this library."""
         if isinstance(result, ReachabilityMap):
-            self.draw_map(result)
+            self._reach.show(result)
             return
         motion = motion_of(result)
         self._require_fitting(postures_of(result) if motion is None else motion.q)
@@ -118,7 +146,7 @@ class Parts:
         reference = result.reference if isinstance(result, Plan | TrackResult) else None
         if reference is not None:
             self.draw_path(reference)
-        self._playback.show(motion)
+        self.playback.show(motion)
 
     def _show_postures(self, result: Any) -> None:
         postures = postures_of(result)

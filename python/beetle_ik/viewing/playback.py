@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 _SAMPLES = 400  # of the trace and the plot
 _STEP = 0.01  # s, of the time bar
 _TRACE = 3.0  # pixels
+_PASSED = 12  # configurations along a motion, to see where it leads
+_FRAME = 1.0 / 30.0  # s, of a recording
+_REST = 0.7  # s, at the end of a recording, before it begins again
 _ASPECT = 1.5  # of the plot
 
 
@@ -43,8 +47,9 @@ class Playback:
         self._left = (page.arm.q, page.arm.targets)
         """What the arm was left with; if it has something else, someone has taken over."""
 
-    def show(self, motion: Trajectory) -> None:
-        """Shows a trajectory in place of the last one, and plays it."""
+    def show(self, motion: Trajectory, *, repeat: bool = True) -> None:
+        """Shows a trajectory in place of the last one, and plays it, over and over or once."""
+        set_value(self._repeat, repeat)
         for handle in self._drawn:
             handle.remove()
         self._motion, self._time = motion, 0.0
@@ -70,6 +75,36 @@ class Playback:
         self._put()
         set_value(self._bar, round(min(self._time, self._bar.max), 2))
         return self._playing
+
+    def shows(self, motion: Trajectory) -> bool:
+        """Whether the arm is where a motion has put it."""
+        return self._motion is motion and self._page.arm.q is self._left[0]
+
+    def passed(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Returns configurations (k, n) along the motion; `q` (n,) if there is none."""
+        return q[None] if self._motion is None else self._motion.at(np.linspace(0.0, self._motion.duration, _PASSED))[0]
+
+    def frames(self) -> Iterator[float]:
+        """Puts the arm along the motion, if there is one, and yields for how long it stays there (s).
+
+        It ends with a rest, and puts everything back.
+        """
+        if self._motion is None:
+            return
+        arm, end = self._page.arm, self._motion.duration
+        taken_over = not self.shows(self._motion)
+        before = (arm.q, arm.targets, self._time, self._playing)
+        for time in np.arange(0.0, end, _FRAME).tolist():
+            self._jump(time)
+            yield min(_FRAME, end - time)
+        self._jump(end)
+        yield _REST
+        self._jump(before[2])
+        if taken_over:
+            arm.put(before[0])
+            arm.targets = before[1]
+        else:
+            self._play(before[3])
 
     def _play(self, playing: bool) -> None:
         self._playing = playing

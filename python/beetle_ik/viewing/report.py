@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     from .page import Page
 
 _FAR = 1.0  # a nearest body farther away than this fraction of the arm is not pointed out
+_AT, _NEAR = 0.002, 0.05  # from a limit, as fractions of the range of a joint
+_BAR = (
+    "<span title='{told}' "
+    "style='flex:1;height:5px;margin:6px 0;border-radius:2px;background:#D3D7DC;position:relative'>"
+    "<span style='position:absolute;left:calc({left:.1f}% - 2px);top:-3px;width:4px;height:11px;border-radius:2px;"
+    "background:{color}'></span></span>"
+)
 _WORDS = {
     Status.SOLVED: "reached",
     Status.IN_COLLISION: "in collision",
@@ -45,6 +52,7 @@ class Report:
             f"<b data-beetle-ik='status'>{html.escape(self._status())}</b>",
             *self._tips(),
             _clearance(nearest),
+            self._limits(),
         ]
         if self.problem:
             paragraphs.insert(0, f"<b style='color:{VERMILION}'>{html.escape(self.problem)}</b>")
@@ -61,11 +69,30 @@ class Report:
     def _status(self) -> str:
         arm = self._page.arm
         if arm.outcome is None:
-            return "at rest" if arm.follow != "off" else "moved from outside"
+            return "at rest" if arm.follow != "off" else "does not follow the handle"
         if isinstance(arm.outcome, Solution) and arm.stays:
             return "no clear solution: the arm stays"
         word = _WORDS.get(arm.outcome.status, "under way" if arm.moves else "as near as it gets from here")
         return f"{word}: {_errors(arm.outcome.position_error, arm.outcome.rotation_error)} from the target"
+
+    def _limits(self) -> str:
+        """Returns where each joint is between its limits, as a bar for each, and which ones are at them."""
+        robot, bars, at = self._page.arm.robot, [], []
+        for name, q, low, high in zip(
+            robot.joint_names, self._page.arm.q.tolist(), robot.lower.tolist(), robot.upper.tolist(), strict=True
+        ):
+            if not math.isfinite(high - low) or high <= low:
+                continue
+            share = min(max((q - low) / (high - low), 0.0), 1.0)
+            if min(share, 1.0 - share) < _AT:
+                at.append(name)
+            color = VERMILION if min(share, 1.0 - share) < _NEAR else BLUE
+            told = html.escape(f"{name}: {q:.3f}, between {low:.3f} and {high:.3f}", quote=True)
+            bars.append(_BAR.format(told=told, left=100 * share, color=color))
+        if not bars:
+            return "no joint has limits"
+        text = f"<b style='color:{VERMILION}'>at its limit: {html.escape(', '.join(at))}</b>" if at else "joint limits"
+        return f"<span data-beetle-ik='limits'>{text}</span><span style='display:flex;gap:4px'>{''.join(bars)}</span>"
 
     def _tips(self) -> list[str]:
         """Returns a line for each of several tips."""

@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 _LARGEST = 16 * 2**20  # bytes of a message
-_POLICY = "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:"
-"""Which pages may show this one inside: notebooks."""
+_POLICY = (
+    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:; "
+    "connect-src 'self' ws://{host} wss://{host} data: blob:"
+)
+"""Which pages may show this one inside: notebooks. Where it may load from: viser's client would play a recording, or
+obey a server, of any site that its address names."""
 
 _replacing = threading.Lock()
 
@@ -78,7 +82,8 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
             if cookie is not None:
                 response.headers["Set-Cookie"] = cookie
             response.headers["Referrer-Policy"] = "no-referrer"  # the address may have a token
-            response.headers["Content-Security-Policy"] = _POLICY
+            place = request.headers.get("Host", "").rpartition("@")[2]  # admitted, but for what stands before an "@"
+            response.headers["Content-Security-Policy"] = _POLICY.format(host=place)
         return response
 
     options |= {"max_size": _LARGEST, "create_connection": Checked}

@@ -25,9 +25,9 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
     elif robot.unread_collision_shapes or not robot.bodies:
         lacking = f"{unread} not read" if robot.unread_collision_shapes else "no bodies in the model"
         radius = max(_THICKNESS * length(robot), _THINNEST)
-        if len(robot.tips) == 1:
-            places, added = "capsules along the links", robot.with_capsules(radius=radius).capsules
-        else:
+        added = robot.with_capsules(radius=radius).capsules if len(robot.tips) == 1 else []
+        places = "capsules along the links"
+        if not added:  # several tips, or links without length, as those of a gantry
             origin = np.zeros(3)
             places, added = "balls at the joints", [(link, origin, origin, radius) for link in robot.all_link_names]
         robot = robot.with_capsules([*robot.capsules, *added])

@@ -7,7 +7,8 @@ import html
 import logging
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
@@ -21,13 +22,16 @@ from .address import free_port
 from .admission import Admission
 from .arm import DT, FOLLOWS, Arm
 from .checks import configuration, inside_limits, path_points, target_poses
-from .looks import looks
+from .looks import drawn_looks, looks
 from .page import Page
 from .parts import Parts
+from .recording import recording_file, take, write_recording
 from .served import serve
 from .worker import Request, Worker
 
 if TYPE_CHECKING:
+    import os
+
     import numpy as np
     import viser
     from numpy.typing import ArrayLike, NDArray
@@ -116,6 +120,9 @@ class Viewer:
         require("robot", robot, Robot)
         seen, missing = looks(robot)
         self.robot, notes = start.shown(robot, has_meshes=bool(seen))
+        if not seen:
+            seen = drawn_looks(self.robot, start.middle(robot))
+            notes += ["no meshes in the model: the arm is drawn along its joints"] if seen else []
         scene = list(Scene(() if obstacles is None else obstacles))
         begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
         line = None if path is None else path_points(path)
@@ -130,7 +137,7 @@ class Viewer:
         self._callbacks: list[Callable[[Any], object]] = []
         self._arm = Arm(self.robot, begin, scene)
         self._told = self._arm.targets
-        self._moves = False
+        self._moves = self._records = False
         self._last_tick = time.monotonic()
         self._worker = Worker(self._work, DT)
         try:
@@ -212,7 +219,7 @@ class Viewer:
         return self._moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a map as a cloud.
+        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a slice of a map.
 
         A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
         orange where all are.
@@ -225,6 +232,45 @@ class Viewer:
             InvalidInputError: something else, or the result of a robot with another number of joints.
         """
         self._change(lambda: self._parts.show(result))
+
+    def to_python(self) -> str:
+        """Returns a program that makes what the page shows, as its button "Copy as Python" does.
+
+        It has the robot (a built-in one, otherwise a place for yours), the configuration, the target and the obstacles,
+        and plans from the one to the other. After a plan that was made on the page, it has the start of that.
+        """
+        with self._lock:
+            return self._parts.program.text()
+
+    def record(self, file: str | os.PathLike[str], frames: Iterable[float] | None = None) -> None:
+        """Writes the scene and its motion to a file that plays and turns in any browser, without a server.
+
+        `motion.html` is a page of its own, for a colleague; `motion.viser` is for a site, whose recordings share a
+        player: `viewing.write_player`. Neither contains controls. The same scene gives the same recording.
+
+        Args:
+            file: the file, ending in `.html` or `.viser`.
+            frames: changes the viewer and yields for how long what it shows stays (s), any number of times. Time
+                passes in no other way: after each yield the arm has moved on by the time yielded. None: the motion
+                that was shown last, from start to end; without any, the scene as it is, which turns.
+
+        Raises:
+            InvalidInputError: another ending, or frames that are no seconds, or last longer than ten minutes.
+            OSError: the file cannot be written.
+        """
+        path = recording_file(file)
+        if frames is not None:
+            require("frames", frames, Iterable)
+        with self._changing():
+            if self._records:
+                raise BeetleIkError("record: frames must not record")
+            self._records = True
+            try:
+                shown = self._parts.playback.frames() if frames is None else frames
+                recorded = take(self.server, self._parts, shown, self._pass)
+            finally:
+                self._records = False
+        write_recording(path, self.robot.name, recorded)
 
     def on_target(self, callback: Callable[[Any], object]) -> None:
         """Has `callback(target)` called with each new `target`, in the thread of the viewer.
@@ -254,13 +300,23 @@ class Viewer:
 
     def _change(self, change: Callable[[], None]) -> None:
         """Changes the state from Python, and shows it."""
+        with self._changing():
+            change()
+
+    @contextmanager
+    def _changing(self) -> Iterator[None]:
+        """Has the block change the state alone, and shows the result."""
         if self._closed.is_set():
             raise BeetleIkError(f"the viewer of '{self.robot.name}' is closed: bik.view opens another one")
         with self._lock:
-            change()
+            yield
             self._moves = True  # until the next tick knows better
             self._parts.refresh()
         self._worker.ask("changed", lambda: None)
+
+    def _pass(self, seconds: float) -> None:
+        """Moves the arm on, in a recording."""
+        self._moves = self._parts.pass_time(seconds)
 
     def _work(self, requests: Collection[Request]) -> bool:
         """Carries out requests, moves the arm on by a tick, and shows the result; returns whether it still moves."""

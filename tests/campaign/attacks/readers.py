@@ -253,7 +253,7 @@ def samples() -> dict[str, bytes]:
             bik.plan_point_to_point(robot, start_q=[0.1, 0.2, 0.3], end_q=[0.5, 0.2, -0.3], limits=limits),
             bik.track(robot, bik.paths.circle((0.5, 0.2, 0.0), diameter=0.2, duration=0.5), dt=0.1),
             bik.Tracker(robot, [0.1, 0.2, 0.3], dt=0.1).step((0.5, 0.2, 0.0)),
-            bik.planar_posture(bik.Robot.planar([1.0] * 3), (1.5, 1.0, 0.0)),
+            bik.papers.planar_posture(bik.Robot.planar([1.0] * 3), (1.5, 1.0, 0.0)),
         ]
         for one in values:
             try:

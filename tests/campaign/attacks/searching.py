@@ -72,8 +72,8 @@ class SameBits(Attack):
     promise = "The same call gives the same bits: for any number of threads, alone or in a batch, and after a pickle"
     page = "batches"
     options = (
-        "", "goals=bik.goals.Centring()", "solver=bik.BAS(), stop=bik.Stop(max_evaluations=300)",
-        "solver=bik.PSO(), stop=bik.Stop(max_evaluations=300)", "task=bik.tasks.Position()",
+        "", "goals=bik.goals.Centring()", "solver=bik.papers.BAS(), stop=bik.Stop(max_evaluations=300)",
+        "solver=bik.papers.PSO(), stop=bik.Stop(max_evaluations=300)", "task=bik.tasks.Position()",
         "task=bik.tasks.Pointing()",
         "solver=bik.MultiStart(bik.LevenbergMarquardt())", "prefer='best', goals=bik.goals.Manipulability()",
     )  # fmt: skip
@@ -130,16 +130,16 @@ class Budgets(Attack):
     page = "limits"
     solvers = (
         "None",
-        "bik.BAS()",
-        "bik.PSO()",
-        "bik.QPSO()",
-        "bik.Genetic()",
-        "bik.Firefly()",
-        "bik.BeeColony()",
-        "bik.BeetleSwarm()",
+        "bik.papers.BAS()",
+        "bik.papers.PSO()",
+        "bik.papers.QPSO()",
+        "bik.papers.Genetic()",
+        "bik.papers.Firefly()",
+        "bik.papers.BeeColony()",
+        "bik.papers.BeetleSwarm()",
         "bik.DifferentialEvolution()",
-        "bik.BeetleSwarm(direction='downhill')",
-        "bik.MultiStart(bik.BAS(variant='greedy'))",
+        "bik.papers.BeetleSwarm(direction='downhill')",
+        "bik.MultiStart(bik.papers.BAS(variant='greedy'))",
         "bik.DifferentialEvolution(update='immediate')",
     )
     functions = ("float(np.sum((x - 0.3) ** 2))", "float(np.sum(x**4 - x**2))", "float(np.abs(x).max())")

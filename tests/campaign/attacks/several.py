@@ -184,8 +184,8 @@ class Plants(Attack):
         arms.put(joints, random, False)
         controller = (
             "bik.BroydenBAS()",
-            "bik.ZNNBAS()",
-            "bik.ZNNBAS(accept='improving')",
+            "bik.papers.ZNNBAS()",
+            "bik.papers.ZNNBAS(accept='improving')",
             "bik.BroydenBAS(sensor_delay=1)",
         )
         fate = str(random.choice(self.fates)) if hard else "pass"

@@ -9,6 +9,7 @@ use super::planar::Planar;
 use super::pose_family::{FamilyLimits, PoseFamily};
 use super::redundant::{Parameter, Redundant};
 use super::six::{ClosedForm, Structure};
+use super::structure::are_sharp;
 use crate::kinematics::chain::{Chain, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
@@ -40,6 +41,7 @@ pub(crate) enum NoClosedForm {
 pub(crate) struct ClosedFormArm {
     method: Method,
     drives: Drives,
+    is_sharp: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -89,7 +91,9 @@ impl ClosedFormArm {
             }),
         };
         let method = method.ok_or(unsolved)?;
-        Ok(Self { method, drives })
+        let all = axes_of::<MOST_JOINTS>(chain);
+        let is_sharp = are_sharp(&all.joints[..joints], all.size());
+        Ok(Self { method, drives, is_sharp })
     }
 
     /// The structure in words, and how many solutions it allows. `joint_name` names a joint by its number.
@@ -121,11 +125,12 @@ impl ClosedFormArm {
 
     /// Whether it can prove that a pose has no other solutions.
     pub fn proves(&self) -> bool {
-        match &self.method {
+        let method_proves = match &self.method {
             Method::Planar(_) | Method::Scara(_) | Method::Seven(_) => true,
             Method::Five(method) => method.structure().proves(),
             Method::Six(method) => method.structure().proves(),
-        }
+        };
+        method_proves && self.is_sharp
     }
 
     /// Whether an arm has more joints than a pose needs.
@@ -149,7 +154,10 @@ impl ClosedFormArm {
     #[inline]
     pub fn likely(&self, target: &Frame, found: &mut ArmConfigurations) {
         match &self.method {
-            Method::Six(method) if method.has_exact_candidates() => method.likely(target, &self.drives, found),
+            Method::Six(method) if method.has_exact_candidates() => {
+                method.likely(target, &self.drives, found);
+                found.is_all &= self.is_sharp;
+            }
             _ => *found = self.solve(target).map_or_else(ArmConfigurations::none, |found| found.configurations()),
         }
     }

@@ -26,6 +26,14 @@ impl Doubt {
     pub fn add(&mut self, other: Self) {
         *self = (*self).max(other);
     }
+
+    /// Notes that roots have led to no branch, though perhaps only just: if they are in doubt, they may only have been inexact.
+    #[inline(always)]
+    pub fn add_dead_end(&mut self) {
+        if *self == Self::Beside {
+            *self = Self::Open;
+        }
+    }
 }
 
 /// Unverified branches of an arm of up to seven joints, each number for all of them side by side.

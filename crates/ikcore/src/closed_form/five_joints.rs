@@ -90,9 +90,9 @@ impl FiveJoints {
                 }
             }
         }
-        // Of a family of six joints one stands for all, and beside a double root the virtual joint is not known well: without a
-        // branch, others may leave it at zero.
-        let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty();
+        // Of a family of six joints one stands for all, and beside a double root the virtual joint is not known well: others than those
+        // found may leave it at zero.
+        let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty() && found.len() >= six.len();
         (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Open }, six.singular);
         found.evaluations += six.evaluations;
         found.nearly |= six.nearly;

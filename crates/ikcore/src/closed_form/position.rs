@@ -46,6 +46,9 @@ impl Arms {
     #[inline(always)]
     pub fn add_doubt(&mut self, turns: &Turns<2>) {
         self.free |= turns.free;
+        if turns.near_miss {
+            self.doubt.add_dead_end();
+        }
         self.doubt.add(turns.doubt);
     }
 

@@ -10,7 +10,7 @@ use crate::closed_form::branches::{Branches, Candidates, Doubt};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 use crate::closed_form::general::General;
 use crate::closed_form::spherical_wrist::SphericalWrist;
-use crate::closed_form::structure::{EXACT, NEARLY, three_meet, three_parallel};
+use crate::closed_form::structure::{EXACT, NEARLY, are_sharp, three_meet, three_parallel};
 use crate::closed_form::three_parallel::ThreeParallel;
 use crate::closed_form::verify::{Verifier, values_of_six, verified};
 use crate::math::Frame;
@@ -246,13 +246,17 @@ impl ClosedForm {
     fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates) {
         let joints = AxisChain::rotated(&self.chain.joints, goal, at);
         let mut turned = Candidates::new();
+        // By the pose, axes that are no neighbours in the arm may come to meet or to be parallel, or nearly so.
+        if !are_sharp(&joints, self.size) {
+            turned.doubt = Doubt::Open;
+        }
         match self.structure {
             Structure::ThreeMeet { .. } => match three_meet(&joints[3..], self.size, 4.0 * tolerance) {
                 Some(centre) => {
                     let method = SphericalWrist::new(&joints, &centre, self.size, tolerance);
                     method.solve(goal, &[AngleRange::ANY; 6], &mut turned);
                 }
-                None => turned.doubt = Doubt::Open,
+                None => turned.doubt.add(Doubt::Open),
             },
             _ => ThreeParallel::new(&joints, self.size, tolerance).solve::<Baseline>(goal, &mut turned),
         }

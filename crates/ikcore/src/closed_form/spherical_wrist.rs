@@ -98,6 +98,9 @@ impl SphericalWrist {
             let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
             let wrists = self.wrist.turns(&left, of_wrist);
             found.singular |= wrists.aligned;
+            if wrists.near_miss {
+                found.doubt.add_dead_end();
+            }
             found.doubt.add(wrists.doubt);
             for wrist in wrists.sets[..wrists.count].iter().filter(|wrist| may_hold(of_wrist, *wrist)) {
                 found.push_six(&order(arm, wrist));

@@ -1,12 +1,15 @@
 //! How neighbouring axes of a chain lie: parallel, meeting, skew; read from its numbers once.
 
-use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
 
 /// How far from parallel (rad) or from meeting (as a fraction of the arm's size) axes may be.
 ///
 /// Robot descriptions print angles with eleven digits or so: what is left then is polished away.
 pub const EXACT: f64 = 1e-9;
+
+/// Relations that hold to [`EXACT`] but not to this leave rounding of a size that proofs do not allow for.
+const SHARP: f64 = 2e-11;
 
 /// The same for arms that were decomposable before they were calibrated: the closed form only gives starts.
 pub const NEARLY: f64 = 5e-3;
@@ -53,6 +56,22 @@ pub fn three_meet(joints: &[JointAxis], size: f64, tolerance: f64) -> Option<Vec
     (!parallel && off <= tolerance * size).then_some(point)
 }
 
+/// Whether each relation between axes in a row holds to rounding or not at all, so that a method that builds on it may prove something.
+pub fn are_sharp(joints: &[JointAxis], size: f64) -> bool {
+    let pair_is_sharp = |pair: &[JointAxis]| {
+        let [exact, sharp] = [EXACT, SHARP].map(|tolerance| Pair::of(&pair[0], &pair[1], size, tolerance));
+        // The point of a joint that slides means nothing.
+        let turning = pair.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let same = (exact == Pair::Parallel) == (sharp == Pair::Parallel);
+        same && (!turning || (exact == Pair::Skew) == (sharp == Pair::Skew))
+    };
+    let three_are_sharp = |three: &[JointAxis]| {
+        let [exact, sharp] = [EXACT, SHARP].map(|tolerance| three_meet(three, size, tolerance).is_some());
+        exact == sharp
+    };
+    joints.windows(2).all(pair_is_sharp) && joints.windows(3).all(three_are_sharp)
+}
+
 /// Whether three axes in a row are parallel, and no two of them one line.
 pub fn three_parallel(joints: &[JointAxis], size: f64, tolerance: f64) -> bool {
     let parallel = |a: &JointAxis, b: &JointAxis| Pair::of(a, b, size, tolerance) == Pair::Parallel;
@@ -94,5 +113,17 @@ mod tests {
         assert!(norm(&sub(&found, &at)) < 1e-15);
         let bundle = [0.0, 0.5, 1.1].map(|x| joint([0.0, 1.0, 0.0], [x, 0.0, 0.0]));
         assert!(three_parallel(&bundle, 1.0, EXACT) && !three_parallel(&wrist, 1.0, EXACT));
+    }
+
+    #[test]
+    fn relations_hold_to_rounding_or_not_at_all() {
+        let at = [0.3, 0.1, 0.9];
+        for (off, sharp) in [(0.0, true), (1e-12, true), (1e-10, false), (5e-10, false), (1e-6, true)] {
+            let aside = [0.3, 0.1 + off, 0.9];
+            let wrist = [joint([1.0, 0.0, 0.0], at), joint([0.0, 0.0, 1.0], at), joint([1.0, 0.0, 0.0], aside)];
+            assert_eq!(are_sharp(&wrist, 1.0), sharp, "axes that miss each other by {off}");
+            let tilted = [joint([1.0, 0.0, 0.0], at), joint([1.0, off, 0.0], [0.3, 0.5, 0.9])];
+            assert_eq!(are_sharp(&tilted, 1.0), sharp, "axes that are parallel to {off}");
+        }
     }
 }

@@ -13,7 +13,7 @@ use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::position::NEARLY_JOINED;
 use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{
-    CLAMP, Linear, NEARLY_DOUBLE, angle_to_plane, line_on_circle, two_linear_equations,
+    CLAMP, Linear, NEARLY_DOUBLE, Turns, angle_to_plane, line_on_circle, two_linear_equations,
 };
 use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
 use crate::closed_form::wrist::{ALIGNED, Bend, NEARLY_ALIGNED};
@@ -131,7 +131,7 @@ impl ThreeParallel {
                 for q1 in q1.iter() {
                     let shoulder = self.shoulder(goal, *q1);
                     let (q5, _) = self.bend.angles(&q1.back().about(h1, &n));
-                    found.doubt.add(q5.doubt);
+                    add_doubt(&q5, found);
                     for q5 in q5.iter() {
                         self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
@@ -145,7 +145,7 @@ impl ThreeParallel {
                     let shoulder = self.shoulder(goal, *q1);
                     let height = dot(h, &q1.back().about(h1, &a)) - offset;
                     let q5 = angle_to_plane(h, h5, &sub(p6, p5), height, self.floor);
-                    found.doubt.add(q5.doubt);
+                    add_doubt(&q5, found);
                     for q5 in q5.iter() {
                         self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
                     }
@@ -241,6 +241,9 @@ impl ThreeParallel {
         let reached =
             [four_angles::dot(&x, &wrist) + four(&offset[0]), four_angles::dot(&y, &wrist) + four(&offset[1])];
         let bends = self.elbow.bends(&reached, *count);
+        if bends.near_miss {
+            found.doubt.add_dead_end();
+        }
         found.doubt.add(bends.doubt);
         let [first, second] = [self.bent(bends.q3[0], sum, &reached), self.bent(bends.q3[1], sum, &reached)];
         for lane in 0..std::mem::take(count) {
@@ -296,6 +299,15 @@ impl ThreeParallel {
     }
 }
 
+/// Takes over what is not sure of the angles of q5 for one value of q1.
+#[inline(always)]
+fn add_doubt(q5: &Turns<2>, found: &mut Candidates) {
+    if q5.near_miss {
+        found.doubt.add_dead_end();
+    }
+    found.doubt.add(q5.doubt);
+}
+
 impl Wrists {
     const NONE: Self = Self {
         x: [F64x4::ZERO; 3],
@@ -329,6 +341,8 @@ struct Bends<R> {
     /// How many values count in each lane.
     counts: [usize; 4],
     doubt: Doubt,
+    /// A lane has none, but only just.
+    near_miss: bool,
 }
 
 impl Elbow {
@@ -352,13 +366,14 @@ impl Elbow {
         let (ac, bc, to_a, to_b) = (R::splat(a) * c, R::splat(b) * c, R::splat(a) * root, R::splat(b) * root);
         let first = FourAngles { cos: (ac - to_b) * inverse, sin: (bc + to_a) * inverse };
         let second = FourAngles { cos: (ac + to_b) * inverse, sin: (bc - to_a) * inverse };
-        let mut bends = Bends { q3: [first, second], counts: [2; 4], doubt: Doubt::None };
+        let mut bends = Bends { q3: [first, second], counts: [2; 4], doubt: Doubt::None, near_miss: false };
         for lane in 0..count {
             // The links are nearly in line, or one has no length: not for NaN.
             if !(radicand.lane(lane) > NEARLY_DOUBLE * square) || square <= floor * floor {
                 let turns = line_on_circle(a, b, c.lane(lane), floor);
                 bends.counts[lane] = turns.len();
                 bends.doubt.add(turns.doubt);
+                bends.near_miss |= turns.near_miss;
                 for (q3, turn) in bends.q3.iter_mut().zip(turns.iter()) {
                     *q3 = q3.with_lane(lane, *turn);
                 }

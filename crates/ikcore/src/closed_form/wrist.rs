@@ -114,6 +114,8 @@ pub struct WristTurns {
     pub aligned: bool,
     /// Whether they are nearly aligned, or nearly cannot point so.
     pub doubt: Doubt,
+    /// They cannot point so, but only just.
+    pub near_miss: bool,
 }
 
 impl Wrist {
@@ -150,8 +152,13 @@ impl Wrist {
         let [x, y, z] = seen(&self.outer, &goal.end);
         let mark = seen(&self.outer, &goal.mark);
         let (bends, sine) = self.bend.angles_by(z, x * x + y * y);
-        let mut found =
-            WristTurns { sets: [[Angle::NONE; 3]; 2], count: 0, aligned: sine < ALIGNED, doubt: bends.doubt };
+        let mut found = WristTurns {
+            sets: [[Angle::NONE; 3]; 2],
+            count: 0,
+            aligned: sine < ALIGNED,
+            doubt: bends.doubt,
+            near_miss: bends.near_miss,
+        };
         let wanted = if found.aligned { bends.len().min(1) } else { bends.len() };
         for q2 in &bends[..wanted] {
             found.sets[found.count] = if self.square && found.count == 1 {

@@ -96,6 +96,7 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
         None => Some(taker.take_all(pose)?),
     };
     let mut found = taker.found;
+    found.complete &= robot.proves_branches();
     if found.solutions.is_empty() {
         found.obstruction = found.complete.then(|| obstruction(attempt, count));
         // The search goes on from what is left open.
@@ -188,7 +189,6 @@ impl Taker<'_, '_, '_> {
         if branches.doubt == Doubt::Open && !self.found.singular {
             self.take_scattered();
         }
-        self.found.complete &= self.attempt.context.robot().proves_branches();
         Some(branches.len())
     }
 

@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import TPBSO, InvalidInputError, Robot, Scene, plan_along_path
+from ... import InvalidInputError, Robot, Scene, plan_along_path
 from ... import Path as ReferencePath
+from ...papers import TPBSO
 from ..curves import CurveName, make_curve, read_points
 from ..options import (
     Acceleration,

@@ -5,7 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import TPBSO, InvalidInputError, Scene, plan_point_to_point, pose
+from ... import InvalidInputError, Scene, plan_point_to_point, pose
+from ...papers import TPBSO
 from ..options import (
     Acceleration,
     AsJson,

@@ -94,7 +94,7 @@ def _pseudo_inverse() -> bik.TrackResult:
     )
 
 
-def _with_solver(solver: bik.BAS | None) -> Callable[[float], Run]:
+def _with_solver(solver: bik.papers.BAS | None) -> Callable[[float], Run]:
     return lambda band: track(IIWA, solver, seed=0, band=band)
 
 
@@ -111,8 +111,8 @@ def _broyden(band: float) -> Run:
 
 
 _CURVES: dict[str, Callable[[float], Run]] = {
-    _CHAIN: _with_solver(bik.BAS(variant="chain")),
-    _GREEDY: _with_solver(bik.BAS(variant="greedy")),
+    _CHAIN: _with_solver(bik.papers.BAS(variant="chain")),
+    _GREEDY: _with_solver(bik.papers.BAS(variant="greedy")),
     "BroydenBAS": _broyden,
     "model-based": _with_solver(None),
 }

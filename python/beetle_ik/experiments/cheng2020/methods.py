@@ -60,7 +60,7 @@ class Method:
 
 def _beetle(draws: Draws, limit: int) -> Solver:
     explorations = draws.count(1, 50)
-    return bik.BAS(
+    return bik.papers.BAS(
         variant="star" if draws.chance() else "chain",
         c1=draws.log(0.3, 5.0),
         c2=draws.log(0.5, 1.5),
@@ -71,7 +71,7 @@ def _beetle(draws: Draws, limit: int) -> Solver:
 
 def _genetic(draws: Draws, limit: int) -> Solver:
     population = draws.count(4, 80)
-    return bik.Genetic(
+    return bik.papers.Genetic(
         population=population,
         crossover_share=draws.even(0.4, 0.95),
         tournament=draws.count(2, 4),
@@ -83,7 +83,7 @@ def _genetic(draws: Draws, limit: int) -> Solver:
 
 def _particles(draws: Draws, limit: int) -> Solver:
     population, pull = draws.count(2, 60), draws.even(1.0, 2.0)
-    return bik.PSO(
+    return bik.papers.PSO(
         form="inertia",
         population=population,
         inertia=draws.even(0.4, 0.8),
@@ -96,7 +96,7 @@ def _particles(draws: Draws, limit: int) -> Solver:
 
 def _fireflies(draws: Draws, limit: int) -> Solver:
     population = draws.count(2, 30)
-    return bik.Firefly(
+    return bik.papers.Firefly(
         population=population,
         attractiveness=draws.even(0.4, 1.0),
         absorption=draws.log(0.1, 3.0),
@@ -109,16 +109,28 @@ def _fireflies(draws: Draws, limit: int) -> Solver:
 
 def _quantum(draws: Draws, limit: int) -> Solver:
     population = draws.count(2, 80)
-    return bik.QPSO(population=population, expansion=draws.even(0.4, 1.0), max_generations=limit // population)
+    return bik.papers.QPSO(population=population, expansion=draws.even(0.4, 1.0), max_generations=limit // population)
 
 
 METHODS = (
-    Method(name="BAS", kind=bik.BAS, draw=_beetle, printed_time=Spread(0.53, 0.04), printed_level="10⁻⁵ level"),
-    Method(name="GA", kind=bik.Genetic, draw=_genetic, printed_time=Spread(25.0, 10.2), printed_level="10⁻³ level"),
-    Method(name="PSO", kind=bik.PSO, draw=_particles, printed_time=Spread(5.0, 0.7), printed_level="10⁻⁴ level"),
+    Method(name="BAS", kind=bik.papers.BAS, draw=_beetle, printed_time=Spread(0.53, 0.04), printed_level="10⁻⁵ level"),
     Method(
-        name="FA", kind=bik.Firefly, draw=_fireflies, printed_time=Spread(6.9, 0.6), printed_level=Printed.NOT_STATED
+        name="GA", kind=bik.papers.Genetic, draw=_genetic, printed_time=Spread(25.0, 10.2), printed_level="10⁻³ level"
     ),
-    Method(name="QPSO", kind=bik.QPSO, draw=_quantum, printed_time=Spread(6.1, 0.4), printed_level=Printed.NOT_STATED),
+    Method(name="PSO", kind=bik.papers.PSO, draw=_particles, printed_time=Spread(5.0, 0.7), printed_level="10⁻⁴ level"),
+    Method(
+        name="FA",
+        kind=bik.papers.Firefly,
+        draw=_fireflies,
+        printed_time=Spread(6.9, 0.6),
+        printed_level=Printed.NOT_STATED,
+    ),
+    Method(
+        name="QPSO",
+        kind=bik.papers.QPSO,
+        draw=_quantum,
+        printed_time=Spread(6.1, 0.4),
+        printed_level=Printed.NOT_STATED,
+    ),
 )
 BEETLE, *RIVALS = (method.name for method in METHODS)

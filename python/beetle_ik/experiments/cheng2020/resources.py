@@ -88,7 +88,7 @@ def _reach(walk: Literal["star", "chain"], c1: float, count: int, seed: int) -> 
             robot.fk(robot.random_configurations(count, seed=seed + 1))[:, :3, 3],
             task=bik.tasks.Position(),
             starts=robot.random_configurations(count, seed=seed),
-            solver=bik.BAS(variant=walk, c1=c1, max_passes=passes),
+            solver=bik.papers.BAS(variant=walk, c1=c1, max_passes=passes),
             position_tolerance=_NEAR,
             seed=seed,
             stop=bik.Stop(max_evaluations=10**6),  # more than the passes need
@@ -130,7 +130,7 @@ def configurations(name: str, setting: Setting) -> int:
     if name == BEETLE:
         return _BEETLE_HOLDS
     solver = setting.solver if isinstance(setting, ErrorBox) else setting
-    assert not isinstance(solver, bik.BAS)
+    assert not isinstance(solver, bik.papers.BAS)
     return _A_MEMBER[name] * solver.population
 
 

@@ -14,7 +14,7 @@ import beetle_ik as bik
 
 from ...report import Printed
 
-Solver: TypeAlias = bik.BAS | bik.Firefly | bik.Genetic | bik.PSO | bik.QPSO
+Solver: TypeAlias = bik.papers.BAS | bik.papers.Firefly | bik.papers.Genetic | bik.papers.PSO | bik.papers.QPSO
 Run: TypeAlias = bik.TrackResult | bik.ModelFreeResult
 
 DURATION = 30.0  # s, section IV-A
@@ -126,9 +126,9 @@ class Setting:
     """m"""
 
     @property
-    def solver(self) -> bik.BAS:
+    def solver(self) -> bik.papers.BAS:
         """The beetle."""
-        return bik.BAS(variant=self.walk, c1=self.c1, c2=self.c2, explorations=self.explorations)
+        return bik.papers.BAS(variant=self.walk, c1=self.c1, c2=self.c2, explorations=self.explorations)
 
 
 # The literal reading: all explorations of a pass start from the same point, eq. (8), (9) and (11).

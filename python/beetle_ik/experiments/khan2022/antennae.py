@@ -123,7 +123,7 @@ def law(factors: Sequence[float]) -> Check:
 
 
 def _run(gain: float, length: float | None, c1: float | None, seeds: range) -> Antenna:
-    controller = bik.ZNNBAS(gain=gain, antenna_length=length, c1=c1)
+    controller = bik.papers.ZNNBAS(gain=gain, antenna_length=length, c1=c1)
     runs = [follow(M, controller, seed=seed) for seed in seeds]
     found = [(run.arrival(_HERE), run.late_h, run.late_sent_h) for run in runs]
     arrival, late_h, late_sent_h = np.mean(found, axis=0).tolist()
@@ -133,7 +133,9 @@ def _run(gain: float, length: float | None, c1: float | None, seeds: range) -> A
 def _law_factor(gain: float, c1: float, duration: float, *, seed: int) -> float:
     """The rms error along the last stroke of the M, over v / (k c1)."""
     speed = 4.0 * STROKE / duration
-    return float(follow(letter(duration), bik.ZNNBAS(gain=gain, c1=c1), seed=seed).late_h ** 0.5 * gain * c1 / speed)
+    return float(
+        follow(letter(duration), bik.papers.ZNNBAS(gain=gain, c1=c1), seed=seed).late_h ** 0.5 * gain * c1 / speed
+    )
 
 
 def _table(tried: Sequence[Antenna], seeds: int) -> Table:

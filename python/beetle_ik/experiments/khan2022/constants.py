@@ -94,7 +94,7 @@ def printed_gain(first: Sequence[float], last: Sequence[float]) -> Claim:
 
 
 def _follow(seed: int, *, gain: float = _GAIN, length: float = _LENGTH, delay: int = _DELAY) -> Run:
-    return follow(M, bik.ZNNBAS(gain=gain, antenna_length=length, delay_steps=delay), seed=seed)
+    return follow(M, bik.papers.ZNNBAS(gain=gain, antenna_length=length, delay_steps=delay), seed=seed)
 
 
 def _late_h(seed: int, *, gain: float = _GAIN, length: float = _LENGTH, delay: int = _DELAY) -> float:

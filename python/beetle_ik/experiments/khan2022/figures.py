@@ -64,7 +64,7 @@ class Case:
 
     path: bik.Path
     path_name: str
-    controller: bik.ZNNBAS = PUBLISHED
+    controller: bik.papers.ZNNBAS = PUBLISHED
     constants: str = "printed"
     limits: bik.Limits | None = None
     dt: float = DT

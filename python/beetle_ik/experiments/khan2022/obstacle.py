@@ -125,8 +125,8 @@ def _beetle(points: Array, ball: bik.obstacles.Obstacle, evaluations: Array, fac
     def solve(point: Array, start: Array, i: int) -> bik.Solution:
         stop = bik.Stop(max_evaluations=max(2, factor * int(evaluations[i])))
         return bik.solve(
-            ARM, point, start=start, obstacles=[ball], margin=MARGIN, solver=bik.BAS(variant="greedy"), stop=stop,
-            position_tolerance=_FOLLOWED, seed=seed + i,
+            ARM, point, start=start, obstacles=[ball], margin=MARGIN, solver=bik.papers.BAS(variant="greedy"),
+            stop=stop, position_tolerance=_FOLLOWED, seed=seed + i,
         )  # fmt: skip
 
     return _round(points, ball, solve)

@@ -16,7 +16,7 @@ _HELD = 1e-6  # m and rad
 _BUILT = IIWA.with_errors(length=0.02, angle=0.03, seed=3)
 _ORIENTATION = _BUILT.fk(ON_CIRCLE)[:3, :3]
 _SECANTS = bik.BroydenBAS(max_evaluations_per_step=1)
-_RUNS: tuple[tuple[str, bik.ZNNBAS | bik.BroydenBAS, float, float], ...] = (
+_RUNS: tuple[tuple[str, bik.papers.ZNNBAS | bik.BroydenBAS, float, float], ...] = (
     ("ZNNBAS, printed constants", PUBLISHED, 0.0, 0.0),
     ("ZNNBAS, eq. (16), k = 100", ADAPTIVE, 0.0, 0.0),
     ("BroydenBAS", _SECANTS, 0.0, 0.0),
@@ -75,7 +75,9 @@ def holds(off: float, turned: float) -> Check:
     )
 
 
-def _off(path: bik.Path, run: tuple[str, bik.ZNNBAS | bik.BroydenBAS, float, float], seed: int) -> tuple[float, float]:
+def _off(
+    path: bik.Path, run: tuple[str, bik.papers.ZNNBAS | bik.BroydenBAS, float, float], seed: int
+) -> tuple[float, float]:
     """Distance from the path (m) and angle from the first orientation (rad), rms over the second half."""
     _, controller, noise, rotation_noise = run
     plant = bik.KinematicPlant(_BUILT, noise=noise, rotation_noise=rotation_noise, seed=seed)

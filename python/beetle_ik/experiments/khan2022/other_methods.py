@@ -85,7 +85,7 @@ def _network(path: bik.Path, start: Array, limits: bik.Limits, _seed: int) -> Jo
     return found.q, found.reference
 
 
-def _model_free(controller: bik.ZNNBAS | bik.BroydenBAS) -> Callable[[bik.Path, Array, bik.Limits, int], Joints]:
+def _model_free(controller: bik.papers.ZNNBAS | bik.BroydenBAS) -> Callable[[bik.Path, Array, bik.Limits, int], Joints]:
     def run(path: bik.Path, start: Array, limits: bik.Limits, seed: int) -> Joints:
         plant = bik.KinematicPlant(IIWA)
         result = bik.track_model_free(plant, path, start, dt=DT, controller=controller, limits=limits, seed=seed)

@@ -129,7 +129,7 @@ def _runs(path: bik.Path, context: Context) -> dict[str, Array]:
         options = DualNetwork(feedback=FEEDBACK, drift_free=drift_free)
         return dual_network.track(IIWA, path, ON_CIRCLE, dt=COARSE, network=options).q
 
-    def model_free(controller: bik.ZNNBAS | bik.BroydenBAS) -> Array:
+    def model_free(controller: bik.papers.ZNNBAS | bik.BroydenBAS) -> Array:
         plant = bik.KinematicPlant(IIWA)
         result = bik.track_model_free(plant, path, ON_CIRCLE, dt=DT, controller=controller, seed=context.seed)
         return np.asarray(result.q)

@@ -25,7 +25,7 @@ _ALONG = np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)
 _FACTOR = 3.0  # times the noise of the sensor, three axes together
 _UP_TO = 1e-3  # m
 
-_CONTROLLERS: dict[str, bik.ZNNBAS | bik.BroydenBAS] = {
+_CONTROLLERS: dict[str, bik.papers.ZNNBAS | bik.BroydenBAS] = {
     "ZNNBAS, printed constants": PUBLISHED,
     "ZNNBAS, eq. (16), k = 100": ADAPTIVE,
     "BroydenBAS": bik.BroydenBAS(max_evaluations_per_step=1),
@@ -100,7 +100,7 @@ def averages(errors: dict[float, float]) -> Check:
     )
 
 
-def _errors(plant: Any, controller: bik.ZNNBAS | bik.BroydenBAS, seed: int) -> tuple[float, float]:
+def _errors(plant: Any, controller: bik.papers.ZNNBAS | bik.BroydenBAS, seed: int) -> tuple[float, float]:
     """True rms errors (m) in the second half: where the arm is sent, and at the accepted state."""
     result = bik.track_model_free(plant, circle(_DURATION), ON_CIRCLE, dt=DT, controller=controller, seed=seed)
     half = slice(len(result.time) // 2, None)

@@ -59,7 +59,7 @@ def servo_arm(context: Context) -> Part:
     printed = _on_servos(PUBLISHED, DT, _PRINTED, context.seed)
     znnbas, broyden = [], []
     for dt in context.each("khan2022: servo arm", ticks):
-        znnbas.append(_on_servos(bik.ZNNBAS(gain=_GAIN_TICK / dt, c1=_C1), dt, _DURATION, context.seed))
+        znnbas.append(_on_servos(bik.papers.ZNNBAS(gain=_GAIN_TICK / dt, c1=_C1), dt, _DURATION, context.seed))
         broyden.append(_on_servos(bik.BroydenBAS(max_evaluations_per_step=1), dt, _DURATION, context.seed))
     replayed = _replay(context)
     section = Section(
@@ -161,7 +161,7 @@ def _on_wrong_arm(context: Context) -> dict[str, float]:
     return errors
 
 
-def _on_servos(controller: bik.ZNNBAS | bik.BroydenBAS, dt: float, duration: float, seed: int) -> Array:
+def _on_servos(controller: bik.papers.ZNNBAS | bik.BroydenBAS, dt: float, duration: float, seed: int) -> Array:
     """Where the tool was, and where it should have been, at the ends of the ticks (k, 2, 3)."""
     path = circle(duration)
     plant = sim.MujocoPlant(IIWA, dt=dt)

@@ -21,9 +21,11 @@ DT = 1e-3  # s
 LATE = 0.8  # share of a run after which the paper quotes its error: from 40 to 50 s
 ARRIVED = (1e-2, 1e-3)  # m^2: where "approaches zero" may begin, 10 cm or 3 cm off; runs begin over a metre off
 
-PUBLISHED = bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10)  # Algorithm 1, its gain with the sign of eq. (14)
-ADAPTIVE = bik.ZNNBAS(gain=100.0, c1=0.3)  # eq. (16)
-FAST = bik.ZNNBAS(gain=300.0, c1=0.3)
+PUBLISHED = bik.papers.ZNNBAS(
+    gain=10.0, antenna_length=0.1, delay_steps=10
+)  # Algorithm 1, its gain with the sign of eq. (14)
+ADAPTIVE = bik.papers.ZNNBAS(gain=100.0, c1=0.3)  # eq. (16)
+FAST = bik.papers.ZNNBAS(gain=300.0, c1=0.3)
 
 POSITION_LIMITS = bik.Limits(lower=IIWA.lower, upper=IIWA.upper)
 NO_LIMITS = bik.Limits(lower=-np.inf, upper=np.inf)
@@ -117,7 +119,7 @@ class Run:
 
 def follow(
     path: bik.Path,
-    controller: bik.ZNNBAS,
+    controller: bik.papers.ZNNBAS,
     *,
     seed: int,
     start: Array = HOME,

@@ -54,7 +54,7 @@ def theorem(context: Context) -> Part:
     """Both algorithms, on a point and on the M; and long runs with both antennae."""
     variants = {
         "always: eq. (14), (15)": PUBLISHED,
-        "improving: the proof": bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10, accept="improving"),
+        "improving: the proof": bik.papers.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10, accept="improving"),
     }
     point = bik.paths.from_function(lambda _: _POINT, _STILL)
     runs = {

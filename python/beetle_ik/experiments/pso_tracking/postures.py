@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import CircleSwarm, PlanarPosture, Robot, planar_posture
+from ... import Robot
+from ...papers import CircleSwarm, PlanarPosture, planar_posture
 from ...report import (
     BLUE,
     GREEN,

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import BeeColony, Genetic, Stop, minimize
+from ... import Stop, minimize
+from ...papers import BeeColony, Genetic
 from ..experiment import Context
 
 _Array = NDArray[np.float64]

@@ -180,10 +180,10 @@ def _quickest(case: _Case, size: int, repeats: int) -> bik.Plan:
     return min((case.run(size) for _ in range(repeats)), key=lambda plan: plan.elapsed)
 
 
-_SOLVERS: dict[str, type[bik.BeetleSwarm | bik.PSO | bik.Genetic]] = {
-    "TPBSO": bik.BeetleSwarm,
-    "PSO": bik.PSO,
-    "GA": bik.Genetic,
+_SOLVERS: dict[str, type[bik.papers.BeetleSwarm | bik.papers.PSO | bik.papers.Genetic]] = {
+    "TPBSO": bik.papers.BeetleSwarm,
+    "PSO": bik.papers.PSO,
+    "GA": bik.papers.Genetic,
 }
 
 
@@ -224,6 +224,6 @@ def _plan(links: int, name: str, members: int, iterations: int) -> bik.Plan:
 def _follow(points: int) -> bik.Plan:
     angle = np.linspace(0.0, 2 * np.pi, points)
     circle = np.column_stack((1.0 + 0.4 * np.cos(angle), 1.0 + 0.4 * np.sin(angle), 0.0 * angle))
-    solver = bik.BeetleSwarm(stall_generations=None)
+    solver = bik.papers.BeetleSwarm(stall_generations=None)
     stop = bik.Stop(max_evaluations=3000)
     return plan_along(THREE_LINKS, circle, "time", limits=ALONG_PATH, accuracy=0.02, solver=solver, stop=stop)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-Solver: TypeAlias = bik.BeetleSwarm | bik.PSO | bik.Genetic | bik.DifferentialEvolution
+Solver: TypeAlias = bik.papers.BeetleSwarm | bik.papers.PSO | bik.papers.Genetic | bik.DifferentialEvolution
 Objective: TypeAlias = Literal["time", "joint_travel", "tip_travel"]
 
 PAPERS_ELBOWS = (1, 1)  # the arccosine of eq. (1) is never negative
@@ -34,7 +34,7 @@ def plan_between(
         robot,
         start,
         end,
-        method=bik.TPBSO(elbows=elbows, solver=solver),
+        method=bik.papers.TPBSO(elbows=elbows, solver=solver),
         objective=objective,
         limits=limits,
         obstacles=obstacles,
@@ -58,7 +58,7 @@ def plan_along(
     return bik.plan_along_path(
         robot,
         path,
-        method=bik.TPBSO(solver=solver),
+        method=bik.papers.TPBSO(solver=solver),
         objective=objective,
         limits=limits,
         accuracy=accuracy,

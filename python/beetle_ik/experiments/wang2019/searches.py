@@ -81,15 +81,15 @@ class Search:
 # The library's defaults. The paper prints no constants of its swarm: the defaults were chosen on these motions, among
 # some 150 settings. PSO has the constants of Clerc and Kennedy, the genetic algorithm mostly MATLAB's.
 USUAL = (
-    Search("TPBSO", bik.BeetleSwarm(stall_generations=None), BLUE),
-    Search("PSO", bik.PSO(population=POPULATION, stall_generations=None), VERMILION),
-    Search("GA", bik.Genetic(population=POPULATION, stall_generations=None), PURPLE),
+    Search("TPBSO", bik.papers.BeetleSwarm(stall_generations=None), BLUE),
+    Search("PSO", bik.papers.PSO(population=POPULATION, stall_generations=None), VERMILION),
+    Search("GA", bik.papers.Genetic(population=POPULATION, stall_generations=None), PURPLE),
 )
 # The winners that `python -m beetle_ik.experiments.wang2019.tuning` prints.
 TUNED = (
     Search(
         "TPBSO",
-        bik.BeetleSwarm(
+        bik.papers.BeetleSwarm(
             population=40,
             inertia=0.808,
             c1=0.505,
@@ -103,10 +103,10 @@ TUNED = (
         ),
         BLUE,
     ),
-    Search("PSO", bik.PSO(population=50, stall_generations=None), VERMILION),  # its defaults
+    Search("PSO", bik.papers.PSO(population=50, stall_generations=None), VERMILION),  # its defaults
     Search(
         "GA",
-        bik.Genetic(
+        bik.papers.Genetic(
             population=80,
             elite_share=0.186,
             crossover_share=0.328,

@@ -60,7 +60,7 @@ class _Draw:
 
 
 def _beetles(draw: _Draw) -> Solver:
-    return bik.BeetleSwarm(
+    return bik.papers.BeetleSwarm(
         population=draw.population(),
         inertia=draw.between(0.4, 0.9),
         c1=draw.between(0.5, 2.5),
@@ -76,7 +76,7 @@ def _beetles(draw: _Draw) -> Solver:
 
 
 def _particles(draw: _Draw) -> Solver:
-    return bik.PSO(
+    return bik.papers.PSO(
         population=draw.population(),
         form="inertia",
         inertia=draw.between(0.4, 0.9),
@@ -88,7 +88,7 @@ def _particles(draw: _Draw) -> Solver:
 
 
 def _genes(draw: _Draw) -> Solver:
-    return bik.Genetic(
+    return bik.papers.Genetic(
         population=draw.population(),
         elite_share=draw.between(0.05, 0.2),
         crossover_share=draw.between(0.3, 0.95),
@@ -111,9 +111,9 @@ def _vectors(draw: _Draw) -> Solver:
 
 
 SEARCHES: dict[str, tuple[Solver, Callable[[_Draw], Solver]]] = {
-    "TPBSO": (bik.BeetleSwarm(stall_generations=None), _beetles),
-    "PSO": (bik.PSO(population=50, stall_generations=None), _particles),
-    "GA": (bik.Genetic(population=50, stall_generations=None), _genes),
+    "TPBSO": (bik.papers.BeetleSwarm(stall_generations=None), _beetles),
+    "PSO": (bik.papers.PSO(population=50, stall_generations=None), _particles),
+    "GA": (bik.papers.Genetic(population=50, stall_generations=None), _genes),
     "DE": (bik.DifferentialEvolution(population=50, stall_generations=None), _vectors),
 }
 """The defaults of each search, and how other settings are drawn."""

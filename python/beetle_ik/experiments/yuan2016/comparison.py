@@ -18,7 +18,7 @@ from .task import ROBOT, Motion, curvatures, error, reach
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-Solver: TypeAlias = bik.APPS | bik.NewtonRaphson | bik.JacobianTranspose | bik.LevenbergMarquardt
+Solver: TypeAlias = bik.papers.APPS | bik.NewtonRaphson | bik.JacobianTranspose | bik.LevenbergMarquardt
 
 TITLE = "Beside Newton-Raphson"
 _SLOW_TRANSPOSE = bik.JacobianTranspose(step_size=0.005)
@@ -29,8 +29,8 @@ _FREE = bik.Limits(lower=-np.inf, upper=np.inf)
 _POINTS = 45  # of a convergence curve
 
 _METHODS: dict[str, Solver] = {
-    "APPS, as published": bik.APPS(learning_rate=0.2, step_limit=float(np.radians(1.0))),
-    "APPS, automatic rate": bik.APPS(),
+    "APPS, as published": bik.papers.APPS(learning_rate=0.2, step_limit=float(np.radians(1.0))),
+    "APPS, automatic rate": bik.papers.APPS(),
     "Jacobian transpose": bik.JacobianTranspose(),
     "Newton-Raphson": bik.NewtonRaphson(),
     "Levenberg-Marquardt": bik.LevenbergMarquardt(),
@@ -65,7 +65,7 @@ def comparison(context: Context, runs: list[Motion]) -> Part:
     full = newton[1.0]
     transpose = [_solve(run, _SLOW_TRANSPOSE, _TOLERANCE, NEWTON_ITERATIONS) for run in runs]
     repeats = context.pick(full=20, short=3)
-    times = [_quickest(partial(reach, run.goal, run.start, bik.APPS.paper()), repeats) for run in runs]
+    times = [_quickest(partial(reach, run.goal, run.start, bik.papers.APPS.paper()), repeats) for run in runs]
     newton_times = [
         _quickest(partial(_solve, run, bik.NewtonRaphson(), _TOLERANCE, NEWTON_ITERATIONS), repeats) for run in runs
     ]

@@ -56,7 +56,7 @@ joint of the last motion passes 360° on its way and is brought back by eq. (12)
 
 def replay() -> list[Motion]:
     """The motions with the paper's parameters."""
-    return run_all(bik.APPS.paper())
+    return run_all(bik.papers.APPS.paper())
 
 
 def motions(runs: list[Motion]) -> Part:

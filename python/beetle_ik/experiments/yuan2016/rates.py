@@ -100,7 +100,7 @@ def best_rate_claim(solved: dict[float, int]) -> Claim:
 
 def _counts(rate: float, factor: float) -> list[int | None]:
     """Iterations of each motion; None where the budget ends first."""
-    solver = bik.APPS(learning_rate=rate * factor, step_limit=_DEGREE, error_threshold=THRESHOLD / factor)
+    solver = bik.papers.APPS(learning_rate=rate * factor, step_limit=_DEGREE, error_threshold=THRESHOLD / factor)
     starts = np.radians(np.vstack([START, R2[:-1]]))
     found = [reach_one(target(i), start, solver) for i, start in enumerate(starts)]
     return [None if each.iterations >= BUDGET else each.iterations for each in found]
@@ -119,7 +119,9 @@ def _draw(eigenvalues: list[float], anywhere: list[float]) -> Drawing:
     return figure
 
 
-Solver: TypeAlias = bik.APPS | bik.JacobianTranspose | bik.NewtonRaphson | bik.LevenbergMarquardt | bik.MultiStart
+Solver: TypeAlias = (
+    bik.papers.APPS | bik.JacobianTranspose | bik.NewtonRaphson | bik.LevenbergMarquardt | bik.MultiStart
+)
 _FIXED = (0.2, 0.15, 0.13, 0.1, 0.05)
 _PATIENCE = 20_000  # iterations
 _NEARLY_ALL = 95.0  # %
@@ -129,16 +131,16 @@ _PAPER, _AUTO = "APPS, η = 0.2 (the paper's)", "APPS, automatic rate"
 
 def _solvers() -> dict[str, Solver]:
     fixed = {
-        (_PAPER if rate == 0.2 else f"APPS, η = {rate}"): bik.APPS(learning_rate=rate, step_limit=_DEGREE)
+        (_PAPER if rate == 0.2 else f"APPS, η = {rate}"): bik.papers.APPS(learning_rate=rate, step_limit=_DEGREE)
         for rate in _FIXED
     }
     return {
         **fixed,
-        _AUTO: bik.APPS(),
+        _AUTO: bik.papers.APPS(),
         "Jacobian transpose": bik.JacobianTranspose(),
         "Newton-Raphson": bik.NewtonRaphson(),
         "Levenberg-Marquardt, one start": bik.LevenbergMarquardt(),
-        "APPS from many starts": bik.MultiStart(bik.APPS()),
+        "APPS from many starts": bik.MultiStart(bik.papers.APPS()),
         "Levenberg-Marquardt from many starts (the default)": bik.MultiStart(bik.LevenbergMarquardt()),
     }
 
@@ -152,7 +154,7 @@ def reach(context: Context) -> Part:
     late: dict[str, float] = {}
     for name, solver in context.each("yuan2016: random targets", list(_solvers().items())):
         shares[name] = [_share(goals, starts, solver, limits, BUDGET) for limits in (_ANYWHERE, None)]
-        if patient and isinstance(solver, bik.APPS):
+        if patient and isinstance(solver, bik.papers.APPS):
             late[name] = _share(goals[:patient], starts[:patient], solver, _ANYWHERE, _PATIENCE)
     section = Section(
         REACH,

@@ -121,7 +121,7 @@ def start_claim(elsewhere: float, straight: float) -> Claim:
 
 def _approach(run: Motion) -> Approach:
     ends = range(0, run.solution.iterations + 1, _EVERY)
-    ways = [run.start, *(reach(run.goal, run.start, bik.APPS.paper(), budget=end).q for end in ends[1:])]
+    ways = [run.start, *(reach(run.goal, run.start, bik.papers.APPS.paper(), budget=end).q for end in ends[1:])]
     return Approach(run.name, np.array([_smallest(q) for q in ways]), run.solution.success)
 
 
@@ -134,7 +134,7 @@ def _share(goals: Array, starts: Array) -> float:
         ROBOT,
         goals,
         starts=starts,
-        solver=bik.APPS(),
+        solver=bik.papers.APPS(),
         limits=bik.Limits(lower=-np.inf, upper=np.inf),
         position_tolerance=TOLERANCE,
         rotation_tolerance=TOLERANCE,

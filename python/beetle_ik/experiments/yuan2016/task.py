@@ -41,7 +41,7 @@ def curvatures(q: Array) -> Array:
     return curvature
 
 
-def reach(goal: Array, start: Array, solver: bik.APPS, *, budget: int = BUDGET) -> bik.Solution:
+def reach(goal: Array, start: Array, solver: bik.papers.APPS, *, budget: int = BUDGET) -> bik.Solution:
     """Send APPS from `start` (rad) to `goal`; more than its threshold asks is not needed to count as solved."""
     return bik.solve(
         ROBOT,
@@ -72,7 +72,7 @@ class Motion:
         return rounded
 
 
-def run_all(solver: bik.APPS) -> list[Motion]:
+def run_all(solver: bik.papers.APPS) -> list[Motion]:
     """All motions, each from where the robot stands after the last."""
     start = START
     motions = []

@@ -114,4 +114,4 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
 def _count_with_x(run: Motion, motion: int) -> int:
     """Iterations of a motion to the x that Table 2 prints."""
     goal = target(motion, [MISPRINTED_X, *TARGETS[motion, 1:]])
-    return reach(goal, run.start, bik.APPS.paper()).iterations
+    return reach(goal, run.start, bik.papers.APPS.paper()).iterations

@@ -1,6 +1,6 @@
 //! The equation a cos q + b sin q = c: a line that meets the unit circle. Subproblems 2, 3 and 4 come down to it.
 
-use super::{CLAMP, NEARLY_DOUBLE, SMALL_LEVER, Turns};
+use super::{CLAMP, NEAR_MISS, NEARLY_DOUBLE, SMALL_LEVER, Turns};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 
@@ -33,6 +33,7 @@ pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
     let square = a * a + b * b;
     let mut turns = Turns::NONE;
     if radicand < -CLAMP * square {
+        turns.near_miss = radicand > -NEAR_MISS * square;
         return turns;
     }
     if radicand < NEARLY_DOUBLE * square {

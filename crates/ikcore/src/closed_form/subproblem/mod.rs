@@ -26,6 +26,9 @@ pub const CLAMP: f64 = 1e-4;
 /// Radicand, relative to its terms, below which two solutions are nearly one: they lie within a thousandth of a radian.
 pub const NEARLY_DOUBLE: f64 = 1e-6;
 
+/// Negative radicand, relative to its terms, up to which a root before it that is in doubt may make a solution of none.
+pub const NEAR_MISS: f64 = 0.02;
+
 /// Multiple of the rounding of a lever below which a pose within the tolerances of a caller may have solutions where this one has
 /// none.
 pub const SMALL_LEVER: f64 = 1e6;
@@ -39,14 +42,17 @@ pub struct Turns<const N: usize> {
     pub free: bool,
     /// How sure it is that there are no others.
     pub doubt: Doubt,
+    /// There is none, but only just.
+    pub near_miss: bool,
 }
 
 impl<const N: usize> Turns<N> {
     /// No solution.
-    pub const NONE: Self = Self { turns: [Angle::NONE; N], count: 0, free: false, doubt: Doubt::None };
+    pub const NONE: Self =
+        Self { turns: [Angle::NONE; N], count: 0, free: false, doubt: Doubt::None, near_miss: false };
 
-    /// Every angle: zero stands for all.
-    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Beside };
+    /// Every angle: zero stands for all, though others may lead further.
+    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Open, near_miss: false };
 
     /// Adds a solution; ignored when full.
     #[inline(always)]

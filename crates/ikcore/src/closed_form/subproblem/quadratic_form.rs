@@ -5,7 +5,7 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::trigonometric::Polynomial;
 
-/// Rounding of the coefficients, relative to their size: zeros that it can hide or merge are listed as one.
+/// Rounding of the coefficients, relative to the terms that they are sums of: zeros that it can hide or merge are listed as one.
 const NOISE: f64 = 1e-13;
 
 /// w' F w = 0 for w = (1, cos q, sin q): a conic that meets the unit circle in at most four points.
@@ -13,6 +13,8 @@ const NOISE: f64 = 1e-13;
 pub struct QuadraticForm {
     /// Upper triangle: 11, 1c, 1s, cc, cs, ss.
     entries: [f64; 6],
+    /// Size of the terms that were added: where they cancel, their rounding is what is left.
+    scale: f64,
 }
 
 /// constant + cos * cos q + sin * sin q.
@@ -29,12 +31,14 @@ impl QuadraticForm {
         e[3] += factor * (p[1] * q[1]);
         e[4] += factor * (p[1] * q[2] + p[2] * q[1]);
         e[5] += factor * (p[2] * q[2]);
+        self.scale += factor.abs() * size(p) * size(q);
     }
 
     /// Adds the linear function p.
     #[inline(always)]
     pub fn add_linear(&mut self, p: &Linear) {
         (0..3).for_each(|k| self.entries[k] += p[k]);
+        self.scale += size(p);
     }
 
     /// The angles of its zeros on the unit circle, double roots included.
@@ -43,11 +47,11 @@ impl QuadraticForm {
         // cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
         let cosines = [one + 0.5 * (cc + ss), c, 0.5 * (cc - ss)];
         let polynomial = Polynomial { cosines, sines: [0.0, s, 0.5 * cs] };
-        let zeros = polynomial.zeros::<4>(NOISE * polynomial.size());
+        let zeros = polynomial.zeros::<4>(NOISE * self.scale);
         let mut turns = Turns::NONE;
         zeros.iter().for_each(|root| turns.push(*root));
         // Coefficients that are off by as much as those of a pose within tolerances have the same zeros, or others.
-        let nearby = polynomial.zeros::<4>(NEARLY_DOUBLE * polynomial.size());
+        let nearby = polynomial.zeros::<4>(NEARLY_DOUBLE * self.scale);
         turns.doubt = match zeros.settled && nearby.settled {
             true if nearby.possible == turns.len() => Doubt::None,
             true if nearby.possible <= turns.len() => Doubt::Beside,
@@ -56,6 +60,12 @@ impl QuadraticForm {
         };
         turns
     }
+}
+
+/// A bound of |p|, but for a factor.
+#[inline(always)]
+fn size(p: &Linear) -> f64 {
+    p[0].abs() + p[1].abs() + p[2].abs()
 }
 
 /// Subproblem 6: (x, y) with m (cos y, sin y) = r(x), where both entries of r are linear in (1, cos x, sin x).

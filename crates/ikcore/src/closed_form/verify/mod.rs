@@ -78,6 +78,9 @@ impl<const N: usize> Verifier<N> {
             }
             first += LANES;
         }
+        if candidates.count == 0 {
+            found.doubt.add_dead_end();
+        }
         found
     }
 

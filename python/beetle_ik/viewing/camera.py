@@ -1,0 +1,91 @@
+"""From where a page and a recording are seen first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import viser
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+FIELD = 0.8  # rad: the vertical field of view
+_FROM = np.array([1.05, 0.9, 0.45])  # from where it looks, as a fraction of what it looks at
+_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of what it looks at: the controls cover that side of the page
+_MARGIN, _ASPECT = 1.08, 1.3  # of a recording: distance over the least one, width over height of narrow frames
+_UPRIGHT, _BELOW = 0.75, 0.24  # of an upright window: distance, and how much of its height the arm is above the middle
+_NARROWEST = 0.3  # width over height of a window; a camera for a narrower one would be far away
+
+
+class Camera:
+    """The first camera of visitors.
+
+    It is `server.initial_camera`, unless the window of a visitor is upright: there the controls cover the lower half,
+    and the camera looks from farther away, so that the width fits, and below the arm, so that it is in the upper half.
+    """
+
+    def __init__(self, server: viser.ViserServer, low: Array, high: Array, size: float) -> None:
+        """Looks at a box with the corners `low` and `high` (3,), of which `size` (m) is to fit into the window."""
+        self._server = server
+        self._middle, self._size = 0.5 * (low + high), size
+        look = self._middle + _ASIDE * size
+        self._aim(look, look + _FROM * size)
+        server.on_client_connect(self._turn)
+
+    @contextmanager
+    def recording(self, boxes: Array) -> Iterator[None]:
+        """Looks at boxes (k, 2, 3) while they are recorded, from near: a recording has no controls."""
+        if self._chosen:
+            yield
+            return
+        first = self._server.initial_camera
+        before = (first.look_at, first.position)
+        try:
+            look = 0.5 * (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0))
+            self._aim(look, look + _fitting(_corners(boxes) - look))
+            yield
+        finally:
+            self._aim(*before)
+
+    @property
+    def _chosen(self) -> bool:
+        """Whether the user chose another camera."""
+        first = self._server.initial_camera
+        return first.look_at is not self._set[0] or first.position is not self._set[1]
+
+    def _aim(self, look: Array, position: Array) -> None:
+        first = self._server.initial_camera
+        first.look_at, first.position, first.fov = look, position, FIELD
+        self._set = (first.look_at, first.position)
+
+    def _turn(self, client: viser.ClientHandle) -> None:
+        seen = client.camera
+        narrow = max(seen.image_width / max(seen.image_height, 1), _NARROWEST)
+        if narrow >= 1.0 or self._chosen:
+            return
+        away = _UPRIGHT * self._size / narrow * _FROM
+        below = _BELOW * 2.0 * float(np.linalg.norm(away)) * np.tan(0.5 * FIELD)
+        look = self._middle - [0.0, 0.0, below]
+        seen.position = look + away  # viser moves the other along
+        seen.look_at = look
+
+
+def _corners(boxes: Array) -> Array:
+    """Returns the corners (8 k, 3) of boxes (k, 2, 3)."""
+    choices = np.indices((2, 2, 2)).reshape(3, -1).T
+    return boxes[:, choices, np.arange(3)].reshape(-1, 3)
+
+
+def _fitting(points: Array) -> Array:
+    """Returns from where (3,) points (k, 3) about the origin fill the window."""
+    toward = _FROM / np.linalg.norm(_FROM)
+    right = np.cross([0.0, 0.0, 1.0], toward)
+    right /= np.linalg.norm(right)
+    across = np.maximum(np.abs(points @ np.cross(toward, right)), np.abs(points @ right) / _ASPECT)
+    distance = float(np.max(points @ toward + across / np.tan(0.5 * FIELD)))
+    return np.asarray(_MARGIN * distance * toward)
