@@ -47,7 +47,7 @@ def worded(error: Exception, call: Any, arguments: tuple[Any, ...], keywords: Ma
     signature = _signature(call)
     if signature is None:
         return error
-    name = call.__name__
+    name = _name(call)
     for note in getattr(error, "__notes__", ()):
         if of_type := _MISFIT.search(note):
             return CallError(_misfit_of(call, signature, of_type[1], error, _given(signature, arguments, keywords)))
@@ -73,6 +73,11 @@ def worded_call(function: Callable[_Arguments, _Made]) -> Callable[_Arguments, _
             raise worded(error, function, arguments, keywords) from None
 
     return call
+
+
+def _name(call: Any) -> str:
+    """Returns the name of a function, or of the class that a constructor makes."""
+    return str(call.__name__ if call.__name__ != "__init__" else call.__qualname__.split(".")[-2])
 
 
 def _signature(call: Any) -> inspect.Signature | None:
@@ -115,7 +120,7 @@ def _misfit_of(
     message, kind = misfit(argument, given.get(argument), error), _kind(str(error))
     swapped = any(type(value).__name__ == kind for name, value in given.items() if name != argument)
     if swapped and argument in _positional(signature):
-        return f"{message}; the order is {call.__name__}{_shape(signature)}"
+        return f"{message}; the order is {_name(call)}{_shape(signature)}"
     default = signature.parameters[argument].default
     return f"{message} (default: {default!r})" if kind == "str" and isinstance(default, str) else message
 
