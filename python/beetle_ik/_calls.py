@@ -11,8 +11,6 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-import numpy as np
-
 from ._core import CallError
 from ._names import meant
 
@@ -144,8 +142,9 @@ def _robot_from(text: str) -> str:
 
 def shown(value: object) -> str:
     """Returns the repr of a value on one line, cut where it is long; of an array its shape."""
-    if isinstance(value, np.ndarray) and value.ndim > 0:
-        return f"an array of shape {value.shape}"
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple) and shape:
+        return f"an array of shape {shape}"
     try:
         text = " ".join(repr(value).split())
     except Exception:  # of a class of the caller
