@@ -6,14 +6,15 @@ Writes docs/static/pictures/NAME.webp; docs/extensions/recorded_scenes.py has th
 playwright and Chromium.
 """
 
+import importlib
 import io
 import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
 from check_site import served
+from PIL import Image
 from viewer_pictures import visits
 
 from beetle_ik.viewing import write_player
@@ -40,8 +41,7 @@ def take(browser: Any, address: str, name: str) -> bytes:
 
 def main() -> None:
     """Takes the pictures that are named, or all."""
-    import recorded_scenes
-
+    recorded_scenes = importlib.import_module("recorded_scenes")
     PICTURES.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         site = Path(folder)
