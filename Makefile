@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo campaign soak test-sdist test-aarch64 miri audit lint lint-rust lint-python \
+.PHONY: help demo test test-rust test-python zoo campaign soak test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
     bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
@@ -15,7 +15,7 @@ help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "%-14s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 # The limit is that of the BAS paper. It exceeds the limits of the real arm in four joints; the command says so.
-demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
+demo: $(VENV)/with-cli,plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
 	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
 
@@ -48,6 +48,20 @@ test-sdist: $(BIN)/maturin  ## the source distribution and the crates build and 
 	cd target/sdist && tar xzf beetle_ik-*.tar.gz && cd beetle_ik-*/ && $(PYTHON) -m venv .venv \
 	    && .venv/bin/pip install --quiet --disable-pip-version-check '.[test]' && .venv/bin/python -m pytest
 	cargo package --workspace --locked
+
+# The wheel is built from the unpacked source distribution, against the glibc that docs/stability.md promises: zig brings it.
+PORTABLE = $(if $(filter Linux,$(shell uname -s)),--zig --compatibility manylinux_2_28)
+release-check: $(BIN)/maturin  ## a dry run of a release: the source distribution builds alone; metadata, tag and licences of the wheel
+	$(PYTHON) tools/third_party.py --check
+	rm -rf target/release-check
+	$(BIN)/pip install --quiet --disable-pip-version-check 'maturin[zig]>=1.10,<2' 'twine>=6'
+	$(BIN)/maturin sdist --out target/release-check
+	tar xzf target/release-check/beetle_ik-*.tar.gz -C target
+	rm -rf target/release-source && mv target/beetle_ik-*/ target/release-source
+	. $(BIN)/activate && cd target/release-source && CARGO_TARGET_DIR=$(CURDIR)/target/release-build \
+	    maturin build --release $(PORTABLE) --interpreter python --out $(CURDIR)/target/release-check
+	$(BIN)/twine check --strict target/release-check/*
+	$(PYTHON) tools/check_wheel.py target/release-check
 
 # Debian and Ubuntu: apt install qemu-user gcc-aarch64-linux-gnu; rustup target add aarch64-unknown-linux-gnu.
 test-aarch64:  ## the tests of the core on an emulated 64-bit ARM processor

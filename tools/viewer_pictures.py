@@ -57,7 +57,7 @@ class Visitor:
         """Closes the note that this browser draws without a graphics card."""
         note = self.page.locator(".mantine-Notification-root", has_text="Software WebGL")
         if note.count():
-            note.locator("button").click()
+            note.locator("button").dispatch_event("click")  # a click would wait until the page draws quickly
             note.wait_for(state="detached")
 
     def until(self, happened: Callable[[], object]) -> None:
@@ -155,8 +155,8 @@ START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
 
 
 def panda() -> bik.Robot:
-    """Returns a Panda with meshes."""
-    return bik.Robot.from_urdf(ROBOTS / "panda_description/urdf/panda.urdf", tip="panda_hand_tcp", collision="hulls")
+    """Returns the Panda of `docs/viewer.md`."""
+    return bik.Robot.named("panda").with_capsules(radius=0.06)
 
 
 def dragged(browser: Any, file: Path) -> None:
@@ -172,7 +172,7 @@ def dragged(browser: Any, file: Path) -> None:
 
 def solved(browser: Any, file: Path) -> None:
     """Pictures all solutions of a pose."""
-    robot = bik.Robot.from_urdf(ROBOTS / "ur_description/urdf/ur5_robot.urdf", tip="tool0", collision="hulls")
+    robot = bik.Robot.named("ur5").with_capsules(radius=0.05)
     target = bik.pose([0.45, -0.3, 0.5], rpy=[np.pi / 2, 0.0, 1.0])
     with bik.view(robot, bik.solve(robot, target, obstacles=[]).q, port=0) as viewer:
         visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
@@ -201,6 +201,14 @@ def played(browser: Any, file: Path) -> None:
         visitor.picture(file)
 
 
+def mapped(browser: Any, file: Path) -> None:
+    """Pictures a slice of a map of reach."""
+    robot = bik.Robot.named("ur5e")
+    with bik.view(robot, START[:6], port=0) as viewer:
+        viewer.show(bik.reachability(robot, voxel=0.05))
+        Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT).picture(file)
+
+
 def paired(browser: Any, file: Path) -> None:
     """Pictures a robot with two arms, after one of its handles was dragged."""
     file_of_robot = ROBOTS / "baxter_description/urdf/baxter.urdf"
@@ -218,7 +226,7 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out
     with visits() as browser:
-        for draw in (dragged, solved, played, paired):
+        for draw in (dragged, solved, played, mapped, paired):
             draw(browser, out / f"viewer_{draw.__name__}.png")
 
 

@@ -12,15 +12,18 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
 """
 
 import logging
+import warnings
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import filters, goals, interop, obstacles, papers, paths, plot, tasks, vision
+from . import filters, goals, obstacles, papers, paths, tasks
 from ._core import (
     BatchPlan,
     BatchSolution,
     BeetleIkError,
     Body,
     BroydenBAS,
+    CallError,
     ControlSession,
     DifferentialEvolution,
     InfeasibleError,
@@ -70,9 +73,12 @@ from ._core import (
     track_model_free,
 )
 from ._scene import Scene
-from ._versions import show_versions
-from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
-from .viewing import Viewer, view
+
+if TYPE_CHECKING:
+    from . import interop, plot, vision
+    from ._versions import show_versions
+    from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
+    from .viewing import Viewer, view
 
 # Silent unless the application configures logging.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
@@ -84,6 +90,7 @@ __all__ = [
     "BeetleIkError",
     "Body",
     "BroydenBAS",
+    "CallError",
     "ControlSession",
     "DifferentialEvolution",
     "InfeasibleError",
@@ -150,6 +157,20 @@ __all__ = [
     "vision",
 ]
 
+# Imported when they are first used, and where they are: `import beetle_ik` stays quick.
+_LATER = {
+    "interop": "interop",
+    "plot": "plot",
+    "vision": "vision",
+    "show_versions": "_versions",
+    "BasePlacement": "mapping",
+    "InverseReachabilityMap": "mapping",
+    "ReachabilityMap": "mapping",
+    "best_base": "mapping",
+    "reachability": "mapping",
+    "Viewer": "viewing",
+    "view": "viewing",
+}
 
 # Results: annotations name them, calls do not.
 _MADE_BY_CALLS = frozenset(
@@ -183,14 +204,17 @@ def __dir__() -> list[str]:
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Returns a method of the papers under its old name."""
-        if name not in papers.__all__:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        import warnings
-
-        warnings.warn(
-            f"beetle_ik.{name} is now beetle_ik.papers.{name}; the old name goes in 0.3",
-            DeprecationWarning,
-            stacklevel=2,
-        )
-        return getattr(papers, name)
+        """Returns what is imported when it is first used, or a method of the papers under its old name."""
+        if name in _LATER:
+            module = import_module(f".{_LATER[name]}", __name__)
+            value = module if name == _LATER[name] else getattr(module, name)
+            globals()[name] = value
+            return value
+        if name in papers.__all__:
+            warnings.warn(
+                f"beetle_ik.{name} is now beetle_ik.papers.{name}; the old name goes in 0.3",
+                DeprecationWarning,
+                stacklevel=2,
+            )
+            return getattr(papers, name)
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'", name=name, obj=import_module(__name__))

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from numbers import Integral
 from typing import Any
 
+from ._calls import example
 from ._core import InvalidInputError, Robot
 
 
@@ -11,7 +12,8 @@ def require(name: str, value: object, *kinds: type) -> None:
     """Raises `InvalidInputError` unless the value is an instance of one of `kinds`."""
     if not isinstance(value, kinds):
         wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
-        raise InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
+        made = example("Robot", value) if kinds == (Robot,) and isinstance(value, str) else ""
+        raise InvalidInputError(f"{name} must be {wanted}{made}, got {value!r:.60}")
 
 
 def require_one_tip(call: str, robot: Robot) -> None:

@@ -72,6 +72,11 @@ class UnsupportedLimit(LimitError):
 class InfeasibleError(InvalidInputError):
     """Requirements that contradict each other; the message names the two."""
 
+class CallError(InvalidInputError, TypeError):
+    """A call that does not fit its signature: an argument of the wrong type, one that is missing or unknown. Also a
+    `TypeError`, which Python raises there.
+    """
+
 # --- robots -------------------------------------------------------------------------------------
 
 @final
@@ -100,8 +105,8 @@ class Robot:
         `held_joints`.
 
         Args:
-            path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
-                extra "robots".
+            path_or_xml: a file, or text that contains "<". A file of xacro is expanded by the package xacro, of the extra
+                "robots".
             base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
             tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
                 several, q holds the joints of one chain after another, shared ones once.
@@ -163,17 +168,17 @@ class Robot:
         collision: Literal["primitives", "fit", "hulls"] | None = None,
         trusted: bool = False,
     ) -> Robot:
-        """Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
-        downloads it at first use. Needs the extra "robots".
+        """Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, such as
+        "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra "robots".
 
         Args:
-            name: a name of robot_descriptions.
+            name: a name of robot_descriptions; of example-robot-data, that of a folder or of a URDF.
             base, tip, hold: as in `from_urdf`.
             srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
             trusted: as in `from_urdf` and `from_mjcf`.
 
         Raises:
-            BeetleIkError: robot_descriptions is not installed.
+            BeetleIkError: robot_descriptions is not installed, or cannot download the description.
             UnknownNameError: no description of that name; the message names the nearest.
         """
     @staticmethod
@@ -219,7 +224,7 @@ class Robot:
         """
     @staticmethod
     def named(name: str) -> Robot:
-        """Returns a built-in robot; `Robot.names()` lists them.
+        """Returns a built-in robot; `Robot.names()` lists them. Names of descriptions are found too, see `from_description`.
 
         Raises:
             UnknownNameError: lists the names and suggests the nearest.

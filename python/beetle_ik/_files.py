@@ -1,16 +1,19 @@
 """Atomic writing: a file or folder appears complete, or not at all."""
 
+from __future__ import annotations
+
 import errno
 import logging
 import os
-import secrets
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from ._core import InvalidInputError
+
+if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
 
 _log = logging.getLogger(__name__)
 
@@ -36,7 +39,7 @@ def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     path = path_of(file)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "No such folder", str(path.parent))
-    unfinished = path.with_name(f".beetle-ik-{secrets.token_hex(8)}.part")
+    unfinished = path.with_name(f".beetle-ik-{os.urandom(8).hex()}.part")
     try:
         # "x" opens a new file or fails: neither a link nor a file of another thread is written.
         with unfinished.open("xb") as stream:
@@ -68,10 +71,12 @@ def whole_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
         raise
 
 
-def _staging(folder: Path, option: str) -> tempfile.TemporaryDirectory[str]:
+def _staging(folder: Path, option: str) -> TemporaryDirectory[str]:
     """Makes a temporary folder inside `folder`: on the same disk, each file moves atomically."""
+    from tempfile import TemporaryDirectory  # slow to import
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return tempfile.TemporaryDirectory(prefix=".beetle-ik-", dir=folder)
+        return TemporaryDirectory(prefix=".beetle-ik-", dir=folder)
     except OSError as error:
         raise InvalidInputError(f"{option}: folder '{folder}' cannot be written: {error.strerror}") from error

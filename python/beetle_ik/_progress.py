@@ -1,9 +1,16 @@
 """The progress bar behind `progress=True`, and the argument `progress` of calls in Python."""
 
+import os
+import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from datetime import timedelta
 
 from ._core import InvalidInputError
+
+_WIDTH = 40  # letters
+_INTERVAL = 0.1  # s between two drawings
 
 
 class Bar:
@@ -11,39 +18,31 @@ class Bar:
 
     def __init__(self) -> None:
         """Draws the bar, empty until the first `update`."""
-        from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TaskProgressColumn,
-            TextColumn,
-            TimeElapsedColumn,
-        )
-
-        console = Console(stderr=True)
-        columns = (
-            BarColumn(),
-            TaskProgressColumn(),
-            MofNCompleteColumn(),
-            TimeElapsedColumn(),
-            TextColumn("{task.description}"),
-        )
-        self._progress = Progress(*columns, console=console, disable=not console.is_terminal)
-        self._task = self._progress.add_task("", total=None)
-        self._progress.start()
+        self._drawn = sys.stderr is not None and sys.stderr.isatty()
+        self._begun, self._next = time.monotonic(), 0.0
+        self.update(0, 0)
 
     def update(self, done: int, total: int) -> None:
         """Shows that `done` of `total` steps are done."""
-        self._progress.update(self._task, completed=done, total=total)
+        self.show("", done, total)
 
     def show(self, what: str, done: int, total: int) -> None:
         """Shows the current activity, and that `done` of its `total` items are done."""
-        self._progress.update(self._task, description=what, completed=done, total=total)
+        now = time.monotonic()
+        if not self._drawn or (now < self._next and done != total):
+            return
+        self._next = now + _INTERVAL
+        share = done / total if total else 0.0
+        bar = "#" * round(_WIDTH * share)
+        line = f"{bar:.<{_WIDTH}} {share:4.0%} {done}/{total} {timedelta(seconds=int(now - self._begun))} {what}"
+        columns = max(os.get_terminal_size(sys.stderr.fileno()).columns - 1, 1)  # a broken line could not be drawn over
+        print(f"\r{line[:columns]:<{columns}}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
-        """Stops the bar and releases the terminal."""
-        self._progress.stop()
+        """Ends the line of the bar."""
+        if self._drawn:
+            self._drawn = False
+            print(file=sys.stderr)
 
 
 @contextmanager

@@ -122,6 +122,12 @@ class Scene(Sequence[Obstacle]):
     def __hash__(self) -> int:
         return hash(self._obstacles)
 
+    def _repr_html_(self) -> str:
+        """Shows the obstacles in a notebook."""
+        from ._html import scene
+
+        return scene(self._obstacles)
+
     def __repr__(self) -> str:
         if len(self) > _WRITTEN_OUT:
             return f"<Scene: {len(self)} obstacles>"

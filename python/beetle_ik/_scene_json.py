@@ -20,6 +20,7 @@ import numpy as np
 from . import obstacles
 from ._core import BeetleIkError, InvalidInputError, Obstacle
 from ._files import path_of, whole_file
+from ._names import meant
 
 VERSION = 1
 
@@ -77,6 +78,8 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
         scene = json.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise InvalidInputError(f"{where}: not JSON: {_not_json(error)}") from error
     except (ValueError, RecursionError) as error:  # also integers of thousands of digits
         raise InvalidInputError(f"{where}: not JSON: {error}") from error
     shapes = scene
@@ -86,8 +89,20 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
     if not isinstance(shapes, list):
         raise InvalidInputError(f'{where}: expected a list of shapes, or an object with such a list as "obstacles"')
     if isinstance(scene, dict) and (unknown := scene.keys() - {"version", "obstacles"}):
-        raise InvalidInputError(f'{where}: unknown key {min(unknown)!r:.60}; keys: "version", "obstacles"')
+        key = min(unknown)
+        raise InvalidInputError(
+            f'{where}: unknown key {key!r:.60}{meant(key, ["version", "obstacles"])}; keys: "version", "obstacles"'
+        )
     return [_shape(f"{where}: obstacle {i}", shape) for i, shape in enumerate(shapes)]
+
+
+def _not_json(error: json.JSONDecodeError) -> str:
+    """Says what is not JSON; a comma before a bracket, which other formats allow, by its name."""
+    before = error.doc[: error.pos].rstrip()
+    if before.endswith(",") and error.doc[error.pos :].lstrip()[:1] in ("]", "}"):
+        comma = len(before) - 1
+        return f"a comma after the last entry, line {error.doc.count(chr(10), 0, comma) + 1}: remove it"
+    return str(error)
 
 
 def _require_version(where: str, scene: dict[str, Any]) -> None:
@@ -106,10 +121,24 @@ def _shape(where: str, shape: Any) -> Obstacle:
         raise InvalidInputError(f'{where}: expected an object with a "type", one of {types}')
     kind = _SHAPES.get(shape["type"]) if isinstance(shape["type"], str) else None
     if kind is None:
-        raise InvalidInputError(f"{where}: unknown type {shape['type']!r:.60}; types: {types}")
+        near = meant(str(shape["type"]), _SHAPES)
+        raise InvalidInputError(f"{where}: unknown type {shape['type']!r:.60}{near}; types: {types}")
     arguments = {name: value for name, value in shape.items() if name != "type"}
+    where = f"{where} ({shape['type']})"
+    _require_keys(where, arguments, inspect.signature(kind))
     try:
-        inspect.signature(kind).bind(**arguments)
         return kind(**arguments)
-    except (TypeError, BeetleIkError) as error:
-        raise InvalidInputError(f"{where} ({shape['type']}): {error}") from error
+    except BeetleIkError as error:
+        raise InvalidInputError(f"{where}: {error}") from error
+
+
+def _require_keys(where: str, arguments: dict[str, Any], signature: inspect.Signature) -> None:
+    """Checks that all keys are arguments of the shape, and that none is missing."""
+    known = list(signature.parameters)
+    keys = f"keys: {', '.join(known)}"
+    if unknown := arguments.keys() - set(known):
+        key = min(unknown)
+        raise InvalidInputError(f"{where}: unknown key {key!r:.60}{meant(key, known)}; {keys}")
+    for name, parameter in signature.parameters.items():
+        if parameter.default is inspect.Parameter.empty and name not in arguments:
+            raise InvalidInputError(f"{where}: the key '{name}' is missing; {keys}")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _THICK, _THIN = 0.042, 0.030  # radii at base and tip, as fractions of the length of the skeleton
 _AROUND = 24  # corners of a circle
-_ARC = 4  # points of a rounded edge
+_ARC = 3  # points of a rounded edge
 _BEYOND = 1.12  # how far a link along an axis goes beyond what crosses it, as a fraction of its radius
 _SHORTEST = 1e-6  # m, of an arm that can be drawn
 _DARK = "#3A3F47"

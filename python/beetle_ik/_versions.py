@@ -3,11 +3,11 @@
 import os
 import platform
 from collections.abc import Iterator
-from importlib.metadata import PackageNotFoundError, version
 
 from ._core import __version__, _instructions
 
 EXTRAS = {
+    "cli": ["rich", "typer"],
     "distributed": ["dask", "distributed", "zarr"],
     "interop": ["pandas"],
     "plot": ["matplotlib"],
@@ -32,13 +32,14 @@ def versions() -> Iterator[tuple[str, str]]:
     yield "Python", f"{platform.python_version()} ({platform.python_implementation()})"
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
     yield "CPU", f"{os.cpu_count()} threads, kernels with {_instructions} instructions"
-    for package in ("numpy", "typer"):
-        yield package, _installed(package)
+    yield "numpy", _installed("numpy")
     for extra, packages in EXTRAS.items():
         yield f"[{extra}]", ", ".join(f"{package} {_installed(package)}" for package in packages)
 
 
 def _installed(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version  # slow to import
+
     try:
         return version(package)
     except PackageNotFoundError:

@@ -13,7 +13,7 @@ from pair_of_pandas import pair_of_pandas
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 CIRCLE = [
     "--curve",
@@ -228,7 +228,7 @@ def test_a_path_file_may_have_times_or_a_duration(tmp_path: Path) -> None:
     [
         (
             ["fk", "--q", "0"],
-            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE",
+            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or a file, such as arm.urdf",
         ),
         (
             ["fk", "iiwa14", "--urdf", "arm.urdf", "--q", "0"],
@@ -236,7 +236,7 @@ def test_a_path_file_may_have_times_or_a_duration(tmp_path: Path) -> None:
         ),
         (
             ["fk", "iiwa14", "--tip", "x", "--q", "0"],
-            "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip",
+            "--base and --tip choose links of a file; the built-in robot 'iiwa14' has its own: leave them out",
         ),
         (["fk", "planar5", "--q", "0,0,x,0,0"], "--q: 'x' is not a number"),
         (

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 LIMITS = ["--velocity-limit", "1", "--acceleration-limit", "2"]
 

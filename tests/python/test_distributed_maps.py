@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import beetle_ik as bik
 from beetle_ik import distributed
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 UR5 = bik.Robot.named("ur5e").with_capsules(radius=0.05)
 BOX = bik.obstacles.Box((0.4, 0.0, 0.3), size=(0.2, 0.2, 0.2))

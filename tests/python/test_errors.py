@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from iiwa_circle import IIWA, START
-from mistakes import Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
+from mistakes import INSIDE, Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
 
 import beetle_ik as bik
 
@@ -90,9 +90,13 @@ def test_the_classes_of_errors() -> None:
         (
             lambda: solve(start=with_entry(0, 3.0)),
             Limit,
-            f"start: joint 'joint_a1' at 3 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 3 is outside its limits [-{TURN}, {TURN}]{INSIDE}",
         ),
-        (lambda: solve(solver="BAS"), Invalid, f"{SOLVERS}, got 'BAS'"),
+        (
+            lambda: solve(solver="BAS"),
+            Invalid,
+            f"{SOLVERS}, got 'BAS': give an object, such as bik.LevenbergMarquardt()",
+        ),
         (
             lambda: solve(solver=bik.papers.BAS),
             Invalid,
@@ -167,7 +171,8 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]: angles are in radians; "
+            "np.radians converts degrees",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
@@ -366,27 +371,40 @@ def test_rows_in_place_of_a_path_and_numbers_in_place_of_a_name_are_told() -> No
     assert str(caught.value) == f"name must be the name of a built-in robot, got 14; known robots: {names}"
 
 
-@pytest.mark.parametrize(
-    ("call", "message", "argument"),
+@told(
     [
-        (lambda: bik.solve("iiwa14", [0.3, 0.3, 1.0]), "'str' object is not an instance of 'Robot'", "robot"),
-        (lambda: track(limits=2.0), "'float' object is not an instance of 'Limits'", "limits"),
-        (lambda: solve(stop=5), "'int' object is not an instance of 'Stop'", "stop"),
-        (lambda: track(dt="0.1"), "must be real number, not str", "dt"),
-        (lambda: track(dt=None), "must be real number, not NoneType", "dt"),
-        (lambda: circle(diameter="wide"), "must be real number, not str", "diameter"),
         (
-            lambda: bik.papers.BAS(explorations=2.5),
-            "'float' object cannot be interpreted as an integer",
-            "explorations",
+            lambda: bik.solve("iiwa14", [0.3, 0.3, 1.0]),
+            bik.CallError,
+            "robot must be a Robot, such as Robot.named('iiwa14'), got 'iiwa14'",
         ),
-    ],
+        (
+            lambda: track(limits=2.0),
+            bik.CallError,
+            "limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got 2.0",
+        ),
+        (
+            lambda: solve(stop=5),
+            bik.CallError,
+            "stop must be a Stop, such as Stop(max_evaluations=1000), got 5",
+        ),
+        (lambda: track(dt="0.1"), bik.CallError, "dt must be a number, got '0.1'"),
+        (lambda: track(dt=None), bik.CallError, "dt must be a number, got None"),
+        (lambda: circle(diameter="wide"), bik.CallError, "diameter must be a number, got 'wide'"),
+        (lambda: bik.papers.BAS(explorations=2.5), bik.CallError, "explorations must be a whole number, got 2.5"),
+        (lambda: bik.Robot.planar([1, 1]).fk([0, 0], link=3), bik.CallError, "link must be text, got 3"),
+    ]
 )
-def test_a_wrong_type_is_told_with_its_argument(call: Callable[[], object], message: str, argument: str) -> None:
-    with pytest.raises(TypeError) as caught:
-        call()
-    assert str(caught.value) == message
-    assert caught.value.__notes__ == [f"while processing '{argument}'"]
+def test_a_wrong_type_is_told(call: Callable[[], object], error: type[Exception], message: str) -> None:
+    assert_told(call, error, message)
+
+
+def test_errors_of_functions_of_the_caller_pass_unchanged() -> None:
+    def fails(_: object) -> float:
+        raise TypeError("solve() got an unexpected keyword argument 'x'")
+
+    mine = "solve() got an unexpected keyword argument 'x'"
+    assert_told(lambda: bik.minimize(fails, [-1], [1], solver=bik.papers.BAS()), TypeError, mine)
 
 
 @pytest.mark.parametrize(

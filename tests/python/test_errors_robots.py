@@ -28,7 +28,11 @@ def dh(**fields: object) -> bik.Robot:
         ),
         (lambda: IIWA.fk([0.0] * 6), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: IIWA.jacobian([]), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 0"),
-        (lambda: IIWA.link_poses([0.0] * 8), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 8"),
+        (
+            lambda: IIWA.link_poses([0.0] * 8),
+            Invalid,
+            "joint angles of robot 'iiwa14': expected 7 joints (joint_a1 to joint_a7), got 8",
+        ),
         (lambda: IIWA.manipulability([0.0]), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 1"),
         (
             lambda: IIWA.fk(np.zeros((2, 6))),
@@ -83,7 +87,7 @@ def test_wrong_joint_positions_are_named(call: Callable[[], object], error: type
         (lambda: bik.Robot.named("zzz"), Unknown, f"no robot is named 'zzz'; known robots: {NAMES}"),
         (
             lambda: bik.Robot("iiwa14"),
-            TypeError,
+            bik.CallError,
             "a robot is made by Robot.named(name), Robot.from_urdf(path), Robot.from_dh(...) or Robot.planar(lengths)",
         ),
         (lambda: bik.Robot.planar([]), Invalid, "lengths of a planar arm: expected at least 1, got 0"),

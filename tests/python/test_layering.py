@@ -43,8 +43,8 @@ def test_only_the_command_line_imports_the_command_line(file: Path) -> None:
         assert not {name for name in everywhere if name.lstrip(".").split(".")[0] == "cli" or ".cli" in name}
 
 
-def test_import_loads_nothing_but_numpy() -> None:
+def test_import_loads_no_other_package() -> None:
     program = "import sys, beetle_ik; print(*{name.split('.')[0] for name in sys.modules})"
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
-    assert {"beetle_ik", "numpy"} <= set(loaded)
-    assert not {"typer", "rich", "matplotlib", "jinja2", "viser", "dask", "distributed", "zarr"} & set(loaded)
+    assert "beetle_ik" in loaded
+    assert not {"numpy", "typer", "rich", "matplotlib", "jinja2", "viser", "dask", "distributed", "zarr"} & set(loaded)

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 LIMITS = bik.Limits(velocity=1.5, acceleration=5.0, jerk=50.0)
 HOME = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])

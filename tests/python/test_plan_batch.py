@@ -103,8 +103,8 @@ WRONG: list[Case] = [
     ),
     (
         lambda: bik.plan_batch(PANDA, with_problem(start_q=READY, end_q=READY, margin="wide")),
-        TypeError,
-        "problems[1]: argument 'margin': must be real number, not str",
+        bik.CallError,
+        "problems[1]: margin must be a number, got 'wide'",
     ),
     (
         lambda: bik.plan_batch(PANDA, [READY[:2]]),  # type: ignore[list-item]

@@ -10,7 +10,7 @@ from coal_distance import distance_by_coal
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 ARM = bik.Robot.named("panda").with_capsules(radius=0.05)
 UR5 = bik.Robot.named("ur5e").with_capsules(radius=0.05)

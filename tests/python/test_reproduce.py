@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from beetle_ik import experiments
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 from beetle_ik.experiments import Context, Experiment
 from beetle_ik.report import Check, Claim, Report, Section, Verdict
 

@@ -50,7 +50,10 @@ def test_a_scene_holds_every_shape(scene: Path, whole: object) -> None:
         ('{"shapes": []}', 'expected a list of shapes, or an object with such a list as "obstacles"'),
         ("[1]", 'obstacle 0: expected an object with a "type", one of sphere, box, capsule'),
         ('[{"type": "cone"}]', "obstacle 0: unknown type 'cone'; types: sphere, box, capsule"),
-        ('[{"type": "sphere", "center": [0, 0, 0]}]', "obstacle 0 (sphere): missing a required argument: 'radius'"),
+        (
+            '[{"type": "sphere", "center": [0, 0, 0]}]',
+            "obstacle 0 (sphere): the key 'radius' is missing; keys: center, radius, touch",
+        ),
         ('[{"type": "sphere", "center": [0, 0], "radius": 1}]', "obstacle 0 (sphere): center: expected shape (3,)"),
         ('[{"type": "sphere", "center": [0, 0, 0], "radius": -1}]', "obstacle 0 (sphere): "),
         ('[{"type": "sphere", "center": [0, 0, NaN], "radius": 1}]', "obstacle 0 (sphere): "),

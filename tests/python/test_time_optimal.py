@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 SAMPLES = 10_000
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik.cli import app
+from beetle_ik.cli.app import app
 
 READY = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78])
 ROBOT = bik.Robot.named("panda").with_capsules(radius=0.05)

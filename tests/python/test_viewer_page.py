@@ -140,6 +140,67 @@ def test_a_motion_is_played_and_paused(viewer: bik.Viewer, visitor: Visitor) -> 
     visitor.enter(30, lambda: np.abs(viewer.q - START - 0.05).max() < 1e-9)
 
 
+def test_the_arm_plans_to_a_handle_it_does_not_follow(viewer: bik.Viewer, visitor: Visitor) -> None:
+    viewer.follow = "off"
+    visitor.drag("/target", 2, 0.1)
+    visitor.until(lambda: np.abs(viewer.target - viewer.robot.fk(START)).max() > NEARLY_ALL)
+    visitor.until(lambda: visitor.text() == "does not follow the handle")
+    np.testing.assert_array_equal(viewer.q, START)
+    visitor.press("Plan to the handle")
+    visitor.until(lambda: np.abs(viewer.target - viewer.robot.fk(viewer.q)).max() < 1e-6)
+    assert clearance(viewer) >= MARGIN - 1e-6
+
+
+def test_the_state_of_the_page_is_copied_as_a_program(viewer: bik.Viewer, visitor: Visitor) -> None:
+    visitor.press("Copy as Python")
+    program = visitor.page.locator("textarea").last
+    program.wait_for()
+    assert program.input_value() == viewer.to_python()
+    visitor.press("Copy")
+    visitor.press("Copied")
+    visitor.press("Close")
+
+
+def test_a_scene_goes_to_a_file_and_comes_back(viewer: bik.Viewer, visitor: Visitor, tmp_path: Path) -> None:
+    visitor.open_tab("Obstacles")
+    with visitor.page.expect_download() as download:
+        visitor.press("Save scene")
+    download.value.save_as(tmp_path / "scene.json")
+    assert bik.Scene.load(tmp_path / "scene.json") == viewer.obstacles
+    viewer.obstacles = []
+    with visitor.page.expect_file_chooser() as chooser:
+        visitor.press("Load scene")
+    chooser.value.set_files(tmp_path / "scene.json")
+    visitor.until(lambda: viewer.obstacles == bik.Scene([TABLE]))
+    visitor.open_tab("Target")
+
+
+def test_an_arrow_on_the_chosen_obstacle_changes_its_size(viewer: bik.Viewer, visitor: Visitor) -> None:
+    viewer.obstacles = [bik.obstacles.Box((0.4, 0.5, 0.4), (0.2, 0.2, 0.2))]
+    visitor.open_tab("Obstacles")
+    visitor.page.get_by_label("chosen").click()
+    visitor.page.get_by_role("option", name="0 Box").click()
+    visitor.until(lambda: viewer.server.scene.get_handle_by_name("/obstacle_size/2") is not None)
+    visitor.drag("/obstacle_size/2", 0, 0.1)
+    visitor.until(lambda: viewer.obstacles[0].size[2] > 0.2 + NEARLY_ALL)
+    assert viewer.obstacles[0].size[:2].tolist() == [0.2, 0.2]
+    np.testing.assert_allclose(viewer.obstacles[0].center, [0.4, 0.5, 0.4])
+    visitor.open_tab("Target")
+
+
+def test_an_upright_window_shows_the_arm_above_the_controls(browser: Any, viewer: bik.Viewer) -> None:
+    visitor = Visitor(browser, viewer, width=390, height=844)
+    visitor.settle()
+    places = viewer.robot.all_link_poses(viewer.q)[:, :3, 3]
+
+    def whole() -> bool:
+        pixels = np.array([visitor.pixel(place) for place in places])
+        return bool((pixels > 0).all() and (pixels[:, 0] < 390).all() and (pixels[:, 1] < 410).all())
+
+    visitor.until(whole)
+    visitor.page.close()
+
+
 def test_a_visitor_may_leave_with_the_handle_in_the_hand(viewer: bik.Viewer, visitor: Visitor) -> None:
     visitor.page.mouse.move(*visitor.pixel(viewer.target[:3, 3]))
     visitor.page.mouse.down()

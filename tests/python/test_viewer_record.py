@@ -4,6 +4,7 @@ import functools
 import http.server
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import repeat
@@ -15,6 +16,7 @@ import pytest
 
 import beetle_ik as bik
 from beetle_ik.viewing import write_player
+from beetle_ik.viewing.camera import FIELD, _corners, _fitting
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
 from viewer_pictures import chromium, visits
@@ -54,8 +56,8 @@ def test_a_motion_is_recorded_from_start_to_end(viewer: bik.Viewer, tmp_path: Pa
     assert duration == pytest.approx(1.01 + 0.7)
     ways = placed(messages, "/robot/link_7")
     assert len(ways) == 32  # 30 a second, and both ends
-    for time, position in ways.items():
-        place = ROBOT.all_link_poses(MOTION.at(time)[0])[ROBOT.all_link_names.index("link_7")]
+    for at, position in ways.items():
+        place = ROBOT.all_link_poses(MOTION.at(at)[0])[ROBOT.all_link_names.index("link_7")]
         np.testing.assert_allclose(position, place[:3, 3], atol=1e-6)
 
 
@@ -67,6 +69,51 @@ def test_a_scene_without_motion_is_recorded_as_it_is(viewer: bik.Viewer, tmp_pat
     kinds = {message["type"] for _, message in messages}
     assert "MeshMessage" in kinds
     assert not any("Gui" in kind for kind in kinds)
+
+
+def test_a_recording_leaves_the_arm_where_it_was(viewer: bik.Viewer, tmp_path: Path) -> None:
+    viewer.show(MOTION)
+    viewer.q = START - 0.1
+    target = viewer.target
+    viewer.record(tmp_path / "motion.viser")
+    np.testing.assert_array_equal(viewer.q, START - 0.1)
+    np.testing.assert_array_equal(viewer.target, target)
+    viewer.show(MOTION)
+    viewer.record(tmp_path / "motion.viser")
+    first = viewer.q
+    for _ in range(1000):
+        if not np.array_equal(viewer.q, first):
+            return
+        time.sleep(0.01)
+    raise AssertionError("the motion does not go on")
+
+
+def test_a_chosen_camera_is_recorded_and_any_other_comes_near(viewer: bik.Viewer, tmp_path: Path) -> None:
+    def positions() -> list[list[float]]:
+        viewer.record(tmp_path / "still.viser")
+        _, messages = read(tmp_path / "still.viser")
+        return [list(message["position"]) for _, message in messages if message["type"] == "SetCameraPositionMessage"]
+
+    far = viewer.server.initial_camera.position.copy()
+    (near,) = positions()
+    assert np.linalg.norm(near) < np.linalg.norm(far)
+    np.testing.assert_array_equal(viewer.server.initial_camera.position, far)
+    viewer.server.initial_camera.position = (1.0, 2.0, 3.0)
+    assert positions() == [[1.0, 2.0, 3.0]]
+
+
+def test_what_is_recorded_fills_the_picture_and_fits_into_it() -> None:
+    random = np.random.default_rng(4)
+    for _ in range(20):
+        boxes = np.sort(random.uniform(-1, 1, (3, 2, 3)), axis=1)
+        points = _corners(boxes) - 0.5 * (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0))
+        position = _fitting(points)
+        toward = position / np.linalg.norm(position)
+        right = np.cross([0, 0, 1], toward) / np.linalg.norm(np.cross([0, 0, 1], toward))
+        depth = np.linalg.norm(position) - points @ toward
+        up = np.abs(points @ np.cross(toward, right)) / depth / np.tan(0.5 * FIELD)
+        beside = np.abs(points @ right) / depth / np.tan(0.5 * FIELD) / 1.3
+        assert 0.7 < max(up.max(), beside.max()) <= 1.0
 
 
 def test_handles_are_hidden_in_recordings_alone(viewer: bik.Viewer, tmp_path: Path) -> None:

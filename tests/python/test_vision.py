@@ -131,7 +131,7 @@ def test_the_extra_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch)
         ),
         (lambda: bik.vision.Camera(origin=3.0), "origin must be column and row, got 3.0"),
         (lambda: bik.vision.Camera(origin="here"), "origin must be numbers, got 'here'"),
-        (lambda: bik.vision.render("arm", [0.0]), "robot must be a Robot, got 'arm'"),
+        (lambda: bik.vision.render("arm", [0.0]), "robot must be a Robot, such as Robot.named('arm'), got 'arm'"),
         (lambda: bik.vision.render(ARM, [0.0] * 3, camera=3), "camera must be a Camera, got 3"),
         (lambda: bik.vision.render(ARM, [0.0] * 3, shape=(3, "a")), "shape must be numbers, got (3, 'a')"),
         (lambda: bik.vision.render(ARM, [0.0] * 3, noise="much"), "noise must be numbers, got 'much'"),

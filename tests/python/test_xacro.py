@@ -423,7 +423,7 @@ def test_trusted_files_do_all_that_xacro_can(folder: Path) -> None:
 def test_every_door_takes_trusted_files(folder: Path) -> None:  # noqa: ARG001
     from typer.testing import CliRunner
 
-    from beetle_ik.cli import app
+    from beetle_ik.cli.app import app
     from beetle_ik.interop import from_mujoco
 
     file = written(

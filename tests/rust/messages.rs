@@ -53,7 +53,7 @@ fn a_wrong_number_of_joint_positions_is_named() {
     assert_eq!(message(iiwa.link_poses(&[0.0; 6])), says);
     let says = "start of robot 'iiwa14': expected 7 joints, got 0";
     assert_eq!(solve_says(SolveOptions { start: Some(vec![]), ..SolveOptions::default() }), says);
-    let says = "start of robot 'planar5': expected 5 joints, got 7";
+    let says = "start of robot 'planar5': expected 5 joints (joint_1 to joint_5), got 7";
     assert_eq!(track_says(&[0.0; 7], TrackOptions::default()), says);
 }
 

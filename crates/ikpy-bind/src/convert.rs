@@ -196,6 +196,11 @@ pub fn summary(value: &Bound<'_, PyAny>) -> String {
     if repr.chars().count() > 60 { repr.chars().take(57).chain("...".chars()).collect() } else { repr }
 }
 
+/// Rounds a number of a `repr` to six decimals.
+pub fn shortened(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
 /// Formats a shape in Python syntax.
 pub fn shape_text(shape: &[usize]) -> String {
     match shape {

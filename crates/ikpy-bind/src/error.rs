@@ -1,7 +1,9 @@
 //! Errors of the core as Python exceptions.
 
+use std::f64::consts::TAU;
+
 use ikcore::Error;
-use pyo3::exceptions::{PyException, PyLookupError, PyValueError};
+use pyo3::exceptions::{PyException, PyLookupError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
@@ -15,6 +17,7 @@ struct Classes {
     limit: Py<PyType>,
     unsupported_limit: Py<PyType>,
     infeasible: Py<PyType>,
+    call: Py<PyType>,
 }
 
 impl Classes {
@@ -82,6 +85,12 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
                 "Requirements that contradict each other; the message names the two.",
                 vec![bound(&invalid_input)],
             )?,
+            call: class(
+                "CallError",
+                "A call that does not fit its signature: an argument of the wrong type, one that is missing or unknown. Also a\n\
+                 `TypeError`, which Python raises there.",
+                vec![bound(&invalid_input), py.get_type::<PyTypeError>()],
+            )?,
             base,
             invalid_input,
             limit,
@@ -91,8 +100,8 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible } = classes(py)?;
-    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible] {
+    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call } = classes(py)?;
+    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call] {
         let class = class.bind(py);
         module.add(class.name()?, class)?;
     }
@@ -107,13 +116,34 @@ pub fn raise(error: Error) -> PyErr {
             Err(failure) => return failure,
         };
         let class = classes.of(&error);
-        PyErr::from_type(class.bind(py).clone(), error.to_string())
+        PyErr::from_type(class.bind(py).clone(), format!("{error}{}", remedy(&error)))
     })
+}
+
+/// What a caller of Python can do about an error.
+fn remedy(error: &Error) -> &'static str {
+    match error {
+        Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),
+        Error::OutsideLimits { value, lower, upper, .. } => {
+            let in_degrees = value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians());
+            if in_degrees {
+                ": angles are in radians; np.radians converts degrees"
+            } else {
+                ": move it inside, such as by np.clip"
+            }
+        }
+        _ => "",
+    }
 }
 
 /// Makes an `InvalidInputError`, for arguments checked in the binding.
 pub fn invalid(message: String) -> PyErr {
     made(|classes| &classes.invalid_input, message)
+}
+
+/// Makes a `CallError`, for an argument of the wrong type.
+pub fn misfit(message: String) -> PyErr {
+    made(|classes| &classes.call, message)
 }
 
 /// Makes a `LimitError`, for limits checked in the binding.

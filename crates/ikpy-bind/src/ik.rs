@@ -240,7 +240,12 @@ pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
         [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows(what, numbers.as_slice()?)?))),
         shape => {
             let got = shape_text(shape);
-            Err(invalid(format!("{what}: expected a pose (4, 4) or a position (3,), got shape {got}")))
+            let remedy = match shape {
+                [6] => "; bik.pose(t[:3], rpy=t[3:]) makes a pose of a position and angles",
+                [7] => "; bik.pose(t[:3], xyzw=t[3:]) makes a pose of a position and a quaternion, or wxyz=",
+                _ => "",
+            };
+            Err(invalid(format!("{what}: expected a pose (4, 4) or a position (3,), got shape {got}{remedy}")))
         }
     }
 }

@@ -3,6 +3,7 @@
 mod batch;
 mod convert;
 mod error;
+mod gate;
 mod goal;
 mod hash;
 mod ik;
@@ -73,6 +74,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     planning::register(module)?;
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
+    gate::install(module)?;
     // The package lists what is public; a second list would become outdated.
     module.dict().del_item("__all__")
 }

@@ -1,6 +1,7 @@
 //! The only calls into the Python package: plots, files, models of other libraries and the progress bar.
 
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 fn call<'py>(
     py: Python<'py>,
@@ -40,6 +41,11 @@ pub fn robot<'py>(
     call(py, &format!("beetle_ik.{module}"), "robot", arguments)
 }
 
+/// Calls `beetle_ik._descriptions.named(name, unknown)`: a robot whose name is not built in.
+pub fn described<'py>(py: Python<'py>, name: &str, unknown: String) -> PyResult<Bound<'py, PyAny>> {
+    call(py, "beetle_ik._descriptions", "named", (name, unknown))
+}
+
 /// Calls `beetle_ik._xacro.expand(path, package_dirs, trusted)`.
 pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted: bool) -> PyResult<String> {
     call(py, "beetle_ik._xacro", "expand", (path, package_dirs, trusted))?.extract()
@@ -53,4 +59,22 @@ pub fn log(py: Python<'_>, message: String) -> PyResult<()> {
 /// Makes a progress bar on the terminal.
 pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     call(py, "beetle_ik._progress", "Bar", ())
+}
+
+/// Calls `beetle_ik._calls.misfit(argument, value, error)`: the message for a value of the wrong kind.
+pub fn misfit(argument: &str, value: &Bound<'_, PyAny>, error: &PyErr) -> PyResult<String> {
+    let py = value.py();
+    call(py, "beetle_ik._calls", "misfit", (argument, value, error.value(py)))?.extract()
+}
+
+/// Calls `beetle_ik._calls.worded(error, call, arguments, keywords)`: the error of arguments that do not fit, in our words.
+pub fn worded<'py>(
+    py: Python<'py>,
+    error: &PyErr,
+    call: &Bound<'py, PyAny>,
+    arguments: &Bound<'py, PyTuple>,
+    keywords: &Bound<'py, PyDict>,
+) -> PyResult<PyErr> {
+    let error = error.value(py);
+    self::call(py, "beetle_ik._calls", "worded", (error, call, arguments, keywords)).map(PyErr::from_value)
 }

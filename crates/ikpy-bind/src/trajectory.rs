@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, row, shape_text, table, times, vector};
+use crate::convert::{Array, array, copied, counted, row, shape_text, shortened, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
@@ -212,11 +212,15 @@ impl PyTrajectory {
         python_calls::plot(slf.into_any(), "trajectory")
     }
 
+    fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        python_calls::html(slf.into_any(), "trajectory")
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<Trajectory of {}, {} s, {} knots>",
             counted(self.0.joints().len(), "joint"),
-            self.0.duration(),
+            shortened(self.0.duration()),
             self.0.knots().len()
         )
     }

@@ -9,6 +9,7 @@ from typer.core import TyperGroup
 from .. import BeetleIkError, __version__
 from .doctor import doctor
 from .fk import fk
+from .options import numbers_joined
 from .plan import plan
 from .reach import reach
 from .reproduce import reproduce
@@ -27,6 +28,10 @@ class _Commands(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         """Lists `reproduce` last; Typer would put the group `plan` there."""
         return sorted(super().list_commands(ctx), key=lambda name: name == "reproduce")
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Reads numbers that are apart, as in `--position 0.4 0.2 0.5`, as one value of the option."""
+        return super().parse_args(ctx, numbers_joined(args))
 
     def invoke(self, ctx: Any) -> Any:
         try:
@@ -78,8 +83,3 @@ for command in (robots, fk, solve, track, reach, view, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)
-
-
-def main() -> None:
-    """Runs the command line on the arguments of the process."""
-    app(prog_name="beetle-ik")

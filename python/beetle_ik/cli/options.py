@@ -1,32 +1,46 @@
 """Options that several commands share, and how their text is read."""
 
+import re
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 import beetle_ik as bik
 
 from .. import InvalidInputError, Robot, Sinusoid
+from .._descriptions import is_description
 
 if TYPE_CHECKING:
     from .._core import _Single
 
 _ROBOT = "Robot"
+_MJCF = ".xml"
+_FILES = (".urdf", ".xacro", _MJCF)
 
 
 def complete_robot(incomplete: str) -> list[str]:
-    """Returns the built-in robots that begin with what was typed."""
-    return [name for name in Robot.names() if name.startswith(incomplete)]
+    """Returns the built-in robots, files and folders that begin with what was typed."""
+    before, slash, begun = incomplete.rpartition("/")
+    folder = Path(before + slash)
+    files = sorted(folder.iterdir()) if folder.is_dir() else []
+    shown = (file.name + "/" * file.is_dir() for file in files if file.is_dir() or file.suffix in _FILES)
+    found = [before + slash + name for name in shown if name.startswith(begun)]
+    return [name for name in Robot.names() if name.startswith(incomplete)] + found
 
 
 RobotName = Annotated[
     str | None,
-    typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.", autocompletion=complete_robot),
+    typer.Argument(
+        help="A built-in robot (`beetle-ik robots` lists them), a file (URDF, xacro, or MJCF that ends in .xml), or a "
+        "name of robot_descriptions.",
+        autocompletion=complete_robot,
+    ),
 ]
 UrdfFile = Annotated[
-    Path | None, typer.Option("--urdf", help="A URDF file instead of a built-in robot.", rich_help_panel=_ROBOT)
+    Path | None,
+    typer.Option("--urdf", help="A URDF file; the same as naming it in place of the robot.", rich_help_panel=_ROBOT),
 ]
 TipLink = Annotated[str | None, typer.Option("--tip", help="Tip link; default: the only leaf.", rich_help_panel=_ROBOT)]
 TipLinks = Annotated[
@@ -125,31 +139,40 @@ def load_robot(
     link_radius: float | None = None,
     *,
     trusted: bool = False,
+    collision: str = "primitives",
 ) -> Robot:
-    """Loads the built-in robot or the one in the URDF file, whichever was given; with capsules of `link_radius`."""
-    robot = _load(name, urdf, base, tip, trusted)
+    """Loads a robot by its name or file; with capsules of `link_radius`, or the collision shapes of a file."""
+    if urdf is not None and name is not None:
+        raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
+    if name is None and urdf is None:
+        raise InvalidInputError(
+            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or a file, such as arm.urdf"
+        )
+    options: dict[str, Any] = {"base": base, "tip": tip or None, "trusted": trusted, "collision": collision}
+    file = urdf or Path(str(name))
+    if urdf is not None or file.suffix.lower() in _FILES:
+        robot = (Robot.from_mjcf if file.suffix.lower() == _MJCF else Robot.from_urdf)(file, **options)
+    else:
+        robot = _named(str(name), options)
     return robot if link_radius is None else robot.with_capsules(radius=link_radius)
 
 
-def _load(name: str | None, urdf: Path | None, base: str | None, tip: str | list[str] | None, trusted: bool) -> Robot:
-    if urdf is not None:
-        if name is not None:
-            raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
-        return Robot.from_urdf(urdf, base=base, tip=tip or None, trusted=trusted)
-    if name is None:
+def _named(name: str, options: dict[str, Any]) -> Robot:
+    """Returns the built-in robot or the description of this name."""
+    if name not in Robot.names() and is_description(name):
+        return Robot.from_description(name, **options)
+    robot = Robot.named(name)
+    if options["base"] is not None or options["tip"]:
         raise InvalidInputError(
-            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE"
+            f"--base and --tip choose links of a file; the built-in robot '{name}' has its own: leave them out"
         )
-    if base is not None or tip:
-        raise InvalidInputError(
-            "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip"
-        )
-    return Robot.named(name)
+    return robot
 
 
 def numbers(option: str, text: str, length: int | None = None) -> list[float]:
-    """Reads numbers separated by commas; `length` is how many there must be, if that is known."""
-    values = [_number(option, entry.strip()) for entry in text.split(",")]
+    """Reads numbers separated by commas or spaces, as numpy prints them too; `length` is how many there must be."""
+    entries = re.split(r"\s*,\s*|\s+", text.strip().removeprefix("[").removesuffix("]").strip())
+    values = [_number(option, entry) for entry in entries]
     if length is not None and len(values) != length:
         raise InvalidInputError(
             f"{option}: expected {length} numbers separated by commas, got {len(values)} in '{text}'"
@@ -169,6 +192,23 @@ def sinusoid(option: str, text: str) -> Sinusoid:
     """Reads a limit given as `mean,amplitude,angular_frequency`."""
     mean, amplitude, angular_frequency = numbers(option, text, 3)
     return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
+
+
+_NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
+_NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # also `tip=0.4,` and `--position=0.4`
+
+
+def numbers_joined(arguments: list[str]) -> list[str]:
+    """Joins numbers that follow the value of an option, such as `--position 0.4 0.2, 0.5`, with commas."""
+    joined: list[str] = []
+    for argument in arguments:
+        last, before = joined[-1:], joined[-2:-1]
+        valued = any(entry.startswith("--") for entry in (*last, *before)) and not argument.startswith("--")
+        if valued and re.fullmatch(rf"{_NUMBER},?", argument) and _NUMBERS.fullmatch(last[0]):
+            joined[-1] = f"{last[0].rstrip(',')},{argument}"
+        else:
+            joined.append(argument)
+    return [entry.rstrip(",") if _NUMBERS.fullmatch(entry) else entry for entry in joined]
 
 
 def _number(option: str, entry: str) -> float:

@@ -1,24 +1,27 @@
 """`beetle-ik view`: a robot in the browser."""
 
-from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from .. import Robot, Scene, UrdfError
 from .. import view as view_robot
-from .options import BaseLink, LinkRadius, SceneFile, Start, TipLinks, Trusted, complete_robot, load_robot, numbers
-
-_FILES = (".urdf", ".xacro", ".xml")
+from .options import (
+    BaseLink,
+    LinkRadius,
+    RobotName,
+    SceneFile,
+    Start,
+    TipLinks,
+    Trusted,
+    UrdfFile,
+    load_robot,
+    numbers,
+)
 
 
 def view(
-    robot: Annotated[
-        str,
-        typer.Argument(
-            help="A built-in robot, or a file: URDF, xacro, or MJCF that ends in .xml.", autocompletion=complete_robot
-        ),
-    ],
+    robot: RobotName = None,
     *,
     start: Start = None,
     scene: SceneFile = None,
@@ -27,14 +30,14 @@ def view(
         str, typer.Option(help="Address to serve at; 0.0.0.0: to others, who need the token.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port; if it is in use, the next free one. 0: any.")] = 8080,
+    urdf: UrdfFile = None,
     tip: TipLinks = None,
     base: BaseLink = None,
     trusted: Trusted = False,
 ) -> None:
     """Show a robot in the browser: drag its tip, its joints and obstacles. Ctrl-C ends it."""
-    arm = _loaded(robot, base, tip, trusted)
     viewer = view_robot(
-        arm if link_radius is None else arm.with_capsules(radius=link_radius),
+        _loaded(robot, urdf, base, tip, link_radius, trusted=trusted),
         None if start is None else numbers("--start", start),
         obstacles=None if scene is None else Scene.load(scene),
         host=host,
@@ -47,15 +50,11 @@ def view(
         raise typer.Exit from None  # the way to end it
 
 
-def _loaded(robot: str, base: str | None, tip: list[str] | None, trusted: bool) -> Robot:
-    file, tip = Path(robot), tip or None  # no option is an empty list
-    if file.suffix not in _FILES:
-        return load_robot(robot, None, base, tip)
-    if file.suffix == ".xml":
-        return Robot.from_mjcf(file, base=base, tip=tip, collision="hulls", trusted=trusted)
+def _loaded(*given: Any, trusted: bool) -> Robot:
+    """Loads the robot with the hulls of its collision meshes, or without the meshes if they cannot be read."""
     try:
-        return Robot.from_urdf(file, base=base, tip=tip, collision="hulls", trusted=trusted)
+        return load_robot(*given, trusted=trusted, collision="hulls")
     except UrdfError as error:
-        arm = Robot.from_urdf(file, base=base, tip=tip, trusted=trusted)  # raises what else is wrong
+        arm = load_robot(*given, trusted=trusted)  # raises what else is wrong
         typer.echo(f"Without its meshes: {error}", err=True)
         return arm

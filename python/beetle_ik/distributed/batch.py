@@ -15,6 +15,7 @@ import numpy as np
 
 from .. import _core
 from .._arguments import read_once, require
+from .._calls import worded_call
 from .._core import BatchSolution, InvalidInputError, Limits, Robot, Status, Stop
 from .._text import counted
 from ..chunked.chunks import Job, require_client, run
@@ -87,6 +88,7 @@ class BatchArrays:
         return f"<BatchArrays{'' if self.store is None else f' in {str(self.store)!r}'}: {self.message}>"
 
 
+@worded_call
 def solve_batch(
     client: Client | None,
     robot: Robot,

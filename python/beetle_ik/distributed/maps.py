@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from .._calls import worded_call
 from ..mapping.compute import computed
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from ..mapping import ReachabilityMap
 
 
+@worded_call
 def reachability(
     client: Client | None,
     robot: Robot,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._arguments import require
+from .._calls import worded_call
 from .._core import InvalidInputError, Obstacle, Robot, pose, solve_batch
 from .._scene import Scene
 from .._text import counted
@@ -51,11 +52,18 @@ class BasePlacement:
         found = f"{count} reached from ({x:.3g}, {y:.3g}, {z:.3g})"
         return found if self.success else f"{found}; widen the region, or move the others"
 
+    def _repr_html_(self) -> str:
+        """Shows the place in a notebook."""
+        from .._html import base_placement
+
+        return base_placement(self)
+
     def __repr__(self) -> str:
         """Says how many targets are reached."""
         return f"<BasePlacement: {self.message}>"
 
 
+@worded_call
 def best_base(
     robot: Robot,
     targets: ArrayLike,

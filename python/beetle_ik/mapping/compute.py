@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import require
+from .._calls import worded_call
 from .._core import MapGrid, Robot, map_chunks
 from .._scene import Scene
 from ..chunked.chunks import Job, require_client, run
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .._core import Obstacle, Task, _Progress
 
 
+@worded_call
 def reachability(
     robot: Robot,
     *,

@@ -89,6 +89,12 @@ class InverseReachabilityMap:
         title = f"{self.map.robot.name}: where an upright base at z = {height:g} m reaches the target"
         return drawn_on_floor(title, at, x, y, share)
 
+    def _repr_html_(self) -> str:
+        """Shows the map in a notebook."""
+        from .._html import inverse_map
+
+        return inverse_map(self)
+
     def __repr__(self) -> str:
         """Names the map."""
         return f"<InverseReachabilityMap of {self.map!r}>"

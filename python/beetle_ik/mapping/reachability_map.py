@@ -126,6 +126,12 @@ class ReachabilityMap:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def _repr_html_(self) -> str:
+        """Shows the map in a notebook."""
+        from .._html import reachability_map
+
+        return reachability_map(self)
+
     def __repr__(self) -> str:
         """Says how much of the voxels is reached."""
         held = int(np.count_nonzero(self.index))

@@ -11,11 +11,15 @@
     start       bodies, speeds and a configuration for robots that come without
     parts       what the page consists of
     page        what its parts share
-    looks       what is seen of the links: visual meshes
+    looks       what is seen of the links: visual meshes, or solids along the joints
+    camera      from where it is seen first
     surfaces    the links in the scene, and ghosts of them
-    handle, joints, obstacles, postures, playback, report
+    handle, joints, obstacles, postures, playback, planning, reach, report
                 the parts of the page: each shows and changes one thing of the state
-    displaced   obstacles, moved
+    files       what visitors take along and bring: programs, scenes
+    program     the state as a program in Python
+    displaced, sizes
+                obstacles, moved and made larger
     recording   what the page shows, as a file that plays by itself
 
 viser calls back in the thread of its server. A part of the page never moves the arm there: it asks the worker.

@@ -208,6 +208,8 @@ class Arm:
 
     def _set_off(self) -> None:
         self.moves = self._follow != "off"
+        if not self.moves:
+            self.outcome = None
         self._anchor, self._error, self._ticks, self._tries_again = self.q, np.inf, 0, True
 
 

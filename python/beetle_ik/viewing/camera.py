@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 FIELD = 0.8  # rad: the vertical field of view
 _FROM = np.array([1.05, 0.9, 0.45])  # from where it looks, as a fraction of what it looks at
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of what it looks at: the controls cover that side of the page
-_NEAR = 0.95  # of a recording
+_MARGIN, _ASPECT = 1.08, 1.3  # of a recording: distance over the least one, width over height of narrow frames
 _UPRIGHT, _BELOW = 0.75, 0.24  # of an upright window: distance, and how much of its height the arm is above the middle
 _NARROWEST = 0.3  # width over height of a window; a camera for a narrower one would be far away
 
@@ -38,15 +38,16 @@ class Camera:
         server.on_client_connect(self._turn)
 
     @contextmanager
-    def recording(self, low: Array, high: Array) -> Iterator[None]:
-        """Looks at a box while it is recorded, from near: a recording has no controls."""
+    def recording(self, boxes: Array) -> Iterator[None]:
+        """Looks at boxes (k, 2, 3) while they are recorded, from near: a recording has no controls."""
         if self._chosen:
             yield
             return
         first = self._server.initial_camera
-        before, look = (first.look_at, first.position), 0.5 * (low + high)
+        before = (first.look_at, first.position)
         try:
-            self._aim(look, look + _NEAR * float(np.linalg.norm(high - low)) * _FROM)
+            look = 0.5 * (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0))
+            self._aim(look, look + _fitting(_corners(boxes) - look))
             yield
         finally:
             self._aim(*before)
@@ -72,3 +73,19 @@ class Camera:
         look = self._middle - [0.0, 0.0, below]
         seen.position = look + away  # viser moves the other along
         seen.look_at = look
+
+
+def _corners(boxes: Array) -> Array:
+    """Returns the corners (8 k, 3) of boxes (k, 2, 3)."""
+    choices = np.indices((2, 2, 2)).reshape(3, -1).T
+    return boxes[:, choices, np.arange(3)].reshape(-1, 3)
+
+
+def _fitting(points: Array) -> Array:
+    """Returns from where (3,) points (k, 3) about the origin fill the window."""
+    toward = _FROM / np.linalg.norm(_FROM)
+    right = np.cross([0.0, 0.0, 1.0], toward)
+    right /= np.linalg.norm(right)
+    across = np.maximum(np.abs(points @ np.cross(toward, right)), np.abs(points @ right) / _ASPECT)
+    distance = float(np.max(points @ toward + across / np.tan(0.5 * FIELD)))
+    return np.asarray(_MARGIN * distance * toward)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_CELLS, _SECTIONS = "#DADDE1", "#B9BEC5"  # of the floor
+_CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # of the floor
 _LARGE = 2.0  # m: the floor of a larger robot has larger cells
 _REFERENCE = 2.0  # pixels
 _SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
@@ -95,17 +95,24 @@ class Parts:
 
     @contextmanager
     def posed(self) -> Iterator[None]:
-        """Hides what is there to be dragged, and looks at the arm from near, for a recording."""
-        corners = [self._links.bounds(q) for q in self.playback.passed(self._page.arm.q)]
-        low, high = np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
+        """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
+        passed = self.playback.passed(self._page.arm.q)
+        boxes = [*(self._links.bounds(q) for q in passed), *self._reach.bounds, *self._obstacles_nearby()]
         try:
             for part in self._with_handles:
                 part.show_handles(False)
-            with self._camera.recording(low, high):
+            with self._camera.recording(np.array(boxes)):
                 yield
         finally:
             for part in self._with_handles:
                 part.show_handles(True)
+
+    def _obstacles_nearby(self) -> Iterator[tuple[Array, Array]]:
+        """Yields least and greatest coordinates (3,) of obstacles that are no larger than the arm, as floors are."""
+        for obstacle in self._page.arm.obstacles:
+            low, high = obstacle.triangles.min(axis=(0, 1)), obstacle.triangles.max(axis=(0, 1))
+            if np.abs((low, high)).max() < self._page.scale:
+                yield low, high
 
     def refresh(self, *, moving: bool = False) -> None:
         """Shows the state of the arm."""

@@ -85,16 +85,26 @@ class Playback:
         return q[None] if self._motion is None else self._motion.at(np.linspace(0.0, self._motion.duration, _PASSED))[0]
 
     def frames(self) -> Iterator[float]:
-        """Puts the arm along the motion, if there is one, and yields for how long it stays there (s); ends at rest."""
+        """Puts the arm along the motion, if there is one, and yields for how long it stays there (s).
+
+        It ends with a rest, and puts everything back.
+        """
         if self._motion is None:
             return
-        before, end = self._time, self._motion.duration
+        arm, end = self._page.arm, self._motion.duration
+        taken_over = not self.shows(self._motion)
+        before = (arm.q, arm.targets, self._time, self._playing)
         for time in np.arange(0.0, end, _FRAME).tolist():
             self._jump(time)
             yield min(_FRAME, end - time)
         self._jump(end)
         yield _REST
-        self._jump(before)
+        self._jump(before[2])
+        if taken_over:
+            arm.put(before[0])
+            arm.targets = before[1]
+        else:
+            self._play(before[3])
 
     def _play(self, playing: bool) -> None:
         self._playing = playing

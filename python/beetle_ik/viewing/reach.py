@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,18 +10,22 @@ from .._core import InvalidInputError
 from .._style import BLUE, ORANGE, rgb
 from ..mapping.map_figure import cloud
 from .page import set_value
+from .surfaces import wxyz
 
 if TYPE_CHECKING:
     import viser
+    from numpy.typing import NDArray
 
     from ..mapping import ReachabilityMap
     from .page import Page
 
+    Array = NDArray[np.float64]
+
 _SLICES = ("x", "y", "z")  # the axis across the slice
 _ALL = "all"
-_DOT, _TILE = 0.25, 0.95  # sizes of a point, of all and of a slice, as fractions of a voxel
-_ROUND: Literal["circle"] = "circle"
-_SQUARE: Literal["square"] = "square"
+_DOT = 0.25  # of a voxel
+_OPACITY = 160  # of a slice, of 255
+_PIXELS = 12  # of a voxel, so that its edges are sharp
 _LEGEND = (
     "<div style='padding:0 1em;font-size:0.85em'>orientations reached, of {orientations}"
     f"<div style='height:0.7em;background:linear-gradient(to right,{BLUE},{ORANGE})'></div>"
@@ -37,7 +41,7 @@ class Reach:
         """Adds the controls, hidden until there is a map."""
         self._page = page
         self._map: ReachabilityMap | None = None
-        self._points: viser.PointCloudHandle | None = None
+        self._drawn: viser.SceneNodeHandle | None = None
         gui = page.server.gui
         self._folder = gui.add_folder("Reach", visible=False)
         with self._folder:
@@ -65,6 +69,19 @@ class Reach:
         self._folder.visible = True
         self._cut()
 
+    @property
+    def bounds(self) -> list[tuple[Array, Array]]:
+        """The least and greatest coordinates (3,) of the voxels that are shown, if any are."""
+        found = self._map
+        if found is None or self._drawn is None:
+            return []
+        points, _ = cloud(found)
+        low, high = points.min(axis=0), points.max(axis=0)
+        if self._across.value != _ALL:
+            axis = _SLICES.index(self._across.value)
+            low[axis] = high[axis] = self._at.value
+        return [(low, high)]
+
     def _cut(self) -> None:
         """Puts the slice through the base, or through the middle of the map if the base is beside it."""
         found = self._map
@@ -81,23 +98,43 @@ class Reach:
     def _draw(self) -> None:
         found = self._map
         assert found is not None, "the controls are hidden until there is a map"
-        points, share = cloud(found)
-        shape: Literal["circle", "square"]
-        dot, shape = _DOT, _ROUND
+        self._remove()
         if self._across.value != _ALL:
-            axis = _SLICES.index(self._across.value)
-            layer = np.floor((self._at.value - found.origin[axis]) / found.voxel)
-            layer = min(max(layer, 0), found.index.shape[axis] - 1)
-            kept = np.abs(points[:, axis] - (found.origin[axis] + found.voxel * (layer + 0.5))) < 0.25 * found.voxel
-            points, share, dot, shape = points[kept], share[kept], _TILE, _SQUARE
-        low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
-        colors = (low + share[:, None] * (high - low)).astype(np.uint8)
-        self._points = self._page.server.scene.add_point_cloud(
-            "/map", points.astype(np.float32), colors, point_size=dot * found.voxel, point_shape=shape
+            self._drawn = self._slice(found, _SLICES.index(self._across.value))
+            return
+        points, share = cloud(found)
+        self._drawn = self._page.server.scene.add_point_cloud(
+            "/map", points.astype(np.float32), _colors(share), point_size=_DOT * found.voxel, point_shape="circle"
         )
+
+    def _slice(self, found: ReachabilityMap, axis: int) -> viser.SceneNodeHandle:
+        """Draws the layer of voxels at the slider as a translucent image: the arm stands in it."""
+        layer = int(np.floor((self._at.value - found.origin[axis]) / found.voxel))
+        layer = min(max(layer, 0), found.index.shape[axis] - 1)
+        share = np.take(found.index, layer, axis=axis).T[::-1]  # rows from above, columns from the left
+        image = np.dstack((_colors(share), np.where(share > 0, _OPACITY, 0).astype(np.uint8)))
+        sharp = image.repeat(_PIXELS, axis=0).repeat(_PIXELS, axis=1)
+        middle = found.origin + 0.5 * found.voxel * np.array(found.index.shape)
+        middle[axis] = found.origin[axis] + found.voxel * (layer + 0.5)
+        right, up = np.delete(np.eye(3), axis, axis=0)
+        height, width = (found.voxel * n for n in share.shape)
+        # The frame of an image of viser is that of a camera: its y axis points down.
+        return self._page.server.scene.add_image(
+            "/map", sharp, width, height, format="png", cast_shadow=False, receive_shadow=False, position=middle,
+            wxyz=wxyz(np.column_stack((right, -up, np.cross(right, -up)))),
+        )  # fmt: skip
+
+    def _remove(self) -> None:
+        if self._drawn is not None:
+            self._drawn.remove()
+            self._drawn = None
 
     def _hide(self) -> None:
         self._folder.visible = False
-        if self._points is not None:
-            self._points.remove()
-            self._points = None
+        self._remove()
+
+
+def _colors(share: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Returns a colour (..., 3) for each share of orientations that are reached."""
+    low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
+    return np.asarray(low + share[..., None] * (high - low)).astype(np.uint8)

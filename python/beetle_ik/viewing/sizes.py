@@ -19,7 +19,7 @@ _SMALLEST = 0.002  # m: half a size, or a radius
 
 
 class Grip(NamedTuple):
-    """A point of a surface to drag, seen from the middle of the shape: a direction (3,) and a distance (m)."""
+    """A point of a shape to drag: at a distance (m) along a direction (3,) from a point (3,) that stays."""
 
     middle: Array
     along: Array
@@ -32,28 +32,41 @@ class Grip(NamedTuple):
 
 
 def grips(shape: Obstacle) -> list[Grip]:
-    """Returns where the size of a shape can be dragged; none for shapes that are made of points."""
+    """Returns where the size of a shape can be dragged; none for shapes that are made of points.
+
+    That is at a corner or on a rim, away from the axes, along which the handle in the middle moves the shape.
+    """
     match shape:
         case shapes.Sphere():
-            return [Grip(shape.center, np.eye(3)[0], shape.radius)]
+            return [Grip(shape.center, np.full(3, 1.0 / np.sqrt(3.0)), shape.radius)]
         case shapes.Box():
-            return [Grip(shape.center, shape.rotation[:, k], 0.5 * float(shape.size[k])) for k in range(3)]
+            return _at_corner(shape.center, shape.rotation, 0.5 * shape.size)
         case shapes.Ellipsoid():
-            return [Grip(shape.center, shape.rotation[:, k], float(shape.semi_axes[k])) for k in range(3)]
+            return _at_corner(shape.center, shape.rotation, shape.semi_axes)
         case shapes.Cylinder():
-            side = Grip(shape.center, beside(shape.axis), shape.radius)
-            return [side, Grip(shape.center, shape.axis, 0.5 * shape.length)]
+            return _at_rim(shape.center, shape.axis, shape.radius, 0.5 * shape.length)
         case shapes.Capsule():
             middle, axis = 0.5 * (shape.a + shape.b), shape.b - shape.a
             length = float(np.linalg.norm(axis))
-            if not length:
-                return [Grip(middle, np.eye(3)[0], shape.radius)]
-            return [Grip(middle, beside(axis), shape.radius), Grip(middle, axis / length, 0.5 * length)]
+            if length:
+                return _at_rim(middle, axis / length, shape.radius, 0.5 * length)
+            return [Grip(middle, np.full(3, 1.0 / np.sqrt(3.0)), shape.radius)]
     return []
 
 
+def _at_corner(center: Array, rotation: Array, half: Array) -> list[Grip]:
+    """Returns grips at the corner of a box, along its edges."""
+    return [Grip(center + rotation @ (half * (np.arange(3) != k)), rotation[:, k], float(half[k])) for k in range(3)]
+
+
+def _at_rim(center: Array, axis: Array, radius: float, half: float) -> list[Grip]:
+    """Returns grips at the rim of a cylinder: of its radius and of half its length."""
+    side = beside(axis)
+    return [Grip(center + half * axis, side, radius), Grip(center + radius * side, axis, half)]
+
+
 def resized(shape: Obstacle, i: int, distance: float) -> Obstacle:
-    """Returns the shape with its grip `i` at a distance (m) from its middle, which stays."""
+    """Returns the shape with its grip `i` at a distance (m); its middle stays."""
     distance, touch = max(distance, _SMALLEST), list(shape.touch)
     match shape:
         case shapes.Sphere():
@@ -68,8 +81,9 @@ def resized(shape: Obstacle, i: int, distance: float) -> Obstacle:
         case shapes.Capsule():
             if i == 0:
                 return shapes.Capsule(shape.a, shape.b, distance, touch=touch)
-            grip = grips(shape)[1]
-            ends = (grip.middle - distance * grip.along, grip.middle + distance * grip.along)
+            middle, axis = 0.5 * (shape.a + shape.b), shape.b - shape.a
+            reach = distance / float(np.linalg.norm(axis)) * axis
+            ends = (middle - reach, middle + reach)
             return shapes.Capsule(*ends, shape.radius, touch=touch)
     return shape
 

@@ -13,6 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
 from .._arguments import require
+from .._calls import worded_call
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from .._needs import library
 from .._scene import Scene
@@ -49,6 +50,7 @@ _LONGEST_TICK = 0.1  # s: after a rest, or on a busy machine, a motion goes on w
 _WAKE = 0.1  # s: how often a waiting thread looks for Ctrl-C, which Windows would not wake it for
 
 
+@worded_call
 def view(
     robot: Robot,
     q: ArrayLike | None = None,
@@ -217,7 +219,7 @@ class Viewer:
         return self._moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a map as a cloud.
+        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a slice of a map.
 
         A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
         orange where all are.

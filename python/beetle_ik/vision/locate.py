@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._arguments import require_one_tip
+from .._calls import worded_call
 from .._core import InvalidInputError, Robot
 from .._needs import library
 from .camera import Camera, check_planar, checked, distance_to_links, numbers
@@ -79,6 +80,7 @@ class ArmLocation:
         return f"{_ADVICE[self.status]}{seen}"
 
 
+@worded_call
 def locate_arm(
     image: ArrayLike,
     robot: Robot,

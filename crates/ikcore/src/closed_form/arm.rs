@@ -154,7 +154,10 @@ impl ClosedFormArm {
     #[inline]
     pub fn likely(&self, target: &Frame, found: &mut ArmConfigurations) {
         match &self.method {
-            Method::Six(method) if method.has_exact_candidates() => method.likely(target, &self.drives, found),
+            Method::Six(method) if method.has_exact_candidates() => {
+                method.likely(target, &self.drives, found);
+                found.is_all &= self.is_sharp;
+            }
             _ => *found = self.solve(target).map_or_else(ArmConfigurations::none, |found| found.configurations()),
         }
     }

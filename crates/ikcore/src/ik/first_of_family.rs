@@ -202,11 +202,14 @@ impl<'a> FamilySearch<'a> {
         Some(solution)
     }
 
-    /// No solution is within the limits.
+    /// No solution is within the limits; None where that is not proven.
     #[cold]
     fn unreachable(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         if is_wide(attempt) {
             return nearest_of_all_branches(attempt, &self.preference, self.start);
+        }
+        if !attempt.context.robot().proves_branches() {
+            return None;
         }
         let obstruction = obstruction(attempt, None);
         let from = attempt.first_start(self.start);

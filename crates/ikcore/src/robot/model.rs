@@ -26,6 +26,7 @@ use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
 use crate::starts::Starts;
 use crate::starts::index::StartIndex;
+use crate::wording::joined;
 
 /// A robot: a serial chain from base to tip, or several to several [`tips`](Self::tips), and the links that branch off.
 ///
@@ -183,11 +184,23 @@ impl Robot {
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {
-            let expected = format!("{} joints", self.dof());
+            let expected = format!("{} joints{}", self.dof(), self.joints_among(q.len()));
             let what = format!("{what} of robot '{}'", self.name());
             return Err(Error::WrongLength { what, expected, got: q.len() });
         }
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
+    }
+
+    /// Says which joints are expected where `count` is too many: those of a gripper are often among them.
+    fn joints_among(&self, count: usize) -> String {
+        let held = self.held_joints();
+        match (self.joints(), count) {
+            (joints, count) if count == joints.len() + held.len() => {
+                format!(" (without {}, held in place)", joined(held.iter().map(|held| held.joint.name.as_str())))
+            }
+            ([first, .., last], count) if count > self.dof() => format!(" ({} to {})", first.name, last.name),
+            _ => String::new(),
+        }
     }
 
     /// Checks that `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.

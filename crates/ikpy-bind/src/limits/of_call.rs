@@ -1,20 +1,18 @@
 //! Reading of the `limits` argument: for the result of a call, and for the core.
 
 use ikcore::limits::Limits;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::{PyLimits, Sampling};
 use crate::convert::summary;
+use crate::error::misfit;
 use crate::robot::PyRobot;
 
 /// Reads the limits of a call that must have some.
 pub fn required_limits<'a>(limits: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLimits> {
     let limits = limits.cast::<PyLimits>().map_err(|_| {
         let got = summary(limits);
-        PyTypeError::new_err(format!(
-            "limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got {got}"
-        ))
+        misfit(format!("limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got {got}"))
     })?;
     Ok(limits.get())
 }

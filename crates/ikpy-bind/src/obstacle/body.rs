@@ -65,7 +65,7 @@ impl PyObstacle {
                 format!("{center:?}, {axis:?}, {radius:?}, {length:?}")
             }
             Geometry::HalfSpace { normal, offset } => format!("{normal:?}, {offset:?}"),
-            Geometry::ConvexMesh(hull) => format!("{:?}", hull.points()),
+            Geometry::ConvexMesh(hull) => list_text(hull.points(), "points"),
             Geometry::Mesh(mesh) => {
                 format!("{}, {}", list_text(mesh.vertices(), "points"), list_text(mesh.faces(), "triangles"))
             }
@@ -122,7 +122,7 @@ impl PyObstacle {
 }
 
 /// Longer lists are not written out.
-const MOST_ENTRIES: usize = 100;
+const MOST_ENTRIES: usize = 8;
 
 /// Formats a list in Python syntax if it is short, else as its length.
 fn list_text<T: std::fmt::Debug>(list: &[T], entries: &str) -> String {

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{Array, matrix3, point, row, summary, table, times};
+use crate::convert::{Array, matrix3, point, row, shortened, summary, table, times};
 use crate::error::{invalid, raise};
 use crate::pickling::{self, Reduced};
 use crate::signals::check_signals_at;
@@ -115,7 +115,7 @@ impl PyPath {
             (Orientation::OfCurve, Curve::Function { .. }) => false,
             _ => true,
         };
-        format!("<Path of {} s{}>", self.duration(), if oriented { ", with orientation" } else { "" })
+        format!("<Path of {} s{}>", shortened(self.duration()), if oriented { ", with orientation" } else { "" })
     }
 
     fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {

@@ -12,9 +12,10 @@ use super::endpoints::{plain, read_ends, read_start, read_tips_ends, read_tips_s
 use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
-use crate::error::{invalid, raise};
+use crate::error::{invalid, misfit, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::obstacle::GivenObstacles;
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
 use crate::task::read_task;
@@ -97,8 +98,9 @@ impl PlanArguments<'_> {
     fn read_among(&self, py: Python<'_>, robot: &PyRobot, obstacles: GivenObstacles) -> PyResult<ReadOptions> {
         let given = self.limits.as_ref().map(|limits| cast::<PyLimits>("limits", limits)).transpose()?;
         let (in_force, limits) = limits_of_call(py, given.as_ref().map(|given| given.get()), robot, &Sampling::once())?;
-        let objective = self.objective.as_ref().map(|name| text(name)).transpose();
-        let objective = objective.map_err(|error| in_argument(py, "objective", error))?;
+        let objective = self.objective.as_ref();
+        let objective = objective.map(|name| text(name).map_err(|error| in_argument("objective", name, error)));
+        let objective = objective.transpose()?;
         let stop = self.stop.as_ref().map(|stop| cast::<PyStop>("stop", stop)).transpose()?;
         let core = PointToPointOptions {
             start_velocity: self.start_qd.as_ref().map(|qd| vector("start_qd", qd)).transpose()?,
@@ -173,21 +175,21 @@ named!(
     self_collision, stop, seed
 );
 
-/// Extracts a number or a truth value, with the error that pyo3 raises for an argument of a function.
+/// Extracts a number or a truth value, with the error for an argument of a function.
 fn extracted<T: for<'py> FromPyObjectOwned<'py>>(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<T>> {
     let Some(value) = value else { return Ok(None) };
-    value.extract::<T>().map(Some).map_err(|error| in_argument(value.py(), name, error.into()))
+    value.extract::<T>().map(Some).map_err(|error| in_argument(name, value, error.into()))
 }
 
 /// Casts an argument to its class, with the same error.
 fn cast<'py, T: pyo3::PyTypeInfo>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, T>> {
-    value.cast::<T>().cloned().map_err(|error| in_argument(value.py(), name, error.into()))
+    value.cast::<T>().cloned().map_err(|error| in_argument(name, value, error.into()))
 }
 
-/// Names the argument in an error of its type.
-fn in_argument(py: Python<'_>, name: &str, error: PyErr) -> PyErr {
-    if error.is_instance_of::<PyTypeError>(py) {
-        return PyTypeError::new_err(format!("argument '{name}': {}", error.value(py)));
+/// Names the argument and its value in an error of its type.
+fn in_argument(name: &str, value: &Bound<'_, PyAny>, error: PyErr) -> PyErr {
+    if error.is_instance_of::<PyTypeError>(value.py()) {
+        return python_calls::misfit(name, value, &error).map_or_else(|other| other, misfit);
     }
     error
 }

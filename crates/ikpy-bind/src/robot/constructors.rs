@@ -9,7 +9,7 @@ use pyo3::types::{IntoPyDict, PyString};
 
 use super::PyRobot;
 use super::modified_copies::{per_joint, read_hold};
-use crate::convert::{path_or_text, rigid, summary, text, vector};
+use crate::convert::{optional_text, path_or_text, rigid, summary, text, vector};
 use crate::error::{invalid, raise};
 use crate::monitor::on_a_thread;
 use crate::python_calls;
@@ -20,8 +20,8 @@ impl PyRobot {
     /// `held_joints`.
     ///
     /// Args:
-    ///     path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
-    ///         extra "robots".
+    ///     path_or_xml: a file, or text that contains "<". A file of xacro is expanded by the package xacro, of the extra
+    ///         "robots".
     ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
     ///     tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
     ///         several, q holds the joints of one chain after another, shared ones once.
@@ -50,19 +50,22 @@ impl PyRobot {
     #[allow(clippy::too_many_arguments)]
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
+        #[pyo3(from_py_with = optional_text)] base: Option<&str>,
         tip: Option<&Bound<'_, PyAny>>,
         hold: Option<&Bound<'_, PyAny>>,
         srdf: Option<&Bound<'_, PyAny>>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
+        #[pyo3(from_py_with = collision_name)] collision: Option<&str>,
         package_dirs: Option<&Bound<'_, PyAny>>,
         trusted: bool,
     ) -> PyResult<Self> {
         let py = path_or_xml.py();
         let mut source = path_or_text("path_or_xml", path_or_xml)?;
         let package_dirs = package_dirs.map_or(Ok(vec![]), read_folders)?;
+        if Robot::names().any(|name| name == source) && !Path::new(&source).exists() {
+            return Err(invalid(format!("there is no file '{source}'; Robot.named('{source}') is a built-in robot")));
+        }
         let mut directory = None;
-        if source.ends_with(".xacro") && Path::new(&source).is_file() {
+        if is_xacro(&source) {
             directory = Path::new(&source).parent().map(Path::to_path_buf);
             source = python_calls::expand_xacro(py, &source, &package_dirs, trusted)?;
         }
@@ -100,10 +103,10 @@ impl PyRobot {
            text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives', trusted=False)")]
     fn from_mjcf<'py>(
         model: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
+        #[pyo3(from_py_with = optional_text)] base: Option<&str>,
         tip: Option<&Bound<'py, PyAny>>,
         hold: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
+        #[pyo3(from_py_with = collision_name)] collision: Option<&str>,
         trusted: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         read_collision(collision)?;
@@ -111,17 +114,17 @@ impl PyRobot {
         python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision, trusted))
     }
 
-    /// Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
-    /// downloads it at first use. Needs the extra "robots".
+    /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, such as
+    /// "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra "robots".
     ///
     /// Args:
-    ///     name: a name of robot_descriptions.
+    ///     name: a name of robot_descriptions; of example-robot-data, that of a folder or of a URDF.
     ///     base, tip, hold: as in `from_urdf`.
     ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
     ///     trusted: as in `from_urdf` and `from_mjcf`.
     ///
     /// Raises:
-    ///     BeetleIkError: robot_descriptions is not installed.
+    ///     BeetleIkError: robot_descriptions is not installed, or cannot download the description.
     ///     UnknownNameError: no description of that name; the message names the nearest.
     #[staticmethod]
     #[pyo3(signature = (name, *, base=None, tip=None, hold=None, srdf=None, collision=None, trusted=false))]
@@ -165,7 +168,7 @@ impl PyRobot {
         velocity: Option<&Bound<'_, PyAny>>,
         base: Option<&Bound<'_, PyAny>>,
         tool: Option<&Bound<'_, PyAny>>,
-        #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
+        #[pyo3(from_py_with = optional_text)] name: Option<&str>,
     ) -> PyResult<Self> {
         let convention: Dh = convention.parse().map_err(raise)?;
         let mut table = DhTable::new(convention, vector("a", a)?, vector("alpha", alpha)?, vector("d", d)?);
@@ -212,19 +215,23 @@ impl PyRobot {
         robot.with_limits(lower, upper, velocity)
     }
 
-    /// Returns a built-in robot; `Robot.names()` lists them.
+    /// Returns a built-in robot; `Robot.names()` lists them. Names of descriptions are found too, see `from_description`.
     ///
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
     #[staticmethod]
-    fn named(name: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn named<'py>(name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = name.py();
         let Ok(text) = name.extract::<String>() else {
             let (got, known) = (summary(name), Robot::names().collect::<Vec<_>>().join(", "));
             return Err(invalid(format!(
                 "name must be the name of a built-in robot, got {got}; known robots: {known}"
             )));
         };
-        Robot::named(&text).map(Self::from).map_err(raise)
+        match Robot::named(&text) {
+            Ok(robot) => Ok(Bound::new(py, Self::from(robot))?.into_any()),
+            Err(unknown) => python_calls::described(py, &text, unknown.to_string()),
+        }
     }
 
     /// Returns the names of the built-in robots.
@@ -234,16 +241,31 @@ impl PyRobot {
     }
 }
 
+/// Whether a file is xacro: by its name or, as many end in ".urdf", by what it contains.
+fn is_xacro(source: &str) -> bool {
+    let file = Path::new(source);
+    let contains_xacro = || std::fs::read_to_string(file).is_ok_and(|text| text.contains("<xacro:"));
+    !source.contains('<') && file.is_file() && (source.ends_with(".xacro") || contains_xacro())
+}
+
 fn read_collision(name: Option<&str>) -> PyResult<CollisionShapes> {
     match name {
         None => Ok(CollisionShapes::Ignored),
         Some("primitives") => Ok(CollisionShapes::Primitives),
         Some("fit") => Ok(CollisionShapes::Fit),
         Some("hulls") => Ok(CollisionShapes::Hulls),
-        Some(other) => {
-            Err(invalid(format!("collision must be one of 'primitives', 'fit', 'hulls' or None, got '{other:.60}'")))
-        }
+        Some(other) => Err(unknown_collision(&format!("'{other:.60}'"))),
     }
+}
+
+/// Reads `collision`, also where it is no text: `True` is a natural mistake.
+fn collision_name<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str>> {
+    let readable = value.is_none() || value.is_instance_of::<PyString>();
+    if readable { optional_text(value) } else { Err(unknown_collision(&summary(value))) }
+}
+
+fn unknown_collision(got: &str) -> PyErr {
+    invalid(format!("collision must be one of 'primitives', 'fit', 'hulls' or None, got {got}"))
 }
 
 /// Reads the names of tips: a list, or one.

@@ -6,14 +6,13 @@ use ikcore::load::read_link_mesh;
 use ikcore::nalgebra::{Matrix4, Vector3};
 use ikcore::robot::{Robot, Visual, VisualShape};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyDict, PyString, PyTuple};
 
 use super::body::PyBody;
 use crate::convert::{copied, counted, matrix4_array, row};
-use crate::error::raise;
+use crate::error::{misfit, raise};
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
 use crate::monitor::on_a_thread;
@@ -72,7 +71,7 @@ impl PyRobot {
     #[pyo3(signature = (*_arguments, **_options))]
     fn new(_arguments: &Bound<'_, PyTuple>, _options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let ways = "Robot.named(name), Robot.from_urdf(path), Robot.from_dh(...) or Robot.planar(lengths)";
-        Err(PyTypeError::new_err(format!("a robot is made by {ways}")))
+        Err(misfit(format!("a robot is made by {ways}")))
     }
 
     /// The robot's name.

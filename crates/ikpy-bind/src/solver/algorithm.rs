@@ -3,6 +3,7 @@
 use ikcore::solver::{Algorithm, DerivativeFree};
 use pyo3::PyClass;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use super::apps::PyApps;
 use super::bas::PyBas;
@@ -66,5 +67,7 @@ pub fn solver_names() -> String {
 
 /// The error for a `solver` argument that is no solver.
 pub(super) fn not_a_solver(value: &Bound<'_, PyAny>) -> PyErr {
-    invalid(format!("solver must be {}, got {}", solver_names(), summary(value)))
+    let object =
+        if value.is_instance_of::<PyString>() { ": give an object, such as bik.LevenbergMarquardt()" } else { "" };
+    invalid(format!("solver must be {}, got {}{object}", solver_names(), summary(value)))
 }

@@ -22,6 +22,7 @@ from ..options import (
     Seed,
     StartQ,
     TipLink,
+    Trusted,
     UrdfFile,
     Velocity,
     load_robot,
@@ -71,10 +72,11 @@ def along_path(
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion that moves the tip along a path."""
-    arm = load_robot(robot, urdf, base, tip, link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     path = _path(arm, curve, points)
     chosen = _method(method, solver) | options(velocity, acceleration, jerk, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)

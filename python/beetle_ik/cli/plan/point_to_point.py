@@ -18,6 +18,7 @@ from ..options import (
     SceneFile,
     Seed,
     TipLink,
+    Trusted,
     UrdfFile,
     Velocity,
     load_robot,
@@ -87,10 +88,11 @@ def point_to_point(
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
+    trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion between two places of the tip, or two configurations, from rest to rest."""
-    arm = load_robot(robot, urdf, base, tip, link_radius)
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)

@@ -1,0 +1,311 @@
+//! The gate of every call: an argument that does not fit is refused in the words of this library.
+//!
+//! PyO3 reads arguments before a function of ours runs. Its errors ("'bool' object is not an instance of 'str'") lack the argument
+//! and the value, and it has no hook for others. So each function, method and constructor of the module stands behind one that
+//! calls it and, where arguments did not fit, lets `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
+
+#![allow(unsafe_code, reason = "C functions of Python")]
+
+use std::collections::HashMap;
+use std::ffi::CString;
+use std::sync::OnceLock;
+
+use pyo3::exceptions::{PyOverflowError, PyRuntimeError, PyTypeError};
+use pyo3::ffi::{
+    self, METH_FASTCALL, METH_KEYWORDS, METH_STATIC, METH_VARARGS, PyCFunctionFastWithKeywords, PyMethodDef, PyObject,
+};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple, PyType};
+
+use crate::python_calls;
+
+/// How PyO3 is called by Python, unless a function has no arguments or takes any keyword.
+const FAST: i32 = METH_FASTCALL | METH_KEYWORDS;
+
+/// A function or method as PyO3 made it.
+struct Member {
+    object: Py<PyAny>,
+    /// Its C function. A method tells it only once it is bound to an instance.
+    call: OnceLock<PyCFunctionFastWithKeywords>,
+}
+
+/// The members behind each of [`GATES`].
+static MEMBERS: [OnceLock<Member>; GATES.len()] = [const { OnceLock::new() }; GATES.len()];
+
+/// The constructors of PyO3, by the address of their class.
+static CONSTRUCTORS: OnceLock<HashMap<usize, ffi::newfunc>> = OnceLock::new();
+
+/// A C function is told neither its name nor its object, so each member has a gate of its own.
+const GATES: [PyCFunctionFastWithKeywords; 128] = gates();
+
+macro_rules! sixteen {
+    ($gates:ident, $first:literal: $($i:literal)*) => { $( $gates[$first + $i] = gate::<{ $first + $i }>; )* };
+    ($gates:ident, $($first:literal)*) => {
+        $( sixteen!($gates, $first: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15); )*
+    };
+}
+
+const fn gates() -> [PyCFunctionFastWithKeywords; 128] {
+    let mut gates: [PyCFunctionFastWithKeywords; 128] = [gate::<0>; 128];
+    sixteen!(gates, 0 16 32 48 64 80 96 112);
+    gates
+}
+
+unsafe extern "C" fn gate<const I: usize>(
+    this: *mut PyObject,
+    arguments: *const *mut PyObject,
+    count: ffi::Py_ssize_t,
+    names: *mut PyObject,
+) -> *mut PyObject {
+    let Some(member) = MEMBERS[I].get() else { return std::ptr::null_mut() };
+    let Some(call) = member.call.get().or_else(|| member.resolved(this)) else { return std::ptr::null_mut() };
+    // SAFETY: these are the arguments of a call by Python, passed on as they are.
+    let made = unsafe { call(this, arguments, count, names) };
+    if made.is_null() {
+        Python::attach(|py| {
+            // SAFETY: as above: `count` positional arguments, then one for each entry of the tuple `names`.
+            let given = || unsafe { vector_arguments(py, arguments, count, names) };
+            reword(py, member.object.bind(py), given);
+        });
+    }
+    made
+}
+
+impl Member {
+    /// Finds the C function of a method by an instance; sets an exception where it is called in another way.
+    fn resolved(&self, this: *mut PyObject) -> Option<&PyCFunctionFastWithKeywords> {
+        Python::attach(|py| {
+            let object = self.object.bind(py);
+            // SAFETY: Python calls methods with an instance.
+            let this = unsafe { Bound::from_borrowed_ptr_or_opt(py, this) };
+            let found = object.call_method1(intern!(py, "__get__"), (this,)).and_then(|bound| fast_call(&bound));
+            match found {
+                Ok(Some(call)) => Some(self.call.get_or_init(|| call)),
+                Ok(None) => {
+                    PyRuntimeError::new_err(format!("{object} is called in a way that has no gate")).restore(py);
+                    None
+                }
+                Err(error) => {
+                    error.restore(py);
+                    None
+                }
+            }
+        })
+    }
+}
+
+/// The C function of a function or bound method; None for one that is called in another way.
+fn fast_call(function: &Bound<'_, PyAny>) -> PyResult<Option<PyCFunctionFastWithKeywords>> {
+    let function = function.cast::<PyCFunction>()?.as_ptr();
+    // SAFETY: it is a function of C, and the flags say which signature it has.
+    unsafe {
+        if ffi::PyCFunction_GetFlags(function) & !METH_STATIC != FAST {
+            return Ok(None);
+        }
+        let call = ffi::PyCFunction_GetFunction(function);
+        Ok(call.map(|call| std::mem::transmute::<ffi::PyCFunction, PyCFunctionFastWithKeywords>(call)))
+    }
+}
+
+/// Positional arguments and keywords of a call.
+type Given<'py> = (Bound<'py, PyTuple>, Bound<'py, PyDict>);
+
+/// Collects the arguments of a call; the instance that a method belongs to is not among them.
+///
+/// # Safety
+/// `arguments` has `count` entries, and one more for each entry of the tuple `names`, which may be null.
+unsafe fn vector_arguments<'py>(
+    py: Python<'py>,
+    arguments: *const *mut PyObject,
+    count: ffi::Py_ssize_t,
+    names: *mut PyObject,
+) -> PyResult<Given<'py>> {
+    // SAFETY: upheld by the caller.
+    let entry = |i: usize| unsafe { Bound::from_borrowed_ptr(py, *arguments.add(i)) };
+    // SAFETY: the same.
+    let names = unsafe { Bound::from_borrowed_ptr_or_opt(py, names) };
+    let count = usize::try_from(count)?;
+    let keywords = PyDict::new(py);
+    for (i, name) in names.iter().flat_map(|names| names.try_iter()).flatten().enumerate() {
+        keywords.set_item(name?, entry(count + i))?;
+    }
+    Ok((PyTuple::new(py, (0..count).map(entry))?, keywords))
+}
+
+/// Replaces the error of PyO3, if it is one, by ours.
+fn reword<'py>(py: Python<'py>, member: &Bound<'py, PyAny>, given: impl FnOnce() -> PyResult<Given<'py>>) {
+    let Some(error) = PyErr::take(py) else { return };
+    // An error that Python code raised, such as a function of the caller, has a traceback.
+    let of_arguments = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyOverflowError>(py);
+    let error = if of_arguments && error.traceback(py).is_none() {
+        given()
+            .and_then(|(arguments, keywords)| python_calls::worded(py, &error, member, &arguments, &keywords))
+            .unwrap_or(error)
+    } else {
+        error
+    };
+    error.restore(py);
+}
+
+/// Puts the functions and classes of the module behind gates.
+pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    let mut free = 0..GATES.len();
+    let mut constructors = HashMap::new();
+    let staticmethod = py.import("builtins")?.getattr("staticmethod")?;
+    let method = py.import("types")?.getattr("MethodDescriptorType")?;
+    for (name, value) in module.dict() {
+        if value.is_instance_of::<PyCFunction>() {
+            if let Some(gated) = gated_function(&value, module, Some(&module.name()?), &mut free)? {
+                module.setattr(name.cast()?, gated)?;
+            }
+            continue;
+        }
+        let Ok(class) = value.cast::<PyType>() else { continue };
+        for entry in class.getattr("__dict__")?.call_method0("items")?.try_iter()?.collect::<PyResult<Vec<_>>>()? {
+            let (key, value): (String, Bound<'_, PyAny>) = entry.extract()?;
+            let gated = if key == "__new__" {
+                gated_constructor(class, &mut constructors)?
+            } else if value.is_exact_instance(&staticmethod) {
+                let gated = gated_function(&value.getattr("__func__")?, class, None, &mut free)?;
+                gated.map(|gated| staticmethod.call1((gated,))).transpose()?
+            } else if value.is_exact_instance(&method) {
+                gated_method(class, &value, &mut free)?
+            } else {
+                None
+            };
+            if let Some(gated) = gated {
+                class.setattr(key.as_str(), gated)?;
+            }
+        }
+    }
+    let _ = CONSTRUCTORS.set(constructors);
+    Ok(())
+}
+
+/// Returns a function of a module or, without the name of one, a static method of a class behind a gate.
+fn gated_function<'py>(
+    function: &Bound<'py, PyAny>,
+    owner: &Bound<'py, PyAny>,
+    module: Option<&Bound<'py, PyString>>,
+    free: &mut impl Iterator<Item = usize>,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Some(call) = fast_call(function)? else { return Ok(None) };
+    let kind = if module.is_some() { 0 } else { METH_STATIC };
+    let definition = behind_gate(function, Some(call), kind, free)?;
+    let name = module.map_or(std::ptr::null_mut(), |name| name.as_ptr());
+    // SAFETY: the definition is never freed; Python counts its own references to the others.
+    let made = unsafe { ffi::PyCFunction_NewEx(definition, owner.as_ptr(), name) };
+    // SAFETY: a new reference, or null with an exception.
+    unsafe { Bound::from_owned_ptr_or_err(function.py(), made) }.map(Some)
+}
+
+fn gated_method<'py>(
+    class: &Bound<'py, PyType>,
+    method: &Bound<'py, PyAny>,
+    free: &mut impl Iterator<Item = usize>,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let signature: Option<String> = method.getattr("__text_signature__")?.extract()?;
+    if signature.is_none_or(|signature| signature == "($self)") {
+        return Ok(None);
+    }
+    let definition = behind_gate(method, None, 0, free)?;
+    // SAFETY: the definition is never freed, and the class is one.
+    let made = unsafe { ffi::PyDescr_NewMethod(class.as_type_ptr(), definition) };
+    // SAFETY: a new reference, or null with an exception.
+    unsafe { Bound::from_owned_ptr_or_err(class.py(), made) }.map(Some)
+}
+
+/// Defines a function that has the name and the docstring of a member, behind a gate that is free.
+fn behind_gate(
+    member: &Bound<'_, PyAny>,
+    call: Option<PyCFunctionFastWithKeywords>,
+    kind: i32,
+    free: &mut impl Iterator<Item = usize>,
+) -> PyResult<*mut PyMethodDef> {
+    let text = |attribute: &str| member.getattr(attribute)?.extract::<Option<String>>();
+    let name = text("__name__")?.unwrap_or_default();
+    let doc = format!(
+        "{name}{}\n--\n\n{}",
+        text("__text_signature__")?.unwrap_or_default(),
+        text("__doc__")?.unwrap_or_default()
+    );
+    let too_many = || PyRuntimeError::new_err("more functions than gates");
+    let i = free.next().ok_or_else(too_many)?;
+    let known = call.map_or_else(OnceLock::new, OnceLock::from);
+    let _ = MEMBERS[i].set(Member { object: member.clone().unbind(), call: known });
+    Ok(Box::into_raw(Box::new(PyMethodDef {
+        ml_name: CString::new(name)?.into_raw(),
+        ml_meth: ffi::PyMethodDefPointer { PyCFunctionFastWithKeywords: GATES[i] },
+        ml_flags: FAST | kind,
+        ml_doc: CString::new(doc)?.into_raw(),
+    })))
+}
+
+/// Returns `__new__` behind a gate; None for a class that only the library makes.
+fn gated_constructor<'py>(
+    class: &Bound<'py, PyType>,
+    constructors: &mut HashMap<usize, ffi::newfunc>,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    if class.getattr("__text_signature__")?.is_none() {
+        return Ok(None);
+    }
+    // SAFETY: the class is one, and its slot is the constructor that PyO3 made.
+    let slot = unsafe { ffi::PyType_GetSlot(class.as_type_ptr(), ffi::Py_tp_new) };
+    if slot.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the slot has this type.
+    let make = unsafe { std::mem::transmute::<*mut std::ffi::c_void, ffi::newfunc>(slot) };
+    constructors.insert(class.as_ptr() as usize, make);
+    let definition = Box::into_raw(Box::new(PyMethodDef {
+        ml_name: c"__new__".as_ptr(),
+        ml_meth: ffi::PyMethodDefPointer { PyCFunctionWithKeywords: construct },
+        ml_flags: METH_VARARGS | METH_KEYWORDS,
+        ml_doc: std::ptr::null(),
+    }));
+    // SAFETY: the definition is never freed.
+    let made = unsafe { ffi::PyCFunction_NewEx(definition, class.as_ptr(), std::ptr::null_mut()) };
+    // SAFETY: a new reference, or null with an exception.
+    unsafe { Bound::from_owned_ptr_or_err(class.py(), made) }.map(Some)
+}
+
+/// Makes an instance. The first argument is the class, or one derived from it.
+unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywords: *mut PyObject) -> *mut PyObject {
+    Python::attach(|py| {
+        // SAFETY: Python calls with the class that the function belongs to, a tuple, and a dict or null.
+        let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };
+        match derived(&class, &given) {
+            Ok((make, made, arguments)) => {
+                // SAFETY: the constructor is that of a class that `made` derives from.
+                let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
+                if instance.is_null() {
+                    // SAFETY: as above.
+                    let named = unsafe { Bound::from_borrowed_ptr_or_opt(py, keywords) };
+                    let named = named.and_then(|named| named.cast_into().ok()).unwrap_or_else(|| PyDict::new(py));
+                    reword(py, made.as_any(), || Ok((arguments, named)));
+                }
+                instance
+            }
+            Err(error) => {
+                error.restore(py);
+                std::ptr::null_mut()
+            }
+        }
+    })
+}
+
+/// Returns the constructor of a class, the class that it is called for, and the arguments after that.
+fn derived<'py>(
+    class: &Bound<'py, PyAny>,
+    given: &Bound<'py, PyAny>,
+) -> PyResult<(ffi::newfunc, Bound<'py, PyType>, Bound<'py, PyTuple>)> {
+    let given = given.cast::<PyTuple>()?;
+    let made = given.get_item(0).ok().and_then(|made| made.cast_into::<PyType>().ok());
+    let make = CONSTRUCTORS.get().and_then(|all| all.get(&(class.as_ptr() as usize)));
+    match (make, made) {
+        (Some(make), Some(made)) if made.is_subclass(class)? => Ok((*make, made, given.get_slice(1, given.len()))),
+        _ => Err(PyTypeError::new_err(format!("__new__() needs {class} first, or a class derived from it"))),
+    }
+}
