@@ -23,8 +23,8 @@ ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "static" / "pictures"
 sys.path.insert(0, str(ROOT / "docs" / "extensions"))
 _SIZE, _BAR = (640, 432), 40  # pixels; the bar below is the player's
-_UNDER_WAY, _PATIENCE = 3000, 120_000  # ms
-_NO_NOTES = ".mantine-Notification-root { display: none !important; }"
+_UNDER_WAY, _PATIENCE = 9000, 120_000  # ms; shapes fade in
+_NO_NOTES = ".mantine-Notification-root, .mantine-ActionIcon-root { display: none !important; }"
 
 
 def take(browser: Any, address: str, name: str) -> bytes:

@@ -44,7 +44,7 @@ class Example(NamedTuple):
 
 OF_EXAMPLES = {
     "01_pose_ik": Example(result="solution"),
-    "02_your_urdf": Example(result="solution"),
+    "02_your_urdf": Example(result="solution", camera=WIDE, at=(0.2, 0.0, 0.5)),
     "03_pointing": Example(result="pointing"),
     "05_all_solutions": Example(result="solutions"),
     "06_self_motion": Example(result="longest"),
