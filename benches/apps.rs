@@ -10,7 +10,7 @@ use ikcore::problem::Problem;
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, Apps, JacobianTranspose, LevenbergMarquardt, NewtonRaphson};
 use ikcore::solver::{Stop, Unattended};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Aims, Target, Tolerance};
 
 /// Joint angles (degrees) from which each motion starts, and the position (m) that it leads to: Tables 3 and 4.
 const MOTIONS: [(&str, [f64; 6], [f64; 3]); 6] = [
@@ -77,7 +77,8 @@ fn iteration(c: &mut Criterion) {
         });
     }
     group.throughput(Throughput::Elements(1));
-    let mut problem = Problem::new(&robot, &target, Tolerance::default());
+    let task = Tolerance::default().into();
+    let mut problem = Problem::new(&robot, Aims::of_one(&task, &target));
     let q: Vec<f64> = start.iter().map(|angle| angle.to_radians()).collect();
     let mut gradient = [0.0; 6];
     group.bench_function("error and gradient", |b| b.iter(|| problem.differentiate(&q, &mut gradient)));

@@ -17,7 +17,7 @@ fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Option<Lim
 }
 
 fn plane(c: &mut Criterion) {
-    let position = |x, y| Endpoint::Target(Target::Position([x, y, 0.0]));
+    let position = |x, y| Endpoint::from(Target::Position([x, y, 0.0]));
     let mut group = c.benchmark_group("point_to_point");
     for links in 2..=5 {
         let arm = Robot::planar(&vec![2.0 / links as f64; links]).expect("an arm");
@@ -38,7 +38,7 @@ fn panda(c: &mut Criterion) {
     let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
     let mut group = c.benchmark_group("point_to_point");
     for (name, obstacle, start, end) in [
-        ("panda behind a box", &crate_, Endpoint::Configuration(centre), Endpoint::Target(Target::from(&behind))),
+        ("panda behind a box", &crate_, Endpoint::Configuration(centre), Endpoint::from(Target::from(&behind))),
         ("panda around a wall", &wall, side(-0.7), side(0.7)),
     ] {
         let options = PointToPointOptions {

@@ -15,7 +15,7 @@ use ikcore::solver::{
     Algorithm, AnySolver, Bas, BasVariant, BeeColony, BeetleSwarm, DifferentialEvolution, Evaluator, Firefly, Genetic,
     Pso, PsoForm, Qpso, Schedule, Stop, Unattended,
 };
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Aims, Target, Tolerance};
 
 const EVALUATIONS: usize = 20_000;
 const POPULATION: usize = 40;
@@ -134,7 +134,8 @@ fn sphere(c: &mut Criterion) {
 fn iiwa14(c: &mut Criterion) {
     let robot = Robot::named("iiwa14").expect("a built-in robot");
     let target = Target::Position([0.4, 0.3, 0.8]);
-    let mut problem = Unsolved(Problem::new(&robot, &target, Tolerance::default()));
+    let task = Tolerance::default().into();
+    let mut problem = Unsolved(Problem::new(&robot, Aims::of_one(&task, &target)));
     let mut group = c.benchmark_group("position of iiwa14, per evaluation");
     for (name, solver) in swarms() {
         spend(&mut group, name, solver, &mut problem);

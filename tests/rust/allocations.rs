@@ -88,7 +88,7 @@ fn count_allocations(arm: &Robot, surroundings: Surroundings, ticks: usize) {
         let target = Target::Pose(Frame { origin, ..tip });
         let arrives = tick.is_multiple_of(5) && (tick / 2500) % 3 != 2;
         let stamp = Some((session.time() - 0.02).max(0.0));
-        let arrival = arrives.then_some(Arrival { target, velocity: None, stamp });
+        let arrival = arrives.then(|| Arrival { stamp, ..target.into() });
         session.advance(arrival, &mut Unattended).unwrap();
     };
     let first = if options.surroundings == Surroundings::default() { 1 } else { ticks / 10 };

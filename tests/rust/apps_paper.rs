@@ -14,7 +14,7 @@ use ikcore::rng;
 use ikcore::robot::{Joint, Robot};
 use ikcore::solver::{Algorithm, AnySolver, Apps, JacobianTranspose, LearningRate, LevenbergMarquardt, NewtonRaphson};
 use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::{Components, Criterion, Target, Tolerance};
+use ikcore::task::{Aims, Components, Criterion, Target, Tolerance};
 
 /// Joint angles before the first motion (degrees), Table 3.
 const START: [f64; 6] = [0.01, -78.33, 183.51, 0.16, -44.87, -179.93];
@@ -256,7 +256,8 @@ fn gradients_match_central_differences() {
         for pair in drawn.chunks_exact(2 * n) {
             let (q, goal) = pair.split_at(n);
             for (target, criterion) in kinds_of_target(robot.tip(goal)) {
-                let mut problem = Problem::new(&robot, &target, criterion);
+                let task = criterion.into();
+                let mut problem = Problem::new(&robot, Aims::of_one(&task, &target));
                 let mut gradient = vec![0.0; n];
                 let slope = problem.differentiate(q, &mut gradient);
                 let score = problem.evaluate(q);

@@ -13,7 +13,7 @@ use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, BestPoint, DerivativeFree, Evaluator, Monitor, Status, Stop, Unattended};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Aims, Target, TipCriterion, Tolerance};
 
 /// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
 const POLL: usize = 256 + 16;
@@ -147,6 +147,7 @@ impl LeastSquares for Probe {
 }
 
 static ARM: LazyLock<Robot> = LazyLock::new(|| robot("iiwa14"));
+static TASK: LazyLock<TipCriterion> = LazyLock::new(|| Tolerance::default().into());
 static POSE: LazyLock<Target> = LazyLock::new(|| pose_at(&ARM, &[0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1]));
 
 /// What is minimised, where from, and under which rules.
@@ -190,7 +191,7 @@ fn arm() -> Case {
     let limits = |side: fn(&ikcore::robot::Joint) -> f64| ARM.joints().iter().map(side).collect::<Vec<_>>();
     Case {
         name: "pose of iiwa14",
-        problem: || Box::new(Problem::new(&ARM, &POSE, Tolerance::default())),
+        problem: || Box::new(Problem::new(&ARM, Aims::of_one(&TASK, &POSE))),
         start: vec![0.1; 7],
         bounds: Bounds::new(&limits(|joint| joint.lower), &limits(|joint| joint.upper)).unwrap(),
         ..valley()
@@ -201,7 +202,7 @@ fn arm() -> Case {
 fn turning_arm() -> Case {
     Case {
         name: "pose of iiwa14 up to whole turns",
-        problem: || Box::new(Problem::new(&ARM, &POSE, Tolerance::default()).disregarding_turns()),
+        problem: || Box::new(Problem::new(&ARM, Aims::of_one(&TASK, &POSE)).disregarding_turns()),
         ..arm()
     }
 }

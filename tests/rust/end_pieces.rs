@@ -93,7 +93,7 @@ fn lines_are_straight_within_all_limits() {
                 limits: Some(limits.clone()),
                 ..Default::default()
             };
-            let ends = [Endpoint::Target(Target::Pose(tip))];
+            let ends = [Endpoint::from(Target::Pose(tip))];
             let start = Endpoint::Configuration(start);
             let plan = match plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended) {
                 Ok(plan) => plan,
@@ -128,7 +128,7 @@ fn a_line_keeps_what_the_task_asks_for() {
         let options = PointToPointOptions { task: Some(task), approach: line(0.1), ..options(&robot) };
         let held = task.robot(&robot).unwrap().unwrap_or_else(|| robot.clone());
         let tip = held.tip(&[0.9, 0.5, 0.2, -1.3, 0.1, 1.6, 0.3]);
-        let ends = [Endpoint::Target(Target::Pose(tip))];
+        let ends = [Endpoint::from(Target::Pose(tip))];
         let plan = plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         let [.., back, end] = rests(&plan)[..] else { panic!("no line") };
@@ -247,7 +247,7 @@ impl Monitor for Never {
 fn pieces_end_with_the_time_and_the_monitor() {
     let robot = panda();
     let end = robot.tip(&[0.9, 0.5, 0.2, -1.3, 0.1, 1.6, 0.3]);
-    let ends = [Endpoint::Target(Target::Pose(end))];
+    let ends = [Endpoint::from(Target::Pose(end))];
     let start = Endpoint::Configuration(READY.to_vec());
     let with = |stop| PointToPointOptions { approach: line(0.1), retreat: line(0.05), stop, ..options(&robot) };
     let nothing_left = Stop { max_time: Some(std::time::Duration::ZERO), ..Stop::default() };

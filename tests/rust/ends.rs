@@ -71,7 +71,7 @@ fn the_cheapest_of_several_configurations_is_taken() {
 fn the_cheapest_of_several_poses_is_taken() {
     let robot = panda();
     let poses: Vec<Target> = configurations(&robot, 6).iter().map(|q| Target::from(&robot.fk(q).unwrap())).collect();
-    let ends: Vec<Endpoint> = poses.iter().copied().map(Endpoint::Target).collect();
+    let ends: Vec<Endpoint> = poses.iter().copied().map(Endpoint::from).collect();
     let options = PointToPointOptions { self_collision: Some(false), ..options(&robot) };
     let plan = planned(&robot, &ends, &options);
     let alone: Vec<f64> = ends.iter().map(|end| planned(&robot, std::slice::from_ref(end), &options).cost).collect();
@@ -89,7 +89,7 @@ fn ends_that_cannot_be_reached_are_passed_over_unless_all_are() {
     let robot = panda();
     let ball = Shape::sphere([0.5, 0.0, 0.3], 0.1).unwrap();
     let among = PointToPointOptions { obstacles: vec![ball].into(), ..options(&robot) };
-    let far = |x: f64| Endpoint::Target(Target::Position([x, 0.0, 0.0]));
+    let far = |x: f64| Endpoint::from(Target::Position([x, 0.0, 0.0]));
     let beyond = Endpoint::Configuration(vec![9.0; 7]);
     let hitting = Endpoint::Configuration(vec![0.0, 0.9, 0.0, -1.6, 0.0, 2.4, 0.8]);
     let good = Endpoint::Configuration(vec![0.9, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8]);
@@ -124,7 +124,7 @@ fn a_wrong_end_is_named_by_its_index() {
     let robot = panda();
     let options = options(&robot);
     let good = Endpoint::Configuration(vec![0.1; 7]);
-    let at = |y: f64| Endpoint::Target(Target::Position([0.5, y, 0.5]));
+    let at = |y: f64| Endpoint::from(Target::Position([0.5, y, 0.5]));
     for (ends, expected) in [
         (vec![], "no end was given: give at least one"),
         (vec![at(0.1), at(f64::NAN)], "end[1] must be finite, but coordinate y is NaN"),
@@ -158,7 +158,7 @@ fn a_wrong_end_is_named_by_its_index() {
 fn a_task_leaves_a_part_of_the_end_to_the_planner() {
     let robot = panda();
     let end = robot.tip(&[0.9, 0.5, 0.2, -1.3, 0.1, 1.6, 0.3]);
-    let ends = [Endpoint::Target(Target::Pose(end))];
+    let ends = [Endpoint::from(Target::Pose(end))];
     let pointing = TaskKind::Pointing { axis: [0.0, 0.0, 1.0] };
     let mut tool = Pose::identity();
     tool.translation.vector.z = 0.1;
@@ -187,7 +187,7 @@ fn an_end_is_anywhere_in_a_region() {
     let (lower, upper) = ([0.3, 0.3, 0.2], [0.5, 0.5, 0.4]);
     let height = Task::new(TaskKind::Position, Some(&[0.0, 0.0, 1.0]), None, None).unwrap();
     let task = height.within(Region::new(lower, upper).unwrap()).unwrap();
-    let ends = [Endpoint::Target(Target::Position([0.0, 0.0, 0.3]))];
+    let ends = [Endpoint::from(Target::Position([0.0, 0.0, 0.3]))];
     for obstacles in [vec![], vec![Shape::sphere([0.6, 0.3, 0.5], 0.05).unwrap()]] {
         let options = PointToPointOptions { task: Some(task), obstacles: obstacles.into(), ..options(&robot) };
         let tip = robot.tip_position(&last_of(&planned(&robot, &ends, &options)));

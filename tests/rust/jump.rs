@@ -26,7 +26,7 @@ fn follow(acceleration: Option<f64>, offset: [f64; 3], velocity: [f64; 3], ticks
     let mut session = Session::new(&iiwa, &START, DT, &options).unwrap();
     let shifted = |by: [f64; 3]| pose_at(&iiwa, &START).moved(&Twist { linear: by, angular: [0.0; 3] }, 1.0);
     let at = |tick: usize| shifted(std::array::from_fn(|k| offset[k] + tick as f64 * DT * velocity[k]));
-    session.begin(&pose_at(&iiwa, &START), None).unwrap();
+    session.begin(pose_at(&iiwa, &START).into()).unwrap();
     let mut step = |tick: usize| {
         let step = session.step(&at(tick), &mut Unattended).unwrap();
         assert!(step.inside_limits, "tick {tick}");

@@ -8,7 +8,7 @@ use ikcore::objective::{Objective, Score};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Aims, Target, Tolerance};
 
 /// Forty chains of 1 to 12 joints, up to 16 of them moving with their mimics, and five of 30 to 50, up to 64 of them moving; each with
 /// a configuration up to a turn and a half from zero.
@@ -109,7 +109,8 @@ fn side_by_side_gives_the_bits_of_one_by_one() {
 fn any_number_of_points_scores_as_one_by_one() {
     for (chain, q) in chains().take(12) {
         let target = Target::Position(chain.robot.tip_position(&q));
-        let mut problem = Problem::new(&chain.robot, &target, Tolerance::default());
+        let task = Tolerance::default().into();
+        let mut problem = Problem::new(&chain.robot, Aims::of_one(&task, &target));
         for count in 1..=9 {
             let qs = chain.robot.random_configurations(count, &mut rng::stream(4, 0)).unwrap();
             let mut scores = vec![Score { value: f64::NAN, solved: false }; count];

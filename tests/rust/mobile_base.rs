@@ -15,7 +15,7 @@ use ikcore::rng;
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
 use ikcore::shape::Shape;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Goal, Subject, Target, TipTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 
 use crate::common::{assert_derivative, configurations, message, pose_at};
 use crate::tips::two_arms;
@@ -200,7 +200,7 @@ fn both_hands_of_a_floating_torso() {
     let torso = Robot::from_urdf_with(&two_arms(), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap();
     let robot = torso.with_mobile_base(MobileBase::Floating, &limits(&FLOATING)).unwrap();
     assert_eq!(robot.dof(), torso.dof() + 6);
-    let task = |tip| TipTask { subject: Subject::Tip(tip), task: None, tolerance: Tolerance::default() };
+    let task = |tip| NamedTask { subject: Subject::Tip(tip), task: None, tolerance: Tolerance::default() };
     for (seed, q) in (0..).zip(configurations(&robot, 20)) {
         let base = base_at(&q, 6);
         let [left, right] = ["left_tool", "right_tool"].map(|link| robot.link_fk(link, &q).unwrap());

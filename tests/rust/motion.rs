@@ -188,7 +188,7 @@ fn no_target_makes_the_arm_break_a_limit_and_it_can_always_stop() {
         let length = 200 + 37 * run;
         for tick in 0..length {
             let target = hostile(run % 5, tick, from, &mut draws);
-            let arrival = Arrival { target: Target::Position(target), velocity: None, stamp: None };
+            let arrival = Arrival::from(Target::Position(target));
             let arrival = (tick % 13 != 5).then_some(arrival);
             let step = session.advance(arrival, &mut Unattended).unwrap();
             assert!(step.inside_limits, "run {run} tick {tick}");
@@ -264,8 +264,7 @@ fn rare_late_targets_are_followed_smoothly() {
         let now = dt * f64::from(tick);
         // 62.5 Hz, 50 ms late.
         let stamp = (tick % 8 == 0 && now > latency).then_some(now - latency);
-        let arrival =
-            stamp.map(|stamp| Arrival { target: Target::Position(path(stamp)), velocity: None, stamp: Some(stamp) });
+        let arrival = stamp.map(|stamp| Arrival { stamp: Some(stamp), ..Target::Position(path(stamp)).into() });
         session.advance(arrival, &mut Unattended).unwrap();
         if tick > 1000 {
             worst = worst.max(distance(arm.tip_position(session.q()), path(now)));
@@ -293,7 +292,7 @@ fn stream_error(noise: f64, jerk: f64, held: bool) -> f64 {
         if arrives {
             last = path(tick).map(|x| x + noise * normal(&mut draws));
         }
-        let arrival = Arrival { target: Target::Position(last), velocity: None, stamp: None };
+        let arrival = Arrival::from(Target::Position(last));
         session.advance((arrives || held).then_some(arrival), &mut Unattended).unwrap();
         if tick > 2000 {
             sum += distance(arm.tip_position(session.q()), path(tick)).powi(2) / 2000.0;
@@ -356,7 +355,7 @@ fn stamps_may_be_closer_than_ticks() {
     for tick in 1..400 {
         let stamp = 0.002 * f64::from(tick);
         let target = [from[0], from[1] + 0.1 * stamp.sin() + 1e-4 * normal(&mut draws), from[2]];
-        let arrival = Arrival { target: Target::Position(target), velocity: None, stamp: Some(stamp) };
+        let arrival = Arrival { stamp: Some(stamp), ..Target::Position(target).into() };
         assert!(session.advance(Some(arrival), &mut Unattended).unwrap().inside_limits);
     }
     assert!(distance(arm.tip_position(session.q()), from) < 0.12);
@@ -366,7 +365,7 @@ fn stamps_may_be_closer_than_ticks() {
 fn stamps_are_checked() {
     let arm = robot("panda");
     let target = Target::Position([0.3, 0.4, 0.5]);
-    let stamped = |stamp: f64| Some(Arrival { target, velocity: None, stamp: Some(stamp) });
+    let stamped = |stamp: f64| Some(Arrival { stamp: Some(stamp), ..target.into() });
     let mut limited = session(&arm, moderate(&arm, 50.0), 0.01);
     let error = limited.advance(stamped(0.5), &mut Unattended).unwrap_err().to_string();
     assert_eq!(error, "stamp must be at most 0.01, the end of the tick (s), got 0.5");

@@ -23,7 +23,7 @@ fn to(end: Endpoint, options: &Arc<PointToPointOptions>) -> PlanProblem {
 }
 
 fn at(position: [f64; 3]) -> Endpoint {
-    Endpoint::Target(Target::Position(position))
+    Endpoint::from(Target::Position(position))
 }
 
 /// Around a ball, beside it, and out of reach.
@@ -65,7 +65,7 @@ fn each_item_is_what_a_single_plan_is_on_any_number_of_threads() {
         let status: Vec<Status> = results.iter().map(plan_status).collect();
         assert_eq!((status[0], status[8]), (Status::Solved, Status::OutOfReach), "{status:?}");
     }
-    assert!(plan_batch::<Endpoint>(&robot, &[], None, &mut Unattended).unwrap().is_empty());
+    assert!(plan_batch(&robot, &[], None, &mut Unattended).unwrap().is_empty());
 }
 
 #[test]

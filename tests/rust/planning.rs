@@ -31,7 +31,7 @@ fn limits(robot: &Robot, acceleration: f64) -> Limits {
 }
 
 fn at(x: f64, y: f64) -> Endpoint {
-    Endpoint::Target(Target::Position([x, y, 0.0]))
+    Endpoint::from(Target::Position([x, y, 0.0]))
 }
 
 /// The paper's motion, from (1, 0) to (0.5, 1.5), by the paper's method unless `options` name another search.
@@ -177,7 +177,7 @@ fn robots_in_space_reach_both_poses() {
         let limits = Some(Limits::of(&robot).replace(Field::Acceleration, acceleration).unwrap());
         let qs = robot.random_configurations(2, &mut rng::stream(5, 0)).unwrap();
         let poses: Vec<Frame> = qs.chunks(robot.dof()).map(|q| robot.tip(q)).collect();
-        let ends = poses.iter().map(|pose| Endpoint::Target(Target::Pose(*pose))).collect::<Vec<_>>();
+        let ends = poses.iter().map(|pose| Endpoint::from(Target::Pose(*pose))).collect::<Vec<_>>();
         let options = PointToPointOptions { method: by_evolution(), limits, ..Default::default() };
         let plan = plan_point_to_point(&robot, &ends[0], &ends[1..], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{name}: {}", plan.message());

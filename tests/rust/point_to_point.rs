@@ -21,7 +21,7 @@ fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Limits {
 }
 
 fn position(x: f64, y: f64) -> Endpoint {
-    Endpoint::Target(Target::Position([x, y, 0.0]))
+    Endpoint::from(Target::Position([x, y, 0.0]))
 }
 
 fn states(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
@@ -75,7 +75,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
         let quintic = |a: &[f64], b: &[f64]| (0..6).map(|j| rest_to_rest(j, way(j, b[j] - a[j]))).fold(0.0, f64::max);
         let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
         let least = all.fold(f64::INFINITY, f64::min);
-        let [start, end] = [0, 1].map(|i| Endpoint::Target(pair[i]));
+        let [start, end] = [0, 1].map(|i| Endpoint::from(pair[i]));
         let plan = plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
@@ -92,7 +92,7 @@ fn poses_behind(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<Endpoin
         let tip = robot.fk(&q).unwrap();
         let [x, y, z] = tip.translation.vector.into();
         if x > 0.62 && y.abs() < 0.3 && (0.0..0.4).contains(&z) && scene.is_clear(&q, 0.002) {
-            found.push(Endpoint::Target(Target::from(&tip)));
+            found.push(Endpoint::from(Target::from(&tip)));
         }
     }
     found
@@ -123,9 +123,9 @@ fn arms_find_their_way_around_a_box() {
                 let clearance = plan.clearance.unwrap();
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
-                if let [Endpoint::Target(target)] = &ends {
+                if let [Endpoint::Targets { targets, .. }] = &ends {
                     let error = ikcore::task::TipError::from(
-                        target.assess(&robot, &reached, &Tolerance::default().into()).error,
+                        targets[0].assess(&robot, &reached, &Tolerance::default().into()).error,
                     );
                     assert!(error.position < 2e-6 && error.rotation < 2e-6, "{error}");
                 }
@@ -398,7 +398,7 @@ fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
         stop,
         ..Default::default()
     };
-    let [start, end] = [-0.5, 0.5].map(|y| Endpoint::Target(Target::Position([0.8, y, 0.0])));
+    let [start, end] = [-0.5, 0.5].map(|y| Endpoint::from(Target::Position([0.8, y, 0.0])));
     plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
 

@@ -11,7 +11,7 @@ use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Aims, Target, Tolerance};
 
 /// Starts that the index has for one target.
 const INDEXED: usize = 8;
@@ -23,7 +23,8 @@ fn box_of(robot: &Robot) -> Bounds {
 
 /// The first `count` starts proposed for `target`.
 fn starts(robot: &Robot, target: &Target, bounds: &Bounds, seed: u64, count: usize) -> Vec<Vec<f64>> {
-    let mut problem = Problem::new(robot, target, Tolerance::default());
+    let task = Tolerance::default().into();
+    let mut problem = Problem::new(robot, Aims::of_one(&task, target));
     let mut rng = rng::stream(seed, 0);
     let propose = |attempt| {
         let mut q = vec![0.0; robot.dof()];

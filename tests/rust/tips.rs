@@ -12,11 +12,11 @@ use ikcore::manipulability::Motion;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::Matrix4;
 use ikcore::obstacle::Surroundings;
-use ikcore::planning::{PointToPointOptions, TipsEndpoint, plan_point_to_point_tips};
+use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Goal, Subject, Target, Task, TaskKind, TipTask, Tolerance};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 
 /// A lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
 pub fn two_arms() -> String {
@@ -70,8 +70,8 @@ fn tip(name: &str, q: &[f64]) -> Pose {
     PAIR.link_fk(name, q).unwrap()
 }
 
-fn task(subject: Subject) -> TipTask {
-    TipTask { subject, task: None, tolerance: Tolerance::default() }
+fn task(subject: Subject) -> NamedTask {
+    NamedTask { subject, task: None, tolerance: Tolerance::default() }
 }
 
 const LEFT: Subject = Subject::Tip(0);
@@ -164,8 +164,8 @@ fn each_tip_has_its_own_task_tolerance_and_tool() {
     let with_tool = tip("left_tool", &q) * tool;
     let asked = SolveOptions {
         tips: vec![
-            TipTask { task: Some(Task { tool: Some(tool), ..TaskKind::Pose.into() }), ..task(LEFT) },
-            TipTask {
+            NamedTask { task: Some(Task { tool: Some(tool), ..TaskKind::Pose.into() }), ..task(LEFT) },
+            NamedTask {
                 task: Some(TaskKind::Position.into()),
                 tolerance: Tolerance { position: 1e-3, rotation: 1e-6 },
                 ..task(RIGHT)
@@ -347,10 +347,9 @@ fn motions_join_configurations_of_all_tips() {
     let space = space.clear_space(&PAIR).unwrap().unwrap();
     let clear: Vec<Vec<f64>> = random(40).into_iter().filter(|q| space.holds(q)).collect();
     let (first, second) = (&clear[0], &clear[1]);
-    let start = TipsEndpoint::Configuration(first.clone());
-    let tasks = [LEFT, RIGHT].map(task);
-    let end = TipsEndpoint::Targets(tasks.into_iter().zip(both(second)).collect());
-    let plan = plan_point_to_point_tips(&PAIR, &start, &[end], &options, &mut Unattended).unwrap();
+    let start = Endpoint::Configuration(first.clone());
+    let end = Endpoint::Targets { tips: [LEFT, RIGHT].map(task).to_vec(), targets: both(second).into_iter().collect() };
+    let plan = plan_point_to_point(&PAIR, &start, &[end], &options, &mut Unattended).unwrap();
     assert_eq!((plan.status, plan.chosen_end), (Status::Solved, Some(0)), "{}", plan.message());
     let at = |t: f64| {
         let mut state = [const { [0.0; 15] }; 3];
@@ -364,8 +363,8 @@ fn motions_join_configurations_of_all_tips() {
     }
     let q = at(duration);
     assert!(far(&tip("right_tool", &q), &tip("right_tool", second)) < 3e-6);
-    let short = TipsEndpoint::Configuration(vec![0.0; 3]);
-    let ends = [TipsEndpoint::Configuration(second.clone())];
-    let error = plan_point_to_point_tips(&PAIR, &short, &ends, &options, &mut Unattended).unwrap_err().to_string();
+    let short = Endpoint::Configuration(vec![0.0; 3]);
+    let ends = [Endpoint::Configuration(second.clone())];
+    let error = plan_point_to_point(&PAIR, &short, &ends, &options, &mut Unattended).unwrap_err().to_string();
     assert_eq!(error, "start_q of robot 'pair': expected 15 joints, got 3");
 }

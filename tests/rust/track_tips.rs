@@ -7,8 +7,8 @@ use ikcore::math::{Pose, pose};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::task::{Goal, Subject, Target, TipTask, Tolerance};
-use ikcore::tracking::{Session, TipArrival, TrackOptions};
+use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
+use ikcore::tracking::{Arrival, Session, TrackOptions};
 
 use crate::tips::two_arms;
 
@@ -25,19 +25,19 @@ fn tray() -> Pose {
     pose::from_rpy([0.0; 3], [0.0, -0.5, 0.0])
 }
 
-fn task(subject: Subject) -> TipTask {
-    TipTask { subject, task: None, tolerance: Tolerance::default() }
+fn task(subject: Subject) -> NamedTask {
+    NamedTask { subject, task: None, tolerance: Tolerance::default() }
 }
 
 /// The left hand to `left`, with the tray.
-fn targets(left: &Pose) -> Vec<(TipTask, Target)> {
+fn targets(left: &Pose) -> Vec<(NamedTask, Target)> {
     vec![(task(Subject::Tip(0)), Target::from(left)), (task(PAIR), Target::from(&tray()))]
 }
 
 fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
-    let (tips, wanted): (Vec<TipTask>, Vec<Target>) = targets(left).into_iter().unzip();
+    let (tips, wanted): (Vec<NamedTask>, Vec<Target>) = targets(left).into_iter().unzip();
     let tight = Tolerance { position: 1e-9, rotation: 1e-9 };
-    let tips = tips.into_iter().map(|task| TipTask { tolerance: tight, ..task }).collect();
+    let tips = tips.into_iter().map(|task| NamedTask { tolerance: tight, ..task }).collect();
     let options = SolveOptions { tips, goals: vec![Goal::Centring { weight: 1.0 }], ..SolveOptions::default() };
     solve_tips(robot, &wanted, &options, &mut Unattended).unwrap().q.to_vec()
 }
@@ -92,8 +92,8 @@ fn a_tray_stays_in_both_hands_wherever_they_are_sent() {
             if tick == 500 {
                 session.stop();
             }
-            let arrival = (tick < 500).then(|| TipArrival { targets: targets(&target), stamp: None });
-            session.advance_tips(arrival, &mut Unattended).unwrap();
+            let arrival = (tick < 500).then(|| targets(&target).into_iter().collect::<Arrival>());
+            session.advance(arrival, &mut Unattended).unwrap();
             let slip = slip(&robot, session.q());
             assert!(slip < 1e-9, "tick {tick}: slips by {slip:.1e}, {acceleration} {jerk}");
             rows.push(session.q().to_vec());
@@ -123,8 +123,8 @@ fn a_tray_stops_in_the_time_that_is_said() {
         for stop in 0..12 {
             let target = forward([0.5, 0.25, 0.9].map(|x| x + draws.uniform_in(-0.3, 0.3)), [0.0; 3]);
             for _ in 0..10 + 2 * stop {
-                let arrival = TipArrival { targets: targets(&target), stamp: None };
-                session.advance_tips(Some(arrival), &mut Unattended).unwrap();
+                let arrival: Arrival = targets(&target).into_iter().collect();
+                session.advance(Some(arrival), &mut Unattended).unwrap();
             }
             let said = session.stop();
             let ticks = (said / DT).round() as usize;
@@ -134,7 +134,7 @@ fn a_tray_stops_in_the_time_that_is_said() {
                     (left - (said - tick as f64 * DT).max(0.0)).abs() < 1e-9,
                     "the time left is that of the same stop"
                 );
-                session.advance_tips(None, &mut Unattended).unwrap();
+                session.advance(None, &mut Unattended).unwrap();
                 let still = session.qd().iter().all(|rate| rate.abs() * DT < 1e-12);
                 assert!(still || tick < ticks, "stop {stop}: it takes longer than {said} s");
             }
@@ -153,8 +153,8 @@ fn a_pair_that_is_apart_comes_together_and_then_stays() {
         let mut session = session(&robot, &apart, limits);
         let mut joined = None;
         for tick in 0..400 {
-            let arrival = TipArrival { targets: targets(&home), stamp: None };
-            session.advance_tips(Some(arrival), &mut Unattended).unwrap();
+            let arrival: Arrival = targets(&home).into_iter().collect();
+            session.advance(Some(arrival), &mut Unattended).unwrap();
             let slip = slip(&robot, session.q());
             match joined {
                 None if slip < 1e-7 => joined = Some(tick),
@@ -176,8 +176,8 @@ fn the_same_targets_give_the_same_bits() {
             let mut session = session(&robot, &q, limits.clone());
             for tick in 0..50 {
                 let left = forward([0.5 + 0.004 * f64::from(tick), 0.25, 0.9], [0.0; 3]);
-                let arrival = TipArrival { targets: targets(&left), stamp: None };
-                session.advance_tips(Some(arrival), &mut Unattended).unwrap();
+                let arrival: Arrival = targets(&left).into_iter().collect();
+                session.advance(Some(arrival), &mut Unattended).unwrap();
             }
             session.q().to_vec()
         };

@@ -38,7 +38,13 @@ impl SolveArguments<'_, '_> {
         start: Option<Vec<f64>>,
         limits: Option<Limits>,
     ) -> PyResult<SolveOptions> {
-        let mut options = SolveOptions {
+        let Self { task, position_tolerance, rotation_tolerance, .. } = *self;
+        let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot, asked)?;
+        let (task, tolerance) = settings.of_only(robot);
+        Ok(SolveOptions {
+            task,
+            tips: settings.tasks(asked),
+            tolerance,
             solver: self.solver.map(any_solver).transpose()?,
             goals: read_goals(self.goals)?,
             prefer: self.prefer.parse().map_err(raise)?,
@@ -52,10 +58,6 @@ impl SolveArguments<'_, '_> {
             stop: self.stop.map_or(Stop::default(), PyStop::core),
             seed: count("seed", self.seed)?,
             ..SolveOptions::default()
-        };
-        let Self { task, position_tolerance, rotation_tolerance, .. } = *self;
-        let tasks = TaskArguments { task, position_tolerance, rotation_tolerance };
-        tasks.write(robot, asked, &mut options)?;
-        Ok(options)
+        })
     }
 }

@@ -3,7 +3,7 @@
 use ikcore::ik::SolveOptions;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Subject, TargetRow, Task, TipError, TipTask, Tolerance};
+use ikcore::task::{NamedTask, Subject, TargetRow, Task, TipError, Tolerance};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -73,14 +73,6 @@ impl<T> Asked<T> {
             Self::Tips { values, .. } => values,
         }
     }
-
-    /// The poses that they are for, of several tips.
-    pub fn subjects(&self) -> Option<&[Subject]> {
-        match self {
-            Self::One(_) => None,
-            Self::Tips { subjects, .. } => Some(subjects),
-        }
-    }
 }
 
 /// Reads what is for the only tip of a robot: plain, or in a dict with its name.
@@ -118,45 +110,36 @@ pub struct TaskArguments<'a, 'py> {
 }
 
 impl TaskArguments<'_, '_> {
-    /// Writes them into `options`, for the targets that were `asked`.
-    pub fn write<T>(&self, robot: &PyRobot, asked: &Asked<T>, options: &mut SolveOptions) -> PyResult<()> {
-        if let (Asked::One(_), ToleranceArgument::All(position), ToleranceArgument::All(rotation)) =
-            (asked, self.position_tolerance, self.rotation_tolerance)
-            && !self.task.is_some_and(|task| task.is_instance_of::<PyDict>())
-        {
-            options.task = read_task(self.task)?;
-            options.tolerance = Tolerance { position: *position, rotation: *rotation };
-            return Ok(());
-        }
-        let (robot, keys) = (&*robot.core, asked.keys(robot));
-        let tasks = match self.task.map(|task| (task, task.cast::<PyDict>())) {
-            Some((_, Ok(dict))) => {
-                let each = of_each("task", robot, &keys, dict)?;
-                each.iter().map(|task| read_task(task.as_ref())).collect::<PyResult<Vec<_>>>()?
-            }
-            Some((task, Err(_))) => vec![read_task(Some(task))?; keys.0.len()],
-            None => vec![None; keys.0.len()],
+    /// Reads them for targets that come later.
+    pub fn read(&self, robot: &PyRobot) -> PyResult<TipSettings> {
+        let robot = &*robot.core;
+        let dict = self.task.and_then(|task| task.cast::<PyDict>().ok());
+        let task = match dict {
+            Some(dict) => Each::read("task", robot, dict, None, |task| read_task(Some(task)))?,
+            None => Each { keys: vec![], others: read_task(self.task)? },
         };
-        let position = tolerances("position_tolerance", self.position_tolerance, robot, &keys)?;
-        let rotation = tolerances("rotation_tolerance", self.rotation_tolerance, robot, &keys)?;
-        let tolerance = |i: usize| Tolerance { position: position[i], rotation: rotation[i] };
-        match asked.subjects() {
-            None => (options.task, options.tolerance) = (tasks[0], tolerance(0)),
-            Some(subjects) => {
-                let tips = subjects.iter().zip(tasks).enumerate();
-                let task = |(i, (subject, task)): (usize, (&Subject, _))| TipTask {
-                    subject: *subject,
-                    task,
-                    tolerance: tolerance(i),
-                };
-                options.tips = tips.map(task).collect();
+        let tolerance = |what: &str, given: &ToleranceArgument<'_>| match given {
+            ToleranceArgument::All(all) => Ok(Each { keys: vec![], others: *all }),
+            ToleranceArgument::Each(dict) => {
+                Each::read(what, robot, dict, Tolerance::default().position, |value| value.extract())
             }
-        }
-        Ok(())
+        };
+        let position = tolerance("position_tolerance", self.position_tolerance)?;
+        let rotation = tolerance("rotation_tolerance", self.rotation_tolerance)?;
+        Ok(TipSettings { task, position, rotation })
+    }
+
+    /// Reads them for the targets that were `asked`.
+    pub fn read_for<T>(&self, robot: &PyRobot, asked: &Asked<T>) -> PyResult<TipSettings> {
+        let (settings, keys) = (self.read(robot)?, asked.keys(robot));
+        settings.task.require_targets("task", &keys)?;
+        settings.position.require_targets("position_tolerance", &keys)?;
+        settings.rotation.require_targets("rotation_tolerance", &keys)?;
+        Ok(settings)
     }
 }
 
-/// Task and tolerances by tip, of calls whose targets come later.
+/// Task and tolerances by tip.
 #[derive(Debug)]
 pub struct TipSettings {
     task: Each<Option<Task>>,
@@ -174,6 +157,13 @@ struct Each<T> {
 impl<T: Copy> Each<T> {
     fn of(&self, key: &TipKey) -> T {
         self.keys.iter().find(|(known, _)| known == key).map_or(self.others, |(_, value)| *value)
+    }
+
+    /// Err for values of tips that are not among `keys`, those of the targets.
+    fn require_targets(&self, what: &str, keys: &TipKeys) -> PyResult<()> {
+        let stranger = self.keys.iter().find(|(name, _)| !keys.iter().any(|key| key == name));
+        stranger
+            .map_or(Ok(()), |(name, _)| Err(invalid(format!("{what} names {}, which has no target", in_words(name)))))
     }
 
     /// Reads a dict, each value by `read`.
@@ -194,72 +184,24 @@ impl<T: Copy> Each<T> {
 }
 
 impl TipSettings {
-    /// Reads them.
-    pub fn read(robot: &PyRobot, arguments: &TaskArguments<'_, '_>) -> PyResult<Self> {
-        let robot = &*robot.core;
-        let task = match arguments.task.map(|task| (task, task.cast::<PyDict>())) {
-            Some((_, Ok(dict))) => Each::read("task", robot, dict, None, |task| read_task(Some(task)))?,
-            Some((task, Err(_))) => Each { keys: vec![], others: read_task(Some(task))? },
-            None => Each { keys: vec![], others: None },
-        };
-        let tolerance = |what: &str, given: &ToleranceArgument<'_>| match given {
-            ToleranceArgument::All(all) => Ok(Each { keys: vec![], others: *all }),
-            ToleranceArgument::Each(dict) => {
-                Each::read(what, robot, dict, Tolerance::default().position, |value| value.extract())
-            }
-        };
-        let position = tolerance("position_tolerance", arguments.position_tolerance)?;
-        let rotation = tolerance("rotation_tolerance", arguments.rotation_tolerance)?;
-        Ok(Self { task, position, rotation })
+    /// Task and tolerance of the only tip of a robot; the default for several tips.
+    pub fn of_only(&self, robot: &PyRobot) -> (Option<Task>, Tolerance) {
+        if robot.core.tip_count() == 1 { self.of(&robot.tips.0[0]) } else { Default::default() }
     }
 
-    /// Task and tolerance of the only tip of a robot.
-    pub fn of_only(&self, robot: &Robot) -> (Option<Task>, Tolerance) {
-        self.of(&robot.tips().map(str::to_owned).collect())
-    }
-
-    /// The tasks of targets with these keys.
-    pub fn tasks<'a>(&'a self, keys: &'a TipKeys, subjects: &'a [Subject]) -> impl Iterator<Item = TipTask> + 'a {
-        keys.iter().zip(subjects).map(|(key, subject)| {
+    /// The tasks of the targets that were `asked` of several tips; none of one.
+    pub fn tasks<T>(&self, asked: &Asked<T>) -> Vec<NamedTask> {
+        let Asked::Tips { keys, subjects, .. } = asked else { return vec![] };
+        let task = |(key, subject): (_, &Subject)| {
             let (task, tolerance) = self.of(key);
-            TipTask { subject: *subject, task, tolerance }
-        })
+            NamedTask { subject: *subject, task, tolerance }
+        };
+        keys.iter().zip(subjects).map(task).collect()
     }
 
     fn of(&self, key: &TipKey) -> (Option<Task>, Tolerance) {
         (self.task.of(key), Tolerance { position: self.position.of(key), rotation: self.rotation.of(key) })
     }
-}
-
-fn tolerances(what: &str, given: &ToleranceArgument<'_>, robot: &Robot, keys: &TipKeys) -> PyResult<Vec<f64>> {
-    match given {
-        ToleranceArgument::All(all) => Ok(vec![*all; keys.0.len()]),
-        ToleranceArgument::Each(dict) => {
-            let each = of_each(what, robot, keys, dict)?;
-            each.iter()
-                .map(|value| value.as_ref().map_or(Ok(Tolerance::default().position), |value| value.extract()))
-                .collect()
-        }
-    }
-}
-
-/// The value of `dict` for each of `keys`.
-fn of_each<'py>(
-    what: &str,
-    robot: &Robot,
-    keys: &TipKeys,
-    dict: &Bound<'py, PyDict>,
-) -> PyResult<Vec<Option<Bound<'py, PyAny>>>> {
-    let mut each = vec![None; keys.0.len()];
-    for (key, value) in dict {
-        let key = read_key(what, &key)?;
-        subject(robot, &key)?;
-        let Some(place) = keys.iter().position(|known| *known == key) else {
-            return Err(invalid(format!("{what} names {}, which has no target", in_words(&key))));
-        };
-        each[place] = Some(value);
-    }
-    Ok(each)
 }
 
 /// The errors of what was `asked` at the configurations `qs` (m, n); `targets` returns those of a row.

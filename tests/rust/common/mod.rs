@@ -8,7 +8,7 @@ use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Monitor;
-use ikcore::task::{Criterion, Target};
+use ikcore::task::{Aims, Criterion, Target};
 
 /// A built-in robot.
 pub fn robot(name: &str) -> Robot {
@@ -58,7 +58,8 @@ pub fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
 /// Compares the columns of `linearize` with central differences of its residual.
 #[track_caller]
 pub fn assert_derivative(robot: &Robot, target: &Target, criterion: impl Into<Criterion>, q: &[f64]) {
-    let mut problem = Problem::new(robot, target, criterion);
+    let task = criterion.into().into();
+    let mut problem = Problem::new(robot, Aims::of_one(&task, target));
     let mut residual_at = |q: &[f64]| {
         let mut out = Linearization::default();
         let score = problem.linearize(q, &mut out);

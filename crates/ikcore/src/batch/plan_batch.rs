@@ -7,22 +7,22 @@ use rayon::prelude::*;
 use super::monitors::Quiet;
 use super::{pool, workers};
 use crate::error::{Error, Result};
-use crate::planning::{Endpoint, MotionEnd, Plan, PointToPointOptions};
+use crate::planning::{Endpoint, Plan, PointToPointOptions, check_point_to_point, plan_point_to_point};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 
-/// The arguments of one [`plan_point_to_point`](crate::planning::plan_point_to_point()), or of the same for several tips.
+/// The arguments of one [`plan_point_to_point`].
 #[derive(Debug, Clone)]
-pub struct PlanProblem<E = Endpoint> {
+pub struct PlanProblem {
     /// The start.
-    pub start: E,
+    pub start: Endpoint,
     /// The possible ends.
-    pub ends: Vec<E>,
+    pub ends: Vec<Endpoint>,
     /// The options, which problems may share.
     pub options: Arc<PointToPointOptions>,
 }
 
-/// Plans all `problems`; item i is the result of [`MotionEnd::plan`] for problem i, whatever the others are and however
+/// Plans all `problems`; item i is the result of [`plan_point_to_point`] for problem i, whatever the others are and however
 /// many threads there are (`None`: one per core).
 ///
 /// The monitor is called only from the calling thread. Problems that it leaves undone are [`Error::Interrupted`].
@@ -30,21 +30,22 @@ pub struct PlanProblem<E = Endpoint> {
 /// # Errors
 /// [`Error::InProblem`] for wrong input of a problem, before any is planned; [`Error::OutOfRange`] or [`Error::NoThreads`] for
 /// the threads. What only a planner finds out, such as [`Error::Unreachable`], is the result of its problem alone.
-pub fn plan_batch<E: MotionEnd>(
+pub fn plan_batch(
     robot: &Robot,
-    problems: &[PlanProblem<E>],
+    problems: &[PlanProblem],
     threads: Option<usize>,
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<Result<Plan>>> {
     let threads = pool::thread_count(threads)?;
     for (index, PlanProblem { start, ends, options }) in problems.iter().enumerate() {
-        E::check(robot, start, ends, options).map_err(|error| Error::InProblem { index, error: Box::new(error) })?;
+        check_point_to_point(robot, start, ends, options)
+            .map_err(|error| Error::InProblem { index, error: Box::new(error) })?;
     }
-    let planned = |problem: &PlanProblem<E>, monitor: &mut dyn Monitor| {
+    let planned = |problem: &PlanProblem, monitor: &mut dyn Monitor| {
         if !monitor.keep_going() {
             return Err(Error::Interrupted);
         }
-        E::plan(robot, &problem.start, &problem.ends, &problem.options, monitor)
+        plan_point_to_point(robot, &problem.start, &problem.ends, &problem.options, monitor)
     };
     if threads == 1 || problems.len() <= 1 {
         let each = problems.iter().zip(1..).map(|(problem, done)| {

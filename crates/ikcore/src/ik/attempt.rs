@@ -10,7 +10,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
-use crate::task::{Assessment, Criterion, Goals, TipError, Tolerance};
+use crate::task::{Aims, Assessment, Criterion, Goals, TipError, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
 pub(super) const APPROACHES: usize = 8;
@@ -128,8 +128,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         let asked = *asked;
         let Tolerance { position, rotation } = asked.tolerance;
         let tighter = Tolerance { position: position.min(tolerance), rotation: rotation.min(tolerance) };
-        let mut problem =
-            Problem::new(self.context.robot(), target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
+        let task = Criterion { tolerance: tighter, ..asked }.into();
+        let mut problem = Problem::new(self.context.robot(), Aims::of_one(&task, target)).disregarding_turns();
         let objective: &mut dyn Differentiable = &mut problem;
         let stop = Stop { max_evaluations: REFINEMENT, ..Stop::default() };
         let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);

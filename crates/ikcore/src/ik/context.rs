@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 use std::sync::{LazyLock, OnceLock};
 
+use smallvec::SmallVec;
+
 use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
-use super::tip_tasks::{reduce, tasks_of_tips};
+use super::tip_tasks::{asked_tasks, reduce};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
@@ -15,7 +17,7 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
-use crate::task::{Criterion, Goals, Target, TargetRow, Task, TipAims, TipCriterion};
+use crate::task::{Aims, Goals, Target, TargetRow, TipCriterion};
 
 /// A validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -37,9 +39,8 @@ pub(crate) struct SolveContext<'a> {
     /// The robot with the tool of the task, if there is one; boxed to keep the context small.
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
-    criterion: Criterion,
-    /// The tasks of several tips; none for one.
-    tips: Vec<TipCriterion>,
+    /// One for the only tip.
+    tasks: SmallVec<[TipCriterion; 1]>,
     goals: Goals,
     bounds: Bounds,
     /// The preference of queries without a start, made when first asked for.
@@ -56,10 +57,7 @@ impl<'a> SolveContext<'a> {
     pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
         options.solver.as_ref().map_or(Ok(()), |solver| solver.validate())?;
         options.stop.validate()?;
-        options.task.as_ref().map_or(Ok(()), Task::validate)?;
-        let tips = tasks_of_tips(robot, options)?;
-        let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
-        criterion.validate()?;
+        let mut tasks = asked_tasks(robot, options)?;
         let space = options.surroundings.clear_space(robot)?.map(Box::new);
         options.goals.iter().try_for_each(|goal| goal.validate(robot, space.is_some()))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
@@ -71,9 +69,12 @@ impl<'a> SolveContext<'a> {
             return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals to compare solutions by".into() });
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
-        let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
+        let with_tool = options.only_task(robot).map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
+        if with_tool.is_some() {
+            tasks[0] = tasks[0].without_own_tool();
+        }
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
-        Ok(Self { robot, with_tool, options, criterion, tips, goals, bounds, central: OnceLock::new(), space })
+        Ok(Self { robot, with_tool, options, tasks, goals, bounds, central: OnceLock::new(), space })
     }
 
     pub(crate) fn robot(&self) -> &Robot {
@@ -95,7 +96,7 @@ impl<'a> SolveContext<'a> {
 
     /// Whether the target fixes the pose of the tip.
     pub(super) fn fixes_pose(&self, target: &Target) -> bool {
-        self.criterion.fixes_pose(target)
+        self.tasks[0].criterion.fixes_pose(target)
     }
 
     pub(super) fn options(&self) -> &SolveOptions {
@@ -138,10 +139,7 @@ impl<'a> SolveContext<'a> {
     /// The problem of reaching the targets of a query.
     pub(super) fn problem<'p>(&'p self, targets: &'p [Target]) -> Problem<'p> {
         let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
-        match (&self.tips[..], targets) {
-            ([], [target]) => Problem::of_configuration(self.robot(), target, self.criterion, penalty),
-            (tasks, targets) => Problem::of_tips(self.robot(), TipAims { tasks, targets }, penalty),
-        }
+        Problem::of_configuration(self.robot(), Aims { tasks: &self.tasks, targets }, penalty)
     }
 
     /// Returns the parts of the targets `wanted` that their tasks use, validated.
@@ -159,16 +157,8 @@ impl<'a> SolveContext<'a> {
     ///
     /// # Errors
     /// [`Error::WrongTarget`], or [`Error::Contradiction`] for targets of tips that contradict each other.
-    #[inline]
     pub(crate) fn reduce(&self, targets: &mut [Target]) -> Result<()> {
-        match (&self.tips[..], targets, &self.options.task) {
-            ([], [_], None) => Ok(()),
-            ([], [target], Some(task)) => {
-                *target = task.target(target)?;
-                Ok(())
-            }
-            (tasks, targets, _) => reduce(self.robot, tasks, targets),
-        }
+        reduce(self.robot, &self.tasks, targets)
     }
 
     /// Checks a start.

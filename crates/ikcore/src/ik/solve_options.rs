@@ -2,8 +2,9 @@
 
 use crate::limits::Limits;
 use crate::obstacle::Surroundings;
+use crate::robot::Robot;
 use crate::solver::{AnySolver, Stop};
-use crate::task::{Goal, Task, TipTask, Tolerance};
+use crate::task::{Goal, NamedTask, Task, Tolerance};
 use crate::wording::words;
 
 /// Which solution to return if there are several.
@@ -28,7 +29,7 @@ pub struct SolveOptions {
     /// The part of the target that matters. `None` means all of it.
     pub task: Option<Task>,
     /// The tasks of several tips, in the order of their targets; then `task` and `tolerance` are not used. None for a robot with one.
-    pub tips: Vec<TipTask>,
+    pub tips: Vec<NamedTask>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
     /// Which solution to return if there are several.
@@ -50,4 +51,12 @@ pub struct SolveOptions {
     /// Seed of the random draws; the same seed gives the same bits. Most targets are solved without a random draw, and
     /// so independently of the seed.
     pub seed: u64,
+}
+
+impl SolveOptions {
+    /// The task of the only tip; `None` for a robot with several.
+    pub(super) fn only_task(&self, robot: &Robot) -> Option<Task> {
+        let named = || self.tips.first().and_then(|tip| tip.task);
+        self.task.or_else(named).filter(|_| robot.tip_count() == 1)
+    }
 }

@@ -1,22 +1,24 @@
-//! The tasks of several tips: their validation, the parts of their targets that count, and the errors of each.
+//! The tasks of a solve: their validation, the parts of their targets that count, and the errors of each.
+
+use smallvec::{SmallVec, smallvec};
 
 use super::solve_options::SolveOptions;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::robot::Robot;
-use crate::task::{Subject, Target, TargetRow, TipAims, TipCriterion, TipError, TipTask};
+use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
 
-/// The tasks of several tips, validated; none for a robot with one.
-pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec<TipCriterion>> {
+/// The tasks of `options`, validated; of one tip that of plain targets.
+pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {
     if options.tips.is_empty() {
         robot.require_one_tip("a plain target")?;
-        return Ok(vec![]);
+        return Ok(smallvec![NamedTask::of_only(options.task, options.tolerance).validated()?]);
     }
     if options.task.is_some() {
         let problem = "task= of several tips is a dict, such as {tip: tasks.Position()}".into();
         return Err(Error::Contradiction { problem });
     }
-    checked_tasks(robot, &options.tips)
+    Ok(checked_tasks(robot, &options.tips)?.into())
 }
 
 /// These tasks, validated.
@@ -24,7 +26,7 @@ pub(super) fn tasks_of_tips(robot: &Robot, options: &SolveOptions) -> Result<Vec
 /// # Errors
 /// [`Error::OutOfRange`] for a tip that the robot has not, [`Error::Contradiction`] for a tip or pair that is named twice; those of
 /// wrong tasks and tolerances.
-pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipCriterion>> {
+pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
     let tips: Vec<&str> = robot.tips().collect();
     for (i, task) in tasks.iter().enumerate() {
         let numbers = match task.subject {
@@ -39,7 +41,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipC
             let problem = format!("tip '{}' cannot be seen from itself: name two tips", tips[numbers[0]]);
             return Err(Error::Contradiction { problem });
         }
-        let same = |other: &TipTask| other.subject == task.subject || other.subject == turned(task.subject);
+        let same = |other: &NamedTask| other.subject == task.subject || other.subject == turned(task.subject);
         if tasks[..i].iter().any(same) {
             let [from, of] = numbers.map(|number| tips[number]);
             let problem = match task.subject {
@@ -49,7 +51,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[TipTask]) -> Result<Vec<TipC
             return Err(Error::Contradiction { problem });
         }
     }
-    tasks.iter().map(TipTask::validated).collect()
+    tasks.iter().map(NamedTask::validated).collect()
 }
 
 /// The same pair, seen from the other tip.
@@ -66,13 +68,11 @@ fn turned(subject: Subject) -> Subject {
 /// [`Error::WrongLength`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets that contradict each other.
 pub(crate) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
     if tasks.len() != targets.len() {
-        let expected = format!("{} targets, one for each task", tasks.len().max(1));
+        let expected = format!("{} targets, one for each task", tasks.len());
         return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });
     }
-    for (task, target) in tasks.iter().zip(&mut *targets) {
-        *target = task.part_used(target)?;
-    }
-    TipAims { tasks, targets }.require_consistent(robot)
+    tasks.iter().zip(&mut *targets).try_for_each(|(task, target)| task.reduce(target))?;
+    Aims { tasks, targets }.require_consistent(robot)
 }
 
 /// The errors of each task of several tips at each of the configurations `qs` (m, n), row-major; NaN where a configuration or a
@@ -86,14 +86,14 @@ pub fn tip_errors(
     options: &SolveOptions,
     qs: &[f64],
 ) -> Result<Vec<TipError>> {
-    let tasks = tasks_of_tips(robot, options)?;
+    let tasks = asked_tasks(robot, options)?;
     let mut errors = Vec::with_capacity(tasks.len() * qs.len() / robot.dof());
     for (row, q) in qs.chunks_exact(robot.dof()).enumerate() {
         checkpoint_at(row)?;
         let mut targets = targets(row);
         match reduce(robot, &tasks, &mut targets) {
             Ok(()) if q.iter().all(|value| value.is_finite()) => {
-                errors.extend(TipAims { tasks: &tasks, targets: &targets }.errors(robot, q));
+                errors.extend(Aims { tasks: &tasks, targets: &targets }.errors(robot, q));
             }
             _ => errors.extend(tasks.iter().map(|_| TipError { position: f64::NAN, rotation: f64::NAN })),
         }

@@ -53,6 +53,11 @@ impl Bounds {
         &self.upper
     }
 
+    /// Lower and upper bounds.
+    pub fn ends(&self) -> [&[f64]; 2] {
+        [&self.lower, &self.upper]
+    }
+
     /// Writable lower and upper bounds. Keep lower <= upper.
     pub(crate) fn parts_mut(&mut self) -> (&mut [f64], &mut [f64]) {
         (&mut self.lower, &mut self.upper)

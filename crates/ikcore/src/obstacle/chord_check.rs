@@ -6,9 +6,9 @@
 
 use super::body_model::BodyPair;
 use super::joint_motion::JointMotion;
-use super::kept_distance::KeptDistance;
 use super::link_displacement::{displacement, sagitta};
 use super::near_rows::MOST_RESERVED;
+use super::required_distance::RequiredDistance;
 use super::scene::Scene;
 use crate::math::Frame;
 use crate::objective::Point;
@@ -86,7 +86,7 @@ impl ChordCheck {
         scene: &Scene<'_>,
         motion: &impl JointMotion,
         end: f64,
-        kept: &KeptDistance<'_>,
+        kept: &RequiredDistance<'_>,
     ) -> bool {
         let whole = self.begin(scene, motion, [0.0, end]);
         self.collect_pending(scene, &whole, kept);
@@ -101,7 +101,7 @@ impl ChordCheck {
         motion: &impl JointMotion,
         [from, to]: [f64; 2],
         pairs: impl Iterator<Item = BodyPair>,
-        kept: &KeptDistance<'_>,
+        kept: &RequiredDistance<'_>,
     ) -> Result<(), Blocker> {
         let whole = self.begin(scene, motion, [from, to]);
         self.pending.clear();
@@ -147,7 +147,7 @@ impl ChordCheck {
     }
 
     /// Lists the pairs that may come too near in the whole motion, by balls around groups of bodies.
-    fn collect_pending(&mut self, scene: &Scene<'_>, whole: &Interval, kept: &KeptDistance<'_>) {
+    fn collect_pending(&mut self, scene: &Scene<'_>, whole: &Interval, kept: &RequiredDistance<'_>) {
         let Self { places, pending, change, aside, halfway, .. } = self;
         pending.clear();
         let (groups, robot) = (&scene.bodies.groups, scene.robot());
@@ -198,7 +198,7 @@ impl ChordCheck {
         &mut self,
         scene: &Scene<'_>,
         motion: &impl JointMotion,
-        kept: &KeptDistance<'_>,
+        kept: &RequiredDistance<'_>,
         interval: Interval,
         count: usize,
     ) -> Result<(), Blocker> {
@@ -234,7 +234,7 @@ impl ChordCheck {
         })
     }
 
-    fn verdict(&self, scene: &Scene<'_>, pair: BodyPair, interval: &Interval, kept: &KeptDistance<'_>) -> Verdict {
+    fn verdict(&self, scene: &Scene<'_>, pair: BodyPair, interval: &Interval, kept: &RequiredDistance<'_>) -> Verdict {
         let [first, last] = interval.ends.map(|end| &self.places[end].frames);
         let [needed_first, needed] = [interval.from, interval.to].map(|tick| kept.needed(pair, tick));
         let (change_first, change_last) =

@@ -6,8 +6,8 @@ use super::chord_check::ChordCheck;
 use super::coming_rows::{Coming, ComingRows};
 use super::contact::{Contact, NearestContact};
 use super::joint_motion::JointMotion;
-use super::kept_distance::KeptDistance;
 use super::near_rows::NearRows;
+use super::required_distance::RequiredDistance;
 use super::scene::Scene;
 use crate::robot::Robot;
 
@@ -109,7 +109,7 @@ impl<'a> ClearSpace<'a> {
         &self,
         motion: &impl JointMotion,
         end: f64,
-        kept: &KeptDistance<'_>,
+        kept: &RequiredDistance<'_>,
         check: &mut ChordCheck,
     ) -> bool {
         check.is_clear(&self.scene, motion, end, kept)

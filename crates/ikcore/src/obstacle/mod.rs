@@ -18,7 +18,7 @@
 //! | `near_rows` | near pairs, linearised at a configuration |
 //! | `coming_rows` | obstacles that come too near, linearised at their closest approach |
 //! | `joint_motion` | motions that can be certified |
-//! | `chord_check`, `kept_distance` | pairs of bodies, certified to keep their distances during a motion |
+//! | `chord_check`, `required_distance` | pairs of bodies, certified to keep their distances during a motion |
 //! | `sweep` | a whole motion, certified, and its smallest clearance |
 
 mod allowed_contacts;
@@ -31,7 +31,6 @@ mod contact;
 mod eight_bodies;
 mod eight_scene;
 mod joint_motion;
-mod kept_distance;
 mod levers;
 mod line_check;
 mod link_displacement;
@@ -39,6 +38,7 @@ mod near_pairs;
 mod near_rows;
 mod obstacles;
 mod placement;
+mod required_distance;
 mod scene;
 mod surroundings;
 mod sweep;
@@ -50,10 +50,10 @@ pub use clear_space::ClearSpace;
 pub(crate) use coming_rows::{Coming, ComingRows, MOST_COMING};
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use joint_motion::{Edge, JointMotion};
-pub(crate) use kept_distance::KeptDistance;
 pub use line_check::LineCheck;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::Obstacles;
+pub(crate) use required_distance::RequiredDistance;
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;

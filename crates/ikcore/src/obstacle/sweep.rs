@@ -9,8 +9,8 @@ use super::chord_check::ChordCheck;
 use super::contact::Contact;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::joint_motion::JointMotion;
-use super::kept_distance::KeptDistance;
 use super::placement::Placement;
+use super::required_distance::RequiredDistance;
 use super::scene::Scene;
 use crate::math::MAX_DOF;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
@@ -133,7 +133,7 @@ impl<'a> Sweep<'a> {
         } else {
             self.near.extend(self.scene.pairs().map(|pair| (pair, ALL)));
         }
-        let kept = KeptDistance::constant(margin);
+        let kept = RequiredDistance::constant(margin);
         let at = |eighth: usize| ends[0] + (ends[1] - ends[0]) * eighth as f64 / 8.0;
         for eighth in (0..8).filter(|eighth| self.near.iter().any(|(_, lanes)| lanes & (1 << eighth) != 0)) {
             let pairs = self.near.iter().filter(|(_, lanes)| lanes & (1 << eighth) != 0).map(|(pair, _)| *pair);

@@ -1,17 +1,15 @@
 //! Planning from point to point.
 
-use super::cost::Cost;
-use super::end_pieces::composed;
-use super::endpoint::{EndName, Endpoint};
-use super::motion_limits::MotionLimits;
-use super::plan::Plan;
-use super::planner_options::{PointToPointMethod, PointToPointOptions};
-use super::{minmax, tpbso};
+use super::several_tips::plan_tips;
+use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
 use crate::obstacle::kept_margin;
+use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::task::Task;
+use crate::timing::MotionLimits;
+use crate::{free_path, tpbso};
 
 /// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
 /// rest, or with the velocity of the options.
@@ -29,9 +27,25 @@ pub fn plan_point_to_point(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     check_point_to_point(robot, start, ends, options)?;
+    require_joint_space(robot, options)?;
+    let names_tips = |end: &Endpoint| matches!(end, Endpoint::Targets { tips, .. } if !tips.is_empty());
+    match std::iter::once(start).chain(ends).any(names_tips) {
+        true => plan_tips(robot, start, ends, options, monitor),
+        false => plan_joined(robot, start, ends, options, monitor),
+    }
+}
+
+/// [`plan_point_to_point`] between configurations, or plain targets of the only tip, which have been checked.
+pub(super) fn plan_joined(
+    robot: &Robot,
+    start: &Endpoint,
+    ends: &[Endpoint],
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
     let mut plan = match &options.method {
         PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, options, monitor),
-        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, ends, options, monitor),
+        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
             let end = only_end(ends, options)?;
             tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)
@@ -46,15 +60,8 @@ pub fn plan_point_to_point(
 ///
 /// # Errors
 /// [`Error::SeveralTips`].
-fn require_joint_space(
-    robot: &Robot,
-    start: &Endpoint,
-    ends: &[Endpoint],
-    options: &PointToPointOptions,
-) -> Result<()> {
-    let has_target = std::iter::once(start).chain(ends).any(|end| matches!(end, Endpoint::Target(_)));
+fn require_joint_space(robot: &Robot, options: &PointToPointOptions) -> Result<()> {
     let cases = [
-        (has_target, "a plain target of plan_point_to_point"),
         (options.task.is_some(), "task= of plan_point_to_point without a dict"),
         (options.has_pieces(), "approach=, retreat= or free_start= of plan_point_to_point"),
         (matches!(options.method, PointToPointMethod::Tpbso(_)), "method=\"tpbso\" of plan_point_to_point"),
@@ -73,7 +80,6 @@ pub(crate) fn check_point_to_point(
     ends: &[Endpoint],
     options: &PointToPointOptions,
 ) -> Result<()> {
-    require_joint_space(robot, start, ends, options)?;
     let task = options.task.as_ref();
     task.map_or(Ok(()), Task::validate)?;
     start.check(EndName::Start, robot, task)?;

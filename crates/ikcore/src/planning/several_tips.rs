@@ -1,101 +1,27 @@
 //! Point to point for robots with several tips: targets of the tips become configurations, between which the planner joins.
 
-use super::collision_checks::{RESERVE, can_collide};
-use super::endpoint::{EndName, Endpoint, no_usable_end};
-use super::motion_limits::MotionLimits;
-use super::plan::Plan;
-use super::planner_options::PointToPointOptions;
-use super::point_to_point::{check_point_to_point, plan_point_to_point};
+use super::point_to_point::plan_joined;
 use crate::error::{Error, Result};
-use crate::ik::{AllOptions, Solution, SolveOptions, checked_tasks, reduce, solve_all_tips, solve_tips};
+use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
+use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, RESERVE, can_collide, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::{Target, TipTask};
-
-/// The start of a motion of several tips, or one of its possible ends.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TipsEndpoint {
-    /// Targets of tips; the planner chooses the configuration.
-    Targets(Vec<(TipTask, Target)>),
-    /// A configuration (n,) (rad, m).
-    Configuration(Vec<f64>),
-}
-
-/// What a motion begins or ends with: that of one tip, or of several.
-pub trait MotionEnd: Sync + Sized {
-    /// Checks the arguments of [`plan`](Self::plan), as far as no planner is needed.
-    ///
-    /// # Errors
-    /// Any [`Error`] for wrong input.
-    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()>;
-
-    /// Plans the motion.
-    ///
-    /// # Errors
-    /// As [`plan_point_to_point`].
-    fn plan(
-        robot: &Robot,
-        start: &Self,
-        ends: &[Self],
-        options: &PointToPointOptions,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Plan>;
-}
-
-impl MotionEnd for Endpoint {
-    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()> {
-        check_point_to_point(robot, start, ends, options)
-    }
-
-    fn plan(
-        robot: &Robot,
-        start: &Self,
-        ends: &[Self],
-        options: &PointToPointOptions,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Plan> {
-        plan_point_to_point(robot, start, ends, options, monitor)
-    }
-}
-
-impl MotionEnd for TipsEndpoint {
-    fn check(robot: &Robot, start: &Self, ends: &[Self], options: &PointToPointOptions) -> Result<()> {
-        EndSearch::new(robot, options)?;
-        let names = (0..ends.len()).map(|i| EndName::of(i, ends.len()));
-        std::iter::once((EndName::Start, start)).chain(names.zip(ends)).try_for_each(|(name, end)| match end {
-            Self::Configuration(q) => robot.check(&name.of_configuration(), q),
-            Self::Targets(targets) => {
-                let (tips, mut wanted): (Vec<TipTask>, Vec<Target>) = targets.iter().copied().unzip();
-                wanted.iter().try_for_each(Target::validate)?;
-                reduce(robot, &checked_tasks(robot, &tips)?, &mut wanted)
-            }
-        })
-    }
-
-    fn plan(
-        robot: &Robot,
-        start: &Self,
-        ends: &[Self],
-        options: &PointToPointOptions,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Plan> {
-        plan_point_to_point_tips(robot, start, ends, options, monitor)
-    }
-}
+use crate::task::{NamedTask, Target};
+use crate::timing::MotionLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;
 
-/// [`plan_point_to_point`] for robots with several tips. Targets of the start are solved first; each end is taken at the solution that
-/// a descent from the start leads to, and at a few others: the motion with the lowest cost is returned.
+/// Plans the motion of several tips. Targets of the start are solved first; each end is taken at the solution that a descent from the
+/// start leads to, and at a few others: the motion with the lowest cost is returned.
 ///
 /// # Errors
-/// As [`plan_point_to_point`]; [`Error::SeveralTips`] for what it does for one tip alone.
-pub fn plan_point_to_point_tips(
+/// As [`plan_point_to_point`](super::plan_point_to_point()).
+pub(super) fn plan_tips(
     robot: &Robot,
-    start: &TipsEndpoint,
-    ends: &[TipsEndpoint],
+    start: &Endpoint,
+    ends: &[Endpoint],
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -113,10 +39,10 @@ pub fn plan_point_to_point_tips(
             Err(wrong) => return Err(wrong),
         }
     }
-    if found.is_empty() && !problems.is_empty() {
+    if found.is_empty() {
         return Err(no_usable_end(ends.len(), problems));
     }
-    let mut plan = plan_point_to_point(robot, &Endpoint::Configuration(start), &found, options, monitor)?;
+    let mut plan = plan_joined(robot, &Endpoint::Configuration(start), &found, options, monitor)?;
     plan.chosen_end = plan.chosen_end.and_then(|chosen| origins.get(chosen).copied());
     plan.evaluations += search.evaluations;
     plan.elapsed = stopwatch.elapsed();
@@ -148,14 +74,11 @@ impl<'a> EndSearch<'a> {
     }
 
     /// The configuration of the start.
-    fn start(&mut self, start: &TipsEndpoint, monitor: &mut dyn Monitor) -> Result<Vec<f64>> {
+    fn start(&mut self, start: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<f64>> {
         match start {
-            TipsEndpoint::Configuration(q) => {
-                self.robot.check(&EndName::Start.of_configuration(), q)?;
-                Ok(q.clone())
-            }
-            TipsEndpoint::Targets(targets) => {
-                let solution = self.solve(targets, None, monitor)?;
+            Endpoint::Configuration(q) => Ok(q.clone()),
+            Endpoint::Targets { tips, targets } => {
+                let solution = self.solve(self.options_of(tips), targets, monitor)?;
                 reached(EndName::Start, &solution).map(|()| solution.q.to_vec())
             }
         }
@@ -165,35 +88,31 @@ impl<'a> EndSearch<'a> {
     fn configurations(
         &mut self,
         name: EndName,
-        end: &TipsEndpoint,
+        end: &Endpoint,
         start: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Vec<Vec<f64>>> {
-        let targets = match end {
-            TipsEndpoint::Configuration(q) => return Ok(vec![q.clone()]),
-            TipsEndpoint::Targets(targets) => targets,
+        let (tips, targets) = match end {
+            Endpoint::Configuration(q) => return Ok(vec![q.clone()]),
+            Endpoint::Targets { tips, targets } => (tips, targets),
         };
         let inside =
             self.options.limits.as_ref().is_none_or(|limits| limits.require_inside("start", 0.0, start).is_ok());
-        let first = self.solve(targets, inside.then_some(start), monitor)?;
+        let start = inside.then(|| start.to_vec());
+        let first = self.solve(SolveOptions { start, ..self.options_of(tips) }, targets, monitor)?;
         reached(name, &first)?;
-        let (tips, wanted): (Vec<TipTask>, Vec<Target>) = targets.iter().copied().unzip();
-        let each = SolveOptions { tips, ..self.options.clone() };
-        let all = AllOptions { each, limit: Some(TRIED), ..AllOptions::default() };
-        let others = solve_all_tips(self.robot, &wanted, &all, monitor)?;
+        let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
+        let others = solve_all_tips(self.robot, targets, &all, monitor)?;
         self.evaluations += others.evaluations;
         Ok(std::iter::once(first.q.to_vec()).chain(others.solutions.iter().map(|other| other.q.to_vec())).collect())
     }
 
-    fn solve(
-        &mut self,
-        targets: &[(TipTask, Target)],
-        start: Option<&[f64]>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Solution> {
-        let (tips, wanted): (Vec<TipTask>, Vec<Target>) = targets.iter().copied().unzip();
-        let options = SolveOptions { tips, start: start.map(<[f64]>::to_vec), ..self.options.clone() };
-        let solution = solve_tips(self.robot, &wanted, &options, monitor)?;
+    fn options_of(&self, tips: &[NamedTask]) -> SolveOptions {
+        SolveOptions { tips: tips.to_vec(), ..self.options.clone() }
+    }
+
+    fn solve(&mut self, options: SolveOptions, targets: &[Target], monitor: &mut dyn Monitor) -> Result<Solution> {
+        let solution = solve_tips(self.robot, targets, &options, monitor)?;
         self.evaluations += solution.evaluations;
         Ok(solution)
     }

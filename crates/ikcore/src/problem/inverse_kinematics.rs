@@ -1,24 +1,23 @@
 //! A robot and a target as an objective.
 
-use smallvec::{SmallVec, smallvec};
+use smallvec::SmallVec;
 
-use super::aim::Aim;
 use super::tip_starts::TipStarts;
 use crate::objective::{
-    Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore, TaskBlock, TaskResiduals,
+    Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore, TaskResiduals,
 };
 use crate::obstacle::ClearSpace;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::starts::Starts;
 use crate::task::residual::entrywise;
-use crate::task::{Assessment, Criterion, Subject, Target, TipAims};
+use crate::task::{Aims, Assessment, Criterion, Subject, Target};
 
 /// The inverse kinematics problem. It borrows everything, so building one per tick costs nothing.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     robot: &'a Robot,
-    aim: Aim<'a>,
+    aims: Aims<'a>,
     /// Looked up when the first start is needed.
     seeds: Option<Starts<'a>>,
     /// Where attempts for several tips begin.
@@ -38,10 +37,9 @@ enum Turns {
 }
 
 impl<'a> Problem<'a> {
-    /// The problem of moving the tip of `robot` to `target`.
-    pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        let aim = Aim::Tip(target, criterion.into());
-        Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
+    /// The problem of moving the tips of `robot` on to their targets.
+    pub fn new(robot: &'a Robot, aims: Aims<'a>) -> Self {
+        Self { robot, aims, seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
     }
 
     /// The same problem, in which full turns of a joint do not matter.
@@ -52,54 +50,29 @@ impl<'a> Problem<'a> {
     /// The problem of a single configuration, in which full turns do not matter, with a penalty on its values outside `space`, where
     /// no configuration is a solution.
     #[inline]
-    pub(crate) fn of_configuration(
-        robot: &'a Robot,
-        target: &'a Target,
-        criterion: Criterion,
-        space: Option<&'a ClearSpace<'a>>,
-    ) -> Self {
-        // In one go: a problem is large, and copies of it take longer than many a solve by closed form may.
-        let aim = Aim::Tip(target, criterion);
-        Self { robot, aim, seeds: None, tip_starts: None, turns: Turns::Equivalent, space }
-    }
-
-    /// The same of moving several tips to their targets.
-    pub(crate) fn of_tips(robot: &'a Robot, aims: TipAims<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
-        let tip_starts = Some(Box::default());
-        Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts, turns: Turns::Equivalent, space }
-    }
-
-    /// The problem of moving several tips on to their targets.
-    pub(crate) fn of_moving_tips(robot: &'a Robot, aims: TipAims<'a>) -> Self {
-        Self { robot, aim: Aim::Tips(aims), seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
+    pub(crate) fn of_configuration(robot: &'a Robot, aims: Aims<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
+        // In one go: copies of a problem take longer than many a solve by closed form may.
+        let tip_starts = (robot.tip_count() > 1).then(Box::default);
+        Self { robot, aims, seeds: None, tip_starts, turns: Turns::Equivalent, space }
     }
 
     /// The target of the only tip, and its criterion; None for several tips.
     #[inline]
-    pub(crate) fn only_target(&self) -> Option<(&'a Target, &Criterion)> {
-        match &self.aim {
-            Aim::Tip(target, criterion) => Some((target, criterion)),
-            Aim::Tips(_) => None,
-        }
+    pub(crate) fn only_target(&self) -> Option<(&'a Target, &'a Criterion)> {
+        self.aims.only(self.robot)
     }
 
     /// Numbers of the frames of the tips whose whole poses are given.
     pub(crate) fn fixed_frames(&self) -> SmallVec<[usize; 2]> {
-        match &self.aim {
-            Aim::Tip(target, criterion) if criterion.fixes_pose(target) => smallvec![self.robot.frame_of_tip(0)],
-            Aim::Tip(..) => SmallVec::new(),
-            Aim::Tips(aims) => {
-                let fixed = aims.iter().filter_map(|(task, target)| match task.subject {
-                    Subject::Tip(tip) if task.criterion.fixes_pose(target) => Some(self.robot.frame_of_tip(tip)),
-                    _ => None,
-                });
-                fixed.collect()
-            }
-        }
+        let fixed = self.aims.iter().filter_map(|(task, target)| match task.subject {
+            Subject::Tip(tip) if task.criterion.fixes_pose(target) => Some(self.robot.frame_of_tip(tip)),
+            _ => None,
+        });
+        fixed.collect()
     }
 
-    pub(super) fn aim(&self) -> &Aim<'a> {
-        &self.aim
+    pub(super) fn aims(&self) -> Aims<'a> {
+        self.aims
     }
 
     pub(super) fn robot(&self) -> &'a Robot {
@@ -107,10 +80,11 @@ impl<'a> Problem<'a> {
     }
 
     /// The assessment of `q`, by forward kinematics.
+    #[inline]
     pub fn assess(&self, q: &[f64]) -> Assessment {
-        match &self.aim {
-            Aim::Tip(target, criterion) => target.assess(self.robot, q, criterion),
-            Aim::Tips(aims) => assess_tips(aims, self.robot, q),
+        match self.only_target() {
+            Some((target, criterion)) => target.assess(self.robot, q, criterion),
+            None => assess_several(self.aims, self.robot, q),
         }
     }
 }
@@ -133,9 +107,9 @@ impl Objective for Problem<'_> {
                 *score = assessment.score;
             }
         };
-        match &self.aim {
-            Aim::Tip(target, criterion) => target.assess_all(self.robot, qs, criterion, keep),
-            Aim::Tips(aims) => qs.chunks_exact(self.robot.dof()).for_each(|q| keep(assess_tips(aims, self.robot, q))),
+        match self.only_target() {
+            Some((target, criterion)) => target.assess_all(self.robot, qs, criterion, keep),
+            None => qs.chunks_exact(self.robot.dof()).for_each(|q| keep(self.assess(q))),
         }
         if let Some(space) = self.space {
             for (q, score) in qs.chunks_exact(self.robot.dof()).zip(out) {
@@ -153,14 +127,11 @@ impl Objective for Problem<'_> {
     /// end at the joint's sampling range. The indexed configurations also follow a start given by the caller. For several tips see
     /// `tip_starts`.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
-        let (target, criterion) = match &self.aim {
-            Aim::Tip(target, criterion) => (target, criterion),
-            Aim::Tips(aims) => {
-                if let Some(starts) = &mut self.tip_starts {
-                    starts.propose(self.robot, aims, bounds, rng, q);
-                }
-                return;
+        let Some((target, criterion)) = self.only_target() else {
+            if let Some(starts) = &mut self.tip_starts {
+                starts.propose(self.robot, &self.aims, bounds, rng, q);
             }
+            return;
         };
         if self.seeds.is_none() {
             let aim = criterion.aim(target);
@@ -191,16 +162,7 @@ fn kept_clear(score: Score, space: &ClearSpace<'_>, q: &[f64]) -> Score {
 impl Residual for Problem<'_> {
     fn residual(&mut self, q: &[f64], out: &mut TaskResiduals) -> Score {
         out.clear();
-        match &self.aim {
-            Aim::Tip(target, criterion) => {
-                // Without a Jacobian: the residual needs only the tip.
-                let mut block = TaskBlock::default();
-                let assessment = target.linearize_tip(&self.robot.tip(q), 0, criterion, &mut block);
-                out.push(block.residual);
-                assessment.score
-            }
-            Aim::Tips(aims) => aims.residuals(self.robot, q, |residual| out.push(residual)).score,
-        }
+        self.aims.residuals(self.robot, q, |residual| out.push(residual)).score
     }
 }
 
@@ -208,16 +170,12 @@ impl Gradient for Problem<'_> {
     /// E of eq. (11) of Yuan et al. 2016; with component weights, a region or several tips, half the weighted sum of squares.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
-        let (target, criterion) = match &self.aim {
-            Aim::Tip(target, criterion) if criterion.components.is_none() && criterion.region.is_none() => {
-                (*target, criterion)
-            }
-            _ => {
-                let mut linearization = Linearization::default();
-                let score = self.linearize(q, &mut linearization);
-                linearization.gradient(gradient);
-                return SmoothScore { error: 0.5 * score.value, score };
-            }
+        let plain = |criterion: &Criterion| criterion.components.is_none() && criterion.region.is_none();
+        let Some((target, criterion)) = self.only_target().filter(|(_, criterion)| plain(criterion)) else {
+            let mut linearization = Linearization::default();
+            let score = self.linearize(q, &mut linearization);
+            linearization.gradient(gradient);
+            return SmoothScore { error: 0.5 * score.value, score };
         };
         let tip = self.robot.tip_and_torques(q, &|tip| entrywise::wrench(target, tip), gradient);
         gradient.iter_mut().for_each(|slope| *slope = -*slope);
@@ -228,35 +186,19 @@ impl Gradient for Problem<'_> {
 impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
-        match &self.aim {
-            Aim::Tip(target, criterion) => target.linearize(self.robot, q, criterion, &mut out.first).score,
-            Aim::Tips(aims) => linearize_tips(aims, self.robot, self.tip_starts.as_deref_mut(), q, out),
-        }
+        // Which tasks are solved tells where the next start is.
+        let note = |task: usize| {
+            if let Some(starts) = &mut self.tip_starts {
+                starts.note(task, q);
+            }
+        };
+        self.aims.linearize(self.robot, q, out, note).score
     }
 }
 
-// Those of several tips are kept out of line: inlined, they would make those of one slower.
-
+// Kept out of line: inlined, it would make that of one tip slower.
 #[cold]
 #[inline(never)]
-fn assess_tips(aims: &TipAims<'_>, robot: &Robot, q: &[f64]) -> Assessment {
+fn assess_several(aims: Aims<'_>, robot: &Robot, q: &[f64]) -> Assessment {
     aims.assess(robot, q)
-}
-
-/// Notes in `starts` which tasks are solved.
-#[cold]
-#[inline(never)]
-fn linearize_tips(
-    aims: &TipAims<'_>,
-    robot: &Robot,
-    mut starts: Option<&mut TipStarts>,
-    q: &[f64],
-    out: &mut Linearization,
-) -> Score {
-    let note = |task: usize| {
-        if let Some(starts) = &mut starts {
-            starts.note(task, q);
-        }
-    };
-    aims.linearize(robot, q, out, note).score
 }

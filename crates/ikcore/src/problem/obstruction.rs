@@ -1,10 +1,9 @@
 //! Explains why a target was missed: out of reach, blocked by its region, or joints at their limits.
 
-use super::aim::Aim;
 use super::inverse_kinematics::Problem;
 use crate::kinematics::ReachShortfall;
 use crate::objective::Bounds;
-use crate::task::{Criterion, Subject, Target, TipAims};
+use crate::task::{Criterion, Subject, Target};
 
 /// Largest number of joints that a message names; the others are counted.
 const MOST_NAMED: usize = 3;
@@ -12,16 +11,15 @@ const MOST_NAMED: usize = 3;
 impl Problem<'_> {
     /// How far the target is beyond the reach within `bounds`; `None` unless that is certain.
     pub(crate) fn reach_shortfall(&self, bounds: &Bounds) -> Option<ReachShortfall> {
-        match self.aim() {
-            Aim::Tip(target, criterion) => self.shortfall_of(0, target, criterion, bounds),
-            Aim::Tips(aims) => self.shortfall_of_tips(aims, bounds).map(|(_, shortfall)| shortfall),
-        }
+        self.first_shortfall(bounds).map(|(_, shortfall)| shortfall)
     }
 
     /// That of the first tip whose target is beyond its reach, and the number of the tip.
-    fn shortfall_of_tips(&self, aims: &TipAims<'_>, bounds: &Bounds) -> Option<(usize, ReachShortfall)> {
-        aims.iter().find_map(|(task, target)| match task.subject {
-            Subject::Tip(tip) if task.criterion.fixes_pose(target) => {
+    fn first_shortfall(&self, bounds: &Bounds) -> Option<(usize, ReachShortfall)> {
+        let is_only = self.only_target().is_some();
+        self.aims().iter().find_map(|(task, target)| match task.subject {
+            // Of several tips, the tool of a task hides where the tip itself is to be, unless the target is a pose.
+            Subject::Tip(tip) if is_only || task.criterion.fixes_pose(target) => {
                 let target = task.without_tool(target);
                 Some((tip, self.shortfall_of(tip, &target, &task.criterion, bounds)?))
             }
@@ -51,18 +49,16 @@ impl Problem<'_> {
 
     /// Describes the obstruction between the tip and the target at `q`; empty if nothing is known.
     pub(crate) fn obstruction(&self, bounds: &Bounds, q: &[f64]) -> String {
-        let reach = match self.aim() {
-            Aim::Tip(..) => self.reach_shortfall(bounds).map(|shortfall| shortfall.to_string()),
-            Aim::Tips(aims) => self.shortfall_of_tips(aims, bounds).map(|(tip, shortfall)| {
-                format!("tip '{}': {shortfall}", self.robot().tips().nth(tip).unwrap_or_default())
-            }),
-        };
+        let reach = self.first_shortfall(bounds).map(|(tip, shortfall)| match self.only_target() {
+            Some(_) => shortfall.to_string(),
+            None => format!("tip '{}': {shortfall}", self.robot().tips().nth(tip).unwrap_or_default()),
+        });
         let reasons = reach.into_iter().chain(self.outside_region(q)).chain(self.joints_at_limits(bounds, q));
         reasons.collect::<Vec<_>>().join("; ")
     }
 
     fn outside_region(&self, q: &[f64]) -> Option<String> {
-        let Aim::Tip(_, criterion) = self.aim() else { return None };
+        let (_, criterion) = self.only_target()?;
         let (region, tip) = (criterion.region.as_ref()?, self.robot().tip_position(q));
         (!region.contains(&tip))
             .then(|| format!("the tip is outside its region, which requires {}", region.violated_faces(&tip)))

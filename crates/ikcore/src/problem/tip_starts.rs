@@ -6,7 +6,7 @@ use crate::math::arithmetic::NoFma;
 use crate::objective::{Bounds, Point};
 use crate::rng::LazyRng;
 use crate::robot::{Choice, Robot};
-use crate::task::{Subject, Target, TipAims};
+use crate::task::{Aims, Subject, Target};
 
 /// What the attempts so far have shown.
 #[derive(Debug, Clone, Default)]
@@ -29,7 +29,7 @@ impl TipStarts {
     }
 
     /// Writes the next start into `q`. The first one has the shared joints in the middle of their ranges, later ones anywhere.
-    pub fn propose(&mut self, robot: &Robot, aims: &TipAims<'_>, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
+    pub fn propose(&mut self, robot: &Robot, aims: &Aims<'_>, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         let attempt = self.attempts;
         self.attempts += 1;
         for (j, joint) in robot.joints().iter().enumerate() {
@@ -62,7 +62,7 @@ impl TipStarts {
 
     /// Puts arms where they solved their tasks; says for each tip whether its arm is there. Where tips share joints, that is the arm of
     /// the last task solved, in every other attempt: other arms may not reach their targets from there.
-    fn kept(&self, robot: &Robot, aims: &TipAims<'_>, q: &mut [f64]) -> Vec<bool> {
+    fn kept(&self, robot: &Robot, aims: &Aims<'_>, q: &mut [f64]) -> Vec<bool> {
         let mut settled = vec![false; robot.tip_count()];
         let arms = (0..robot.tip_count()).filter_map(|tip| robot.arm(tip)).map(|arm| arm.joints.len());
         let shares_joints = arms.sum::<usize>() < robot.dof();

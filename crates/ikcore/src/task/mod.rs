@@ -3,8 +3,9 @@
 //! A [`Task`] turns the caller's target into a [`Target`] and a [`Criterion`], which decides when the target is reached
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target;
 //! `tip_assessment`, `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region
-//! and a robot at q; `tip_tasks` to several tips. [`Goals`] are costs in the null space of the task.
+//! and a robot at q; `aims` to the tasks of one tip or several. [`Goals`] are costs in the null space of the task.
 
+mod aims;
 mod assessment;
 mod components;
 mod criterion;
@@ -18,8 +19,8 @@ mod target_motion;
 mod tip_assessment;
 mod tip_error;
 mod tip_task;
-mod tip_tasks;
 
+pub use aims::{Aims, NamedTask, Subject, TipCriterion};
 pub use assessment::Assessment;
 pub use components::Components;
 pub use criterion::Criterion;
@@ -30,5 +31,3 @@ pub(crate) use target_motion::TargetMotion;
 pub use target_motion::Twist;
 pub use tip_error::{SquaredError, TipError, Tolerance};
 pub use tip_task::{Task, TaskKind};
-pub use tip_tasks::{Subject, TipTask};
-pub(crate) use tip_tasks::{TipAims, TipCriterion};

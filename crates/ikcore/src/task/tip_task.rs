@@ -64,6 +64,23 @@ impl TaskKind {
         }
     }
 
+    /// Returns the part of `wanted`, a position or a pose, that a task of this kind uses.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`] if `wanted` is a position and the task needs an orientation.
+    pub(super) fn target(&self, wanted: &Target) -> Result<Target> {
+        match (self, wanted) {
+            (Self::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
+            (Self::Position, Target::Position(_)) | (Self::Pose, Target::Pose(_)) => Ok(*wanted),
+            (Self::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
+            (Self::Pointing { axis }, Target::Pose(frame)) => {
+                let length = norm(axis);
+                Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
+            }
+            _ => Err(Error::WrongTarget { task: self.name().into() }),
+        }
+    }
+
     /// Expands one entry per component of this kind to six, with `rest` for the other components.
     fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
         let rows = self.rows();
@@ -176,16 +193,7 @@ impl Task {
     /// # Errors
     /// [`Error::WrongTarget`] if `wanted` is a position and the task needs an orientation.
     pub fn target(&self, wanted: &Target) -> Result<Target> {
-        match (&self.kind, wanted) {
-            (TaskKind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
-            (TaskKind::Position, Target::Position(_)) | (TaskKind::Pose, Target::Pose(_)) => Ok(*wanted),
-            (TaskKind::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
-            (TaskKind::Pointing { axis }, Target::Pose(frame)) => {
-                let length = norm(axis);
-                Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
-            }
-            _ => Err(Error::WrongTarget { task: self.kind.name().into() }),
-        }
+        self.kind.target(wanted)
     }
 
     /// `robot` with this task's tool at its tip.

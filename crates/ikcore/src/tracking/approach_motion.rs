@@ -3,15 +3,14 @@
 use std::collections::VecDeque;
 
 use super::session::Session;
+use super::track::TipPaths;
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
 use crate::motion::{ArmState, meet};
 use crate::objective::Point;
-use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::Target;
 use crate::trajectory::Trajectory;
 
 /// Configurations of the motion on the path around the tick at which it may be met: before, there and after.
@@ -31,10 +30,9 @@ impl ApproachMotion {
     /// [`Error::Contradiction`] without acceleration and jerk limits; errors of a [`Session`].
     pub(super) fn find(
         robot: &Robot,
-        reference: &Reference,
+        asked: &TipPaths<'_>,
         start: &[f64],
         options: &TrackOptions,
-        target: impl Fn(usize) -> Target,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Self>> {
         let limits = options.limits_for(robot);
@@ -43,11 +41,12 @@ impl ApproachMotion {
                            limits=Limits(acceleration=...)";
             return Err(Error::Contradiction { problem: problem.into() });
         }
-        let mut session = Session::new(robot, start, reference.dt(), &without_rates(&limits, options)?)?;
-        session.begin(&target(0), reference.velocity(0))?;
+        let dt = asked.paths[0].dt();
+        let mut session = Session::new(robot, start, dt, &without_rates(&limits, options)?)?;
+        session.begin(asked.arrival(0))?;
         let mut around: VecDeque<Option<Point>> = VecDeque::from([None]);
-        for i in 1..reference.len() {
-            let step = session.step_moving(&target(i), reference.velocity(i), monitor)?;
+        for i in 1..asked.len() {
+            let step = session.advance(Some(asked.arrival(i)), monitor)?;
             if step.interrupted {
                 return Ok(None);
             }
@@ -57,8 +56,8 @@ impl ApproachMotion {
             }
             if let [Some(before), Some(there), Some(after)] = around.make_contiguous() {
                 let ticks = i - 1;
-                let met = moving(before, there, after, reference.dt());
-                let time = reference.time(ticks);
+                let met = moving(before, there, after, dt);
+                let time = asked.time(ticks);
                 if let Some(trajectory) = meet(&ArmState::at_rest(start), &met, &limits.narrowest(0.0, time)?, time) {
                     return Ok(Some(Self { ticks, trajectory }));
                 }

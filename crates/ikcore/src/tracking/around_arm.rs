@@ -1,21 +1,20 @@
-//! What is around a tracked arm, as rows that its command is to keep.
+//! Constraints on the command of a tracked arm, from the bodies around it.
 //!
-//! Near pairs of bodies say how far the place where the arm comes to rest may move towards them. What comes nearer is given way to before
-//! it is near: rows of its closest approach lead the arm aside, out of its way; those of where it is now would only drive the arm ahead of
-//! it, into a corner. They are wishes, softer than the rows of what stands still.
+//! A near pair of bodies limits how far the place of rest may move towards the other body. The arm gives way to a body that approaches
+//! before it is near: rows of its closest approach lead the arm aside, out of its way; rows of its present place would only drive the arm
+//! ahead of it, into a corner. Constraints from moving bodies are soft; static ones are hard.
 
 use std::sync::Arc;
 
-use super::row_motion::RowMotion;
-use super::stop_motion::StopMotion;
-use super::wish::Wish;
+use super::constrained_step::ConstrainedStep;
+use super::step_context::StepContext;
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
 use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, norm};
 use crate::objective::Point;
-use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, KeptDistance, NearRow, NearRows};
+use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, NearRow, NearRows, RequiredDistance};
 
 /// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
 const ROOM: f64 = 2e-4;
@@ -27,7 +26,7 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 /// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
 const WARNING: f64 = 0.2;
 
-/// What comes is given way to so early that this speed is enough (m/s), as far as it is foreseen (s).
+/// Speed of giving way (m/s): the arm begins early enough for it to suffice. Horizon of the prediction (s).
 const GIVING_WAY: f64 = 0.05;
 const FORESEEN: f64 = 3.0;
 
@@ -35,14 +34,14 @@ const FORESEEN: f64 = 3.0;
 /// certificate of a motion between ticks would refuse to let it start.
 const ROOM_TO_START: f64 = 3e-3;
 
-/// Softness of rows of what moves, and of what is wanted in time: they give way to what stands still.
+/// Softness of rows of moving bodies, and of rows wanted in time: they give way to rows of static bodies.
 const MOVING: f64 = 1e-7;
 const WISHED: f64 = 1e-5;
 
 /// Time in which a distance that is wanted, but not needed, comes about (s).
 const PACE: f64 = 0.1;
 
-/// What an obstacle may do between two calls that say where it is.
+/// Motion of obstacles between two calls that give their places.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ObstacleMotion {
     /// Velocity of each obstacle (m/s); empty if all are at rest.
@@ -50,18 +49,18 @@ pub(super) struct ObstacleMotion {
     speeds: Vec<f64>,
 }
 
-/// What is around an arm.
+/// Bodies around an arm.
 #[derive(Debug)]
 pub(super) struct Around {
     pub space: Arc<ClearSpace<'static>>,
     pub obstacles: ObstacleMotion,
     /// Time since the obstacles were where they are said to be (s).
     pub since: f64,
-    /// Near pairs where the arm comes to rest if it brakes now.
+    /// Near pairs at the place of rest if the arm brakes now.
     near: NearRows,
-    /// Where it would come to rest after the command.
+    /// Near pairs at the place of rest after the command.
     after: NearRows,
-    /// What comes too near where the arm comes to rest.
+    /// Bodies that will come too near to the place of rest.
     coming: ComingRows,
     check: ChordCheck,
 }
@@ -88,7 +87,7 @@ impl ObstacleMotion {
 }
 
 impl Around {
-    /// What is in `space` and moves like `obstacles`, for an arm with these limits.
+    /// The bodies in `space`, which move like `obstacles`, for an arm with these limits.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -120,8 +119,9 @@ impl Around {
     }
 
     /// Finds the pairs near the place of rest.
-    pub fn find_near(&mut self, wish: &Wish<'_>, rest: &[f64]) {
-        let reach: f64 = wish.lower().iter().zip(wish.upper()).map(|(lower, upper)| upper - lower).sum();
+    pub fn find_near(&mut self, context: &StepContext<'_>, rest: &[f64]) {
+        let [lower, upper] = context.ends();
+        let reach: f64 = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).sum();
         let far = self.obstacles.fastest() * (self.since + WARNING);
         let up_to = self.space.margin() + reach.clamp(NEAR[0], NEAR[1]) + 2.0 * far;
         self.space.find_rows(rest, up_to, &mut self.near);
@@ -153,7 +153,7 @@ impl Around {
 
     /// Whether a motion until `end` (ticks) is certainly clear.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
-        let kept = KeptDistance {
+        let kept = RequiredDistance {
             margin: self.space.margin(),
             speeds: &self.obstacles.speeds,
             since: self.since,
@@ -169,25 +169,25 @@ impl Around {
     /// `command` breaks one.
     pub fn set_rows(
         &self,
-        wish: &Wish<'_>,
+        context: &StepContext<'_>,
         (rest, stop_ticks): (&[f64], f64),
         command: &[f64],
-        RowMotion { rows, wanted, .. }: &mut RowMotion,
+        ConstrainedStep { rows, wanted, .. }: &mut ConstrainedStep,
     ) -> bool {
         if self.near.rows().is_empty() && self.coming.rows().is_empty() {
             return false;
         }
-        let response = Response::new(wish, rest);
-        let stop_time = wish.dt * stop_ticks;
-        let pace = (wish.dt / PACE).min(1.0);
+        let response = Response::new(context, rest);
+        let stop_time = context.dt * stop_ticks;
+        let pace = (context.dt / PACE).min(1.0);
         for near in self.near.rows() {
             // The obstacle moves on while the command is carried out.
-            let [until_rest, while_leaving] = self.approach_of(near, wish.dt + stop_time);
+            let [until_rest, while_leaving] = self.approach_of(near, context.dt + stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
-            let whole = missing + self.room(wish.limited.is_some()) + while_leaving;
+            let whole = missing + self.room(context.limited.is_some()) + while_leaving;
             // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
             // velocity at once also comes nearer in time, so that it can give way.
-            let paced = if whole > 0.0 || wish.limited.is_some() { pace * whole } else { whole };
+            let paced = if whole > 0.0 || context.limited.is_some() { pace * whole } else { whole };
             if near.distance < 0.0 {
                 // The deepest counts most: bodies on both sides of an obstacle want opposite ways out.
                 let weight = (near.distance / self.near.rows()[0].distance).powi(2);
@@ -204,8 +204,9 @@ impl Around {
             }
         }
         for coming in self.coming.rows() {
-            let paced = if coming.short > 0.0 || wish.limited.is_some() { pace * coming.short } else { coming.short };
-            let row = response.row(&coming.gradient, paced + GIVING_WAY * wish.dt);
+            let paced =
+                if coming.short > 0.0 || context.limited.is_some() { pace * coming.short } else { coming.short };
+            let row = response.row(&coming.gradient, paced + GIVING_WAY * context.dt);
             rows.push(Row { softness: WISHED, ..row });
         }
         rows.iter().chain(&*wanted).any(|row| dot(&row.gradient, command) < row.least)
@@ -214,15 +215,15 @@ impl Around {
     /// Sets the rows of the place where the arm comes to rest after the command `q`: they bend on the way there.
     pub fn set_rows_after(
         &mut self,
-        wish: &Wish<'_>,
+        context: &StepContext<'_>,
         (rest, stop_ticks): (&[f64], f64),
         q: &[f64],
         rows: &mut Vec<Row>,
     ) {
-        let slope = Response::new(wish, rest).slope;
+        let slope = Response::new(context, rest).slope;
         self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
         for near in self.after.rows().iter().filter(|near| near.distance >= 0.0) {
-            let [until_rest, _] = self.approach_of(near, wish.dt * stop_ticks);
+            let [until_rest, _] = self.approach_of(near, context.dt * stop_ticks);
             let least = self.space.margin() + until_rest + LEAST_ROOM - near.distance;
             let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
             (0..q.len()).for_each(|j| row.gradient[j] = near.gradient[j] * slope[j]);
@@ -259,14 +260,14 @@ pub(super) struct Response {
 }
 
 impl Response {
-    pub fn new(wish: &Wish<'_>, rest: &[f64]) -> Self {
+    pub fn new(context: &StepContext<'_>, rest: &[f64]) -> Self {
         let at_once =
             Self { slope: Point::from_elem(1.0, rest.len()), offset: rest.iter().map(|rest| -rest).collect() };
-        let Some(limited) = wish.limited else { return at_once };
-        let (braking, state) = (limited.braking(), limited.state());
+        let Some(limited) = context.limited else { return at_once };
+        let braking = limited.braking();
         let Self { mut slope, mut offset } = at_once;
-        let [lower, upper] = [wish.lower(), wish.upper()];
-        let [low, high] = [lower, upper].map(|command| StopMotion::new(wish.q, command, Some((braking, state))));
+        let [lower, upper] = context.ends();
+        let [low, high] = [lower, upper].map(|command| context.stop_after(command));
         for j in 0..rest.len() {
             let width = upper[j] - lower[j];
             if width > 0.0 && braking[j].acceleration < f64::INFINITY {

@@ -14,13 +14,14 @@
 //! | `track`, `track_options` | the call for a whole path, and its options |
 //! | `approach_motion` | the approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
-//! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
+//! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
+//! | `tracked_arm` | accepted configuration, clock, limits and targets |
 //! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | what is around an arm, as rows that its command is to keep |
-//! | `kept_motion`, `stop_motion`, `held_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `safety_filter`, `stop_motion`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | whether an arm that obstacles hold still comes nearer to its target |
-//! | `row_motion`, `wish`, `tick_aim` | steps beside rows, and what they are found from |
-//! | `tip_order`, `track_tips` | several tips: what is asked of them, and the call for their paths |
+//! | `constrained_step`, `context`, `tick_aim` | steps beside rows, and what they are found from |
+//! | `tip_tasks`, `track_tips` | several tips: what is asked of them, and the call for their paths |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
@@ -31,9 +32,9 @@
 mod approach_motion;
 mod around_arm;
 mod commanded_motion;
+mod constrained_step;
 mod controller;
-mod held_stop;
-mod kept_motion;
+mod coupled_stop;
 mod late_sensor;
 mod limited_motion;
 mod model_free;
@@ -41,31 +42,29 @@ mod plant;
 mod progress;
 mod record;
 mod repeated_targets;
-mod row_motion;
 mod rule;
+mod safety_filter;
 mod session;
 mod step;
+mod step_context;
 mod stop_motion;
 mod target_filter;
 mod target_stream;
-mod tick_aim;
-mod tip_order;
 mod tip_pose;
+mod tip_tasks;
 mod track;
 mod track_options;
-mod track_tips;
-mod wish;
+mod tracked_arm;
 
 pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
-pub use record::Record;
+pub use record::{Record, TipTable};
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
 pub use target_filter::{LowPass, OneEuro, TargetFilter};
-pub use target_stream::{Arrival, TipArrival};
+pub use target_stream::Arrival;
 pub use tip_pose::TipPose;
-pub use track::track;
+pub use track::{TipPaths, track, track_tips};
 pub use track_options::TrackOptions;
-pub use track_tips::{TipTable, TipsRecord, track_tips};

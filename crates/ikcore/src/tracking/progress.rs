@@ -1,11 +1,11 @@
-//! Whether an arm that obstacles hold still comes nearer to its target.
+//! Progress of an arm held by obstacles towards its target.
 //!
 //! Commands beside obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles hold and
 //! that has come no nearer for a while therefore takes only commands after which its place of rest is nearer to the target, by a share of
 //! how far that place moves: the error at rest falls with each of them. Where even that leads nowhere soon, the arm comes to rest.
 //! The target counts as a new one where its motion, not that of the arm, has changed the error.
 
-use super::wish::Wish;
+use super::step_context::StepContext;
 use crate::limits::{Field, Limits};
 use crate::math::vector::distance;
 use crate::objective::Point;
@@ -150,9 +150,8 @@ fn time_of_turn(limits: &Limits) -> f64 {
 }
 
 /// Whether an arm comes nearer to its target by resting at `to` instead of `from`, by a share of the way between them.
-pub(super) fn is_nearer(wish: &Wish<'_>, from: &[f64], to: &[f64]) -> bool {
-    wish.aim.as_ref().is_some_and(|aim| {
-        let [before, after] = [from, to].map(|q| aim.assess(wish.robot, q).score);
-        after.solved || before.value.sqrt() - after.value.sqrt() > SLOPE * distance(from, to)
-    })
+pub(super) fn is_nearer(context: &StepContext<'_>, from: &[f64], to: &[f64]) -> bool {
+    let [before, after] = [from, to].map(|q| context.aims.assess(context.robot, q).score);
+    let falls = before.value.sqrt() - after.value.sqrt();
+    !context.aims.is_empty() && (after.solved || falls > SLOPE * distance(from, to))
 }

@@ -29,7 +29,7 @@ pub struct Record {
     pub dof: usize,
     /// Configurations (k, n) (rad, m).
     pub q: Vec<f64>,
-    /// Tip positions (k, 3) (m).
+    /// Tip positions (k, 3) (m); of several tips those of the first target.
     pub position: Vec<[f64; 3]>,
     /// Reference positions (k, 3) (m).
     pub reference: Vec<[f64; 3]>,
@@ -67,6 +67,34 @@ pub struct Record {
     ease: Ease,
     limit_at: LimitAt,
     dt: f64,
+    /// What became of each target of several tips; empty for one tip. Stored apart.
+    #[serde(skip)]
+    pub tips: TipTable,
+}
+
+/// What became of each target, row by row, the targets in the order of the call.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct TipTable {
+    /// Positions (k, targets) (m), those of pairs as seen from the first tip.
+    pub positions: Vec<[f64; 3]>,
+    /// Reference positions (k, targets) (m).
+    pub references: Vec<[f64; 3]>,
+    /// Errors (k, targets).
+    pub errors: Vec<TipError>,
+}
+
+impl TipTable {
+    /// Appends the result of a tick.
+    pub(super) fn push(
+        &mut self,
+        positions: Vec<[f64; 3]>,
+        references: impl Iterator<Item = [f64; 3]>,
+        errors: Vec<TipError>,
+    ) {
+        self.positions.extend(positions);
+        self.references.extend(references);
+        self.errors.extend(errors);
+    }
 }
 
 /// The approach that a track begins with.
@@ -121,6 +149,7 @@ impl Record {
             ease: Ease::NotAsked,
             limit_at,
             dt,
+            tips: TipTable::default(),
         }
     }
 

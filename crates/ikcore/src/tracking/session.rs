@@ -1,23 +1,19 @@
-//! One control loop: the accepted configuration, the clock, the box of the tick and the rule that runs in it.
+//! One control loop: an arm, the rule that proposes its commands, and the safety filter that decides on them.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::around_arm::ObstacleMotion;
-use super::kept_motion::{Kept, KeptMotion};
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
-use super::repeated_targets::RepeatedTargets;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
+use super::safety_filter::{Kept, SafetyFilter};
 use super::step::Step;
-use super::target_stream::{Arrival, Arriving, TargetStream, TipArrival};
-use super::tick_aim::TickAim;
-use super::tip_order::TipOrder;
+use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
-use super::wish::Wish;
+use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
-use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::limits::Limits;
 use crate::math::vector::between;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, NearestContact, Obstacles, Surroundings};
@@ -25,7 +21,7 @@ use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goals, Target, TargetRow, Task, TipAims, TipError, TipTask};
+use crate::task::{Assessment, Goals, Target, TipError};
 
 /// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
@@ -33,30 +29,13 @@ const BISECTIONS: usize = 10;
 /// A tracker in progress.
 #[derive(Debug)]
 pub struct Session {
-    robot: Arc<Robot>,
-    limits: Limits,
-    limit_at: LimitAt,
+    arm: TrackedArm,
     rule: TickRule,
     running: RunningRule,
-    task: Option<Task>,
-    criterion: Criterion,
-    /// What was last asked of several tips; `None` for one.
-    tips: Option<Box<TipOrder>>,
     goals: Goals,
-    dt: f64,
-    ticks: usize,
-    q: Point,
-    /// Configuration at the start of the last tick.
-    before: Point,
-    /// The value accepted in the previous tick, which a random search must beat.
-    last_value: Option<f64>,
-    targets: TargetStream,
-    tick_box: TickBox,
-    /// Under acceleration or jerk limits.
-    limited: Option<LimitedMotion>,
     surroundings: Surroundings,
     /// Where something is to be kept clear of, or pairs of tips may be held.
-    kept: Option<Box<KeptMotion>>,
+    safety: Option<Box<SafetyFilter>>,
     /// The arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -70,257 +49,139 @@ impl Session {
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker does not
     /// support, a time step that is not positive.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        let several_tips = robot.tip_count() > 1;
         options.require_tips(robot)?;
-        let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
         options.rule.validate_for(robot, dt)?;
-        let criterion = options.criterion()?;
         options.check_goals(robot)?;
-        limits.require_for(robot)?;
-        limits.validate(dt, 0)?;
-        let limited = LimitedMotion::new(&limits, dt);
-        let running = options.rule.start(limited.is_some(), several_tips);
-        let repeated = running.extrapolates().then(|| RepeatedTargets::new(dt));
-        let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
-        if criterion.region.is_some() {
-            require_room_to_stop(&limits)?;
-        }
-        robot.check("start", start)?;
-        let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
-        require_inside(&robot, &limits, &criterion, "start", start)?;
+        let arm = TrackedArm::new(robot, start, dt, options)?;
         // If limits vary over time, goals use the joint ranges at the start.
-        let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
-        let goals = Goals::new(&options.goals, &robot, &ranges);
+        let ranges = Bounds::from_ranges((0..start.len()).map(|j| arm.limits.position_range(j, 0.0, 0.0).into()));
+        let goals = Goals::new(&options.goals, &arm.robot, &ranges);
         let surroundings = options.surroundings.clone();
-        let space = clear_space(&surroundings, &robot)?;
-        let keeps = several_tips || space.is_some();
-        let kept = if keeps { Some(Box::new(KeptMotion::new(space, &limits)?)) } else { None };
-        Ok(Self {
-            kept,
-            tips: several_tips.then(Box::default),
-            surroundings,
-            robot,
-            tick_box: TickBox::around(start, &limits),
-            running,
-            limited,
-            limits,
-            limit_at: options.limit_at,
-            rule: options.rule.clone(),
-            task: options.task,
-            criterion,
-            goals,
-            dt,
-            ticks: 0,
-            q: Point::from_slice(start),
-            before: Point::from_slice(start),
-            last_value: None,
-            targets,
-            stopping: false,
-            seed: options.seed,
-            rng: rng::stream(options.seed, 0),
-        })
+        let space = clear_space(&surroundings, &arm.robot)?;
+        let filters = !arm.has_one_tip() || space.is_some();
+        let safety = if filters { Some(Box::new(SafetyFilter::new(space, &arm.limits)?)) } else { None };
+        let running = options.rule.start(&arm);
+        let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
+        Ok(Self { arm, rule, running, goals, surroundings, safety, stopping: false, seed, rng })
     }
 
     /// The accepted configuration (n,).
     pub fn q(&self) -> &[f64] {
-        &self.q
+        &self.arm.q
     }
 
     /// The velocity of the last tick (n,) (rad/s, m/s); zero before the first.
     pub fn qd(&self) -> Point {
-        self.q.iter().zip(&self.before).map(|(q, before)| (q - before) / self.dt).collect()
+        self.arm.q.iter().zip(&self.arm.before).map(|(q, before)| (q - before) / self.arm.dt).collect()
     }
 
     /// Time of the accepted configuration (s).
     pub fn time(&self) -> f64 {
-        self.ticks as f64 * self.dt
+        self.arm.time()
     }
 
     /// The limits in force.
     pub fn limits(&self) -> &Limits {
-        &self.limits
+        &self.arm.limits
     }
 
     /// The time step (s).
     pub fn dt(&self) -> f64 {
-        self.dt
+        self.arm.dt
     }
 
     /// The velocity limits of the last tick (n,) (rad/s, m/s).
     pub fn velocity_limit(&self) -> &[f64] {
-        &self.tick_box.velocity
+        &self.arm.tick_box.velocity
     }
 
-    pub(super) fn criterion(&self) -> &Criterion {
-        &self.criterion
-    }
-
-    /// Returns the part of `wanted` that the task uses, validated.
-    fn read<'a>(&self, wanted: &'a Target) -> Result<Cow<'a, Target>> {
-        wanted.validate()?;
-        self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
-    }
-
-    /// What is to be achieved, once a target has arrived.
-    fn aim(&self) -> Option<TickAim<'_>> {
-        aim(&self.targets, self.tips.as_deref(), &self.criterion)
-    }
-
-    /// Tasks and targets of several tips, once they have arrived.
+    /// Errors of each target of several tips, once these have arrived.
     pub fn tip_errors(&self) -> Vec<TipError> {
-        let aim = self.aim();
-        aim.as_ref().and_then(TickAim::tips).map_or(vec![], |aims| aims.errors(&self.robot, &self.q).to_vec())
+        if self.arm.has_one_tip() { vec![] } else { self.arm.aims().errors(&self.arm.robot, &self.arm.q).to_vec() }
     }
 
     /// Positions (m) of the tips that have targets, in the order of these; of pairs as seen from the first tip.
     pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
         let mut positions = vec![];
-        if let Some(TickAim::Tips(aims)) = self.aim() {
-            aims.positions(&self.robot, &self.q, |position| positions.push(position));
-        }
+        self.arm.aims().positions(&self.arm.robot, &self.arm.q, |position| positions.push(position));
         positions
     }
 
-    /// Returns how far `wanted` is provably out of reach within `bounds`.
+    /// Returns how far the targets of `arrival` are provably out of reach within `bounds`.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
-    pub(super) fn reach_shortfall(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
-        let target = self.read(wanted)?;
-        Ok(Problem::new(&self.robot, &target, self.criterion).reach_shortfall(bounds))
-    }
-
-    /// [`reach_shortfall`](Self::reach_shortfall) for several tips.
-    ///
-    /// # Errors
-    /// As [`advance_tips`](Self::advance_tips).
-    pub(super) fn reach_shortfall_of_tips(
-        &mut self,
-        wanted: &[(TipTask, Target)],
-        bounds: &Bounds,
-    ) -> Result<Option<ReachShortfall>> {
-        let targets = self.read_tips(wanted)?;
-        let tasks = self.tips.as_ref().map_or(&[][..], |tips| tips.tasks());
-        Ok(Problem::of_moving_tips(&self.robot, TipAims { tasks, targets: &targets }).reach_shortfall(bounds))
+    /// As [`advance`](Self::advance).
+    pub(super) fn reach_shortfall(&mut self, mut arrival: Arrival, bounds: &Bounds) -> Result<Option<ReachShortfall>> {
+        self.read(&mut arrival)?;
+        let TrackedArm { robot, tasks, .. } = &self.arm;
+        Ok(Problem::new(robot, tasks.with(&arrival.targets)).reach_shortfall(bounds))
     }
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        let nearest = self.space().map(|space| space.nearest(&self.q));
+        let nearest = self.space().map(|space| space.nearest(&self.arm.q));
         let distance =
             |nearest: Option<NearestContact>| nearest.map_or(f64::INFINITY, |nearest| nearest.contact.distance);
-        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: nearest.map_or(f64::NAN, distance) }
+        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance: nearest.map_or(f64::NAN, distance) }
     }
 
     /// The tracked robot.
     pub fn robot(&self) -> &Robot {
-        &self.robot
+        &self.arm.robot
     }
 
-    /// Evaluates the start without moving; its error to `target`, which moves at `velocity` (m/s), is the value that
-    /// the first tick must beat.
+    /// Evaluates the start without moving; its error to the targets is the value that the first tick must beat.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
-    pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
-        self.robot.require_one_tip("a plain target")?;
-        let target = self.read(target)?;
-        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
-        Ok(self.beginning())
-    }
-
-    /// [`begin`](Self::begin) for several tips.
-    ///
-    /// # Errors
-    /// As [`advance_tips`](Self::advance_tips).
-    pub fn begin_tips(&mut self, targets: &[(TipTask, Target)]) -> Result<Step> {
-        let targets = self.read_tips(targets)?;
-        self.targets.place(targets, None);
+    /// As [`advance`](Self::advance).
+    pub fn begin(&mut self, mut arrival: Arrival) -> Result<Step> {
+        self.read(&mut arrival)?;
+        self.arm.targets.place(arrival);
         Ok(self.beginning())
     }
 
     /// The start as a step.
     fn beginning(&mut self) -> Step {
-        let assessment = self.aim().map(|aim| aim.assess(&self.robot, &self.q));
-        let Assessment { score, error } = assessment.unwrap_or(TickResult::at(&self.q).assessment);
-        self.last_value = Some(score.value);
+        let Assessment { score, error } = self.arm.aims().assess(&self.arm.robot, &self.arm.q);
+        self.arm.last_value = Some(score.value);
         let status = match score.solved {
-            true if self.is_blocked_by_region() => Status::HeldInRegion,
+            true if self.arm.is_blocked_by_region() => Status::HeldInRegion,
             true => Status::Solved,
             false => Status::Improved,
         };
-        let status = if self.is_clear(&self.q) { status } else { Status::InCollision };
-        let (position, error) = (self.robot.tip_position(&self.q), error.into());
+        let status = if self.is_clear(&self.arm.q) { status } else { Status::InCollision };
+        let (position, error) = (self.arm.robot.tip_position(&self.arm.q), error.into());
         Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
     }
 
-    /// Whether the region keeps the tip from its target.
-    fn is_blocked_by_region(&self) -> bool {
-        match self.aim() {
-            Some(TickAim::Tip { target, criterion }) => criterion.blocked_by_region(target).is_some(),
-            _ => false,
-        }
-    }
-
-    /// Moves by one tick towards `target`, inside the limits. Time advances whether or not the target is reached.
+    /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is reached.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
     /// [`Error::WrongTarget`](crate::Error::WrongTarget) if the target lacks a component that the task needs. The session
     /// has not moved then.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
-        self.step_moving(target, None, monitor)
+        self.advance(Some(Arrival::from(*target)), monitor)
     }
 
-    /// Like [`step`](Self::step), with the velocity (m/s) of the target at the end of the tick, for rules that work
-    /// with velocities. `None` derives it from the previous target.
+    /// Moves by one tick, with the targets that have arrived since the last tick, if any; tips without one are free. Without a new target
+    /// the arm follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
+    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes. Pairs of tips that are where they are
+    /// to be are held there, before anything else.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
-    pub fn step_moving(
-        &mut self,
-        target: &Target,
-        velocity: Option<[f64; 3]>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Step> {
-        self.advance(Some(Arrival { target: *target, velocity, stamp: None }), monitor)
-    }
-
-    /// Moves by one tick, with the target that has arrived since the last tick, if any. Without a new target the arm
-    /// follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
-    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step), and [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
-    /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use.
-    pub fn advance(&mut self, arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let arrival = arrival.map(|arrival| self.read_arrival(&arrival)).transpose()?;
-        self.tick(arrival, monitor)
-    }
-
-    /// [`advance`](Self::advance) for several tips, each with a target or free. Pairs that are where they are to be are held there,
-    /// before anything else.
-    ///
-    /// # Errors
-    /// As [`advance`](Self::advance), and [`Error::Contradiction`](crate::Error::Contradiction) for targets that contradict each other.
-    pub fn advance_tips(&mut self, arrival: Option<TipArrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let arrival = arrival.map(|TipArrival { targets, stamp }| {
-            self.check_stamp(stamp)?;
-            Ok(Arriving { targets: self.read_tips(&targets)?, velocity: None, stamp })
-        });
-        self.tick(arrival.transpose()?, monitor)
-    }
-
-    fn tick(&mut self, arrival: Option<Arriving>, monitor: &mut dyn Monitor) -> Result<Step> {
-        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let sampled_ago = self.targets.take(arrival, to)?.map(|ago| ago / self.dt);
+    /// As [`step`](Self::step), [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
+    /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use or for targets that contradict each
+    /// other.
+    pub fn advance(&mut self, mut arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
+        arrival.as_mut().map_or(Ok(()), |arrival| self.read(arrival))?;
+        let to = self.arm.next_time();
+        let sampled_ago = self.arm.targets.take(arrival, to)?.map(|ago| ago / self.arm.dt);
         self.update_stopping(sampled_ago.is_some(), to);
-        let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        let (q, tick_box) = (&self.q, &mut self.tick_box);
-        let can_stop = self.limited.as_mut().is_none_or(|limited| limited.narrow(q, from, &self.limits, tick_box));
-        let mut found = if self.stopping || self.targets.last().is_none() {
+        let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
+        let mut found = if self.stopping || self.arm.targets.last().is_empty() {
             self.brake()
         } else {
             self.run_rule(sampled_ago, monitor)
@@ -329,38 +190,28 @@ impl Session {
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
-            self.accept(&found.q, found.assessment.score.value);
+            self.arm.accept(&found.q, found.assessment.score.value);
         }
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// Reduces an arrival to the part that the task uses, validated.
-    fn read_arrival(&self, arrival: &Arrival) -> Result<Arriving> {
-        self.robot.require_one_tip("a plain target")?;
+    /// Checks an arrival, and reduces its targets to the parts that their tasks use. Other tasks than before begin anew.
+    fn read(&mut self, arrival: &mut Arrival) -> Result<()> {
         self.check_stamp(arrival.stamp)?;
-        Ok(Arriving::of_one(*self.read(&arrival.target)?, arrival.velocity, arrival.stamp))
-    }
-
-    /// The parts of targets of several tips that their tasks use, validated. Other tasks than before begin anew.
-    fn read_tips(&mut self, asked: &[(TipTask, Target)]) -> Result<TargetRow> {
-        let Some(tips) = &mut self.tips else {
-            let problem = format!("robot '{}' has one tip: give a plain target", self.robot.name());
-            return Err(Error::Contradiction { problem });
-        };
-        let (targets, are_new) = tips.read(&self.robot, asked)?;
-        if are_new {
-            self.targets.begin_anew();
+        let asked = std::mem::take(&mut arrival.tips);
+        if self.arm.tasks.read(&self.arm.robot, &asked, &mut arrival.targets)? {
+            self.arm.targets.begin_anew();
             self.running.forget();
-            self.last_value = None;
+            self.arm.last_value = None;
         }
-        Ok(targets)
+        Ok(())
     }
 
     /// Err for a stamp that the rule cannot use.
     fn check_stamp(&self, stamp: Option<f64>) -> Result<()> {
-        if stamp.is_some() && !self.running.extrapolates() {
+        if stamp.is_some() && !self.rule.extrapolates(self.arm.limited.is_some()) {
             let problem = "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or \
                            leave stamp out";
             return Err(Error::Contradiction { problem: problem.into() });
@@ -372,7 +223,7 @@ impl Session {
     fn update_stopping(&mut self, arrived: bool, time: f64) {
         if arrived {
             self.stopping = false;
-        } else if self.targets.timed_out(time) && !self.stopping {
+        } else if self.arm.targets.timed_out(time) && !self.stopping {
             self.begin_stopping();
         }
     }
@@ -380,63 +231,35 @@ impl Session {
     fn begin_stopping(&mut self) {
         self.stopping = true;
         self.running.forget();
-        self.targets.expect_new();
+        self.arm.targets.expect_new();
     }
 
     fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
-        let tips = self.tips.as_deref();
-        let Some([target, ..]) = self.targets.last() else { return TickResult::at(&self.q) };
-        let tick = Tick {
-            robot: &self.robot,
-            target,
-            criterion: &self.criterion,
-            tips: tips.zip(self.targets.last()).map(|(tips, targets)| TipAims { tasks: tips.tasks(), targets }),
-            goals: &mut self.goals,
-            velocity: self.targets.velocity(),
-            before: self.targets.before(),
-            moves: tips.is_some() && self.targets.moves(),
-            time: self.ticks as f64 * self.dt,
-            dt: self.dt,
-            limits: &self.limits,
-            velocity_limit: &self.tick_box.velocity,
-            limited: self.limited.as_ref(),
-            kept: self.kept.as_deref_mut(),
-            sampled_ago,
-            tick_box: &self.tick_box.bounds,
-            last_value: self.last_value,
-            rng: &mut self.rng,
-            monitor,
-        };
-        self.running.advance(&self.q, tick)
+        let (context, targets) = (self.arm.context(), &self.arm.targets);
+        let Some((task, target)) = context.aims.iter().next() else { return TickResult::at(context.q) };
+        let (criterion, goals, rng) = (&task.criterion, &mut self.goals, &mut self.rng);
+        let tick = Tick { context, target, criterion, goals, targets, sampled_ago, rng, monitor };
+        self.running.advance(tick, self.safety.as_deref_mut())
     }
 
     /// Moves by one tick of the stop that was certified with the last command.
     fn brake(&mut self) -> TickResult {
-        let mut found = TickResult::at(&self.q);
-        let held = self.kept.as_mut().filter(|_| self.stopping).and_then(|kept| kept.stop_on(self.dt));
-        let fastest = || self.limited.as_ref().map(|limited| limited.stopping(&self.q));
+        let mut found = TickResult::at(&self.arm.q);
+        let held = self.safety.as_mut().filter(|_| self.stopping).and_then(|safety| safety.stop_on(self.arm.dt));
+        let fastest = || self.arm.limited.as_ref().map(|limited| limited.stopping(&self.arm.q));
         if let Some(next) = held.or_else(fastest) {
             found.q = next;
         }
-        self.tick_box.bounds.clip(&mut found.q);
-        self.assess(&mut found);
+        self.arm.tick_box.bounds.clip(&mut found.q);
+        self.arm.assess(&mut found);
         found
-    }
-
-    /// Assesses what has been found, with one evaluation.
-    fn assess(&self, found: &mut TickResult) {
-        found.evaluations += 1;
-        match self.aim() {
-            Some(aim) => found.assess(&self.robot, &aim),
-            None => found.position = self.robot.tip_position(&found.q),
-        }
     }
 
     fn status(&self, found: &TickResult, held: bool) -> Status {
         let Score { value, solved } = found.assessment.score;
-        match self.last_value {
+        match self.arm.last_value {
             _ if !self.is_clear(&found.q) => Status::InCollision,
-            _ if solved && self.is_blocked_by_region() => Status::HeldInRegion,
+            _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             _ if held || self.goal_is_held() => Status::HeldByObstacle,
             Some(last) if value >= last => Status::Capped,
@@ -446,29 +269,17 @@ impl Session {
 
     /// Whether obstacles keep the goal of an arm that does not stop from its target.
     fn goal_is_held(&self) -> bool {
-        !self.stopping && self.kept.as_ref().is_some_and(|kept| kept.goal_is_held())
+        !self.stopping && self.safety.as_ref().is_some_and(|safety| safety.goal_is_held())
     }
 
     /// Changes what the rule has `found` to a command that keeps the arm clear and pairs of tips held. Returns whether it had to, because
     /// of what is around the arm.
     fn keep(&mut self, found: &mut TickResult) -> bool {
-        let Some(kept) = &mut self.kept else { return false };
-        let wish = Wish {
-            robot: &self.robot,
-            q: &self.q,
-            tick_box: &self.tick_box,
-            limits: &self.limits,
-            limit_at: self.limit_at,
-            limited: self.limited.as_ref(),
-            aim: aim(&self.targets, self.tips.as_deref(), &self.criterion),
-            error_after: self.last_value.filter(|value| value.is_finite()).map(f64::sqrt),
-            time: self.ticks as f64 * self.dt,
-            dt: self.dt,
-        };
-        let Kept { changed, by_obstacles } = kept.keep(&wish, &mut found.q);
+        let Some(safety) = &mut self.safety else { return false };
+        let Kept { changed, by_obstacles } = safety.keep(&self.arm.context(), &mut found.q);
         if changed {
-            self.assess(found);
-            if self.limited.is_none() {
+            self.arm.assess(found);
+            if self.arm.limited.is_none() {
                 self.running.forget();
             }
         }
@@ -482,12 +293,12 @@ impl Session {
 
     /// What the arm keeps clear of, if anything.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
-        self.kept.as_ref().and_then(|kept| kept.space())
+        self.safety.as_ref().and_then(|safety| safety.space())
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
-        self.kept.as_ref().map_or(&[], |kept| kept.velocities())
+        self.safety.as_ref().map_or(&[], |safety| safety.velocities())
     }
 
     /// What is around the arm.
@@ -504,28 +315,18 @@ impl Session {
         let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let space = if surroundings.is_given() { clear_space(&surroundings, &self.robot)? } else { None };
-        if space.is_some() || self.tips.is_some() {
-            let kept = match self.kept.take() {
-                Some(kept) => self.kept.insert(kept),
-                None => self.kept.insert(Box::new(KeptMotion::new(None, &self.limits)?)),
+        let space = if surroundings.is_given() { clear_space(&surroundings, &self.arm.robot)? } else { None };
+        if space.is_some() || !self.arm.has_one_tip() {
+            let safety = match self.safety.take() {
+                Some(safety) => self.safety.insert(safety),
+                None => self.safety.insert(Box::new(SafetyFilter::new(None, &self.arm.limits)?)),
             };
-            kept.replace(space, motion, &self.limits)?;
+            safety.replace(space, motion, &self.arm.limits)?;
         } else {
-            self.kept = None;
+            self.safety = None;
         }
         self.surroundings = surroundings;
         Ok(())
-    }
-
-    fn accept(&mut self, q: &[f64], value: f64) {
-        if let Some(limited) = &mut self.limited {
-            limited.advance(&self.q, q);
-        }
-        self.before.copy_from_slice(&self.q);
-        self.q.copy_from_slice(q);
-        (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
-        self.targets.accept();
     }
 
     /// Stops as fast as the limits allow, from the next tick on until a target arrives; pairs of tips that are held stay held. Nothing
@@ -533,9 +334,9 @@ impl Session {
     /// an arm that may stop at once.
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
-        let held = self.kept.as_ref().and_then(|kept| kept.ticks_to_stop());
-        let fastest = || self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
-        held.map_or_else(fastest, |ticks| self.dt * ticks)
+        let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
+        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
+        held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
     }
 
     /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts
@@ -543,46 +344,44 @@ impl Session {
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    pub(super) fn drive(&mut self, q: &[f64], target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
-        let target = self.read(target)?;
-        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        let Assessment { score, error } = target.assess(&self.robot, q, &self.criterion);
-        let status = match self.last_value {
+    pub(super) fn drive(&mut self, q: &[f64], mut arrival: Arrival) -> Result<Step> {
+        self.read(&mut arrival)?;
+        let inside_limits = self.arm.narrow();
+        self.arm.targets.place(arrival);
+        let Assessment { score, error } = Problem::new(&self.arm.robot, self.arm.aims()).assess(q);
+        let status = match self.arm.last_value {
             _ if score.solved => Status::Solved,
             Some(last) if score.value >= last => Status::Capped,
             _ => Status::Improved,
         };
-        self.targets.place(TargetRow::from_elem(*target, 1), velocity);
-        self.accept(q, score.value);
+        self.arm.accept(q, score.value);
         self.start_rule();
-        let (position, error) = (self.robot.tip_position(q), error.into());
+        let (position, error) = (self.arm.robot.tip_position(q), error.into());
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
     }
 
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
     /// convex, so any fraction of the tick ends in the box.
     fn keep_in_region(&mut self, found: &mut TickResult) {
-        let Some([target]) = self.targets.last() else { return };
-        let region = self.criterion.region.as_ref().filter(|region| !region.contains(&found.position));
-        let Some(region) = region else { return };
+        let region = self.arm.tasks.region().filter(|region| !region.contains(&found.position));
+        let Some(region) = region.filter(|_| !self.arm.targets.last().is_empty()) else { return };
         let (mut kept, mut past) = (0.0, 1.0);
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
             let share = 0.5 * (kept + past);
-            between(&self.q, &end, share, &mut found.q);
-            let inside = region.contains(&self.robot.tip_position(&found.q));
+            between(&self.arm.q, &end, share, &mut found.q);
+            let inside = region.contains(&self.arm.robot.tip_position(&found.q));
             (kept, past) = if inside { (share, past) } else { (kept, share) };
         }
-        between(&self.q, &end, kept, &mut found.q);
-        found.set_tip(&self.robot.tip(&found.q), target, &self.criterion);
+        between(&self.arm.q, &end, kept, &mut found.q);
+        found.assess(&self.arm.robot, &self.arm.aims());
         found.evaluations += BISECTIONS + 1;
         self.running.forget();
     }
 
     /// The rule starts anew.
     fn start_rule(&mut self) {
-        self.running = self.rule.start(self.limited.is_some(), self.tips.is_some());
+        self.running = self.rule.start(&self.arm);
     }
 
     /// Resets the session to `q` (n,) at t = 0, at rest.
@@ -600,53 +399,18 @@ impl Session {
     /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
     /// stop inside its limits.
     pub fn reset_moving(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
-        self.robot.check("q", q)?;
-        require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
-        let zero = Point::from_elem(0.0, q.len());
-        let (qd, qdd) = (qd.unwrap_or(&zero), qdd.unwrap_or(&zero));
-        self.robot.check("qd", qd)?;
-        self.robot.check("qdd", qdd)?;
-        if let Some(limited) = &mut self.limited {
-            limited.set(q, [qd, qdd], &self.limits)?;
-        }
-        self.q.copy_from_slice(q);
-        self.before = q.iter().zip(qd).map(|(q, qd)| q - self.dt * qd).collect();
-        (self.ticks, self.last_value, self.stopping) = (0, None, false);
+        self.arm.reset(q, [qd, qdd])?;
+        self.stopping = false;
         self.start_rule();
-        self.targets.clear();
-        if let Some(kept) = &mut self.kept {
-            kept.forget();
+        if let Some(safety) = &mut self.safety {
+            safety.forget();
         }
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
 }
 
-/// What is to be achieved, once a target has arrived.
-fn aim<'a>(targets: &'a TargetStream, tips: Option<&'a TipOrder>, criterion: &'a Criterion) -> Option<TickAim<'a>> {
-    match (tips, targets.last()?) {
-        (Some(tips), targets) => Some(TickAim::Tips(TipAims { tasks: tips.tasks(), targets })),
-        (None, [target, ..]) => Some(TickAim::Tip { target, criterion }),
-        (None, []) => None,
-    }
-}
-
 /// The space to stay in, if anything is to be kept clear of.
 fn clear_space(surroundings: &Surroundings, robot: &Arc<Robot>) -> Result<Option<ClearSpace<'static>>> {
     Ok(surroundings.clear_space(robot)?.map(|space| space.with_shared(robot)))
-}
-
-/// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
-fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &str, q: &[f64]) -> Result<()> {
-    limits.require_inside(what, 0.0, q)?;
-    criterion.region.map_or(Ok(()), |region| region.require_inside(what, &robot.tip_position(q)))
-}
-
-/// Checks that the arm can stop at any time, without which it cannot be kept in a region.
-fn require_room_to_stop(limits: &Limits) -> Result<()> {
-    let method = "a task with a region";
-    let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
-    limits.require_none(&[Field::Acceleration, Field::Jerk], method, remedy)?;
-    let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
-    [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
 }

@@ -5,36 +5,35 @@ use smallvec::smallvec;
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::task::{Target, TargetRow, TipTask};
+use crate::task::{NamedTask, Target, TargetMotion, TargetRow, Twist};
 
 /// A target is extrapolated over this time (s) at most, however old it is.
 const LONGEST_AGE: f64 = 0.25;
 
-/// A target that has arrived.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Targets that have arrived, together.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Arrival {
-    /// The target.
-    pub target: Target,
-    /// Its velocity (m/s), for rules that work with velocities.
+    /// The tasks of several tips, in the order of their targets; tips without one are free. Empty for a robot with one tip.
+    pub tips: Vec<NamedTask>,
+    /// The targets.
+    pub targets: TargetRow,
+    /// Velocity of the target of the only tip (m/s), for rules that work with velocities.
     pub velocity: Option<[f64; 3]>,
-    /// When it was measured (s), on the clock of the session. `None` means at the end of the tick.
-    pub stamp: Option<f64>,
-}
-
-/// Targets of several tips that have arrived.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TipArrival {
-    /// The tasks and their targets; tips without one are free.
-    pub targets: Vec<(TipTask, Target)>,
     /// When they were measured (s), on the clock of the session. `None` means at the end of the tick.
     pub stamp: Option<f64>,
 }
 
-/// Targets with the velocity of the only one (m/s), if known.
-#[derive(Debug, Clone)]
-struct LastTargets {
-    targets: TargetRow,
-    velocity: Option<[f64; 3]>,
+impl From<Target> for Arrival {
+    fn from(target: Target) -> Self {
+        Self { targets: smallvec![target], ..Self::default() }
+    }
+}
+
+impl FromIterator<(NamedTask, Target)> for Arrival {
+    fn from_iter<T: IntoIterator<Item = (NamedTask, Target)>>(aims: T) -> Self {
+        let (tips, targets) = aims.into_iter().unzip();
+        Self { tips, targets, ..Self::default() }
+    }
 }
 
 /// The targets of a session: one, or those of several tips, which arrive together.
@@ -46,27 +45,12 @@ pub(super) struct TargetStream {
     timeout: Option<f64>,
     /// For rules that extrapolate.
     repeated: Option<RepeatedTargets>,
-    last: Option<LastTargets>,
+    last: Option<Arrival>,
     /// Those at the end of the previous tick.
-    before: Option<LastTargets>,
+    before: Option<Arrival>,
     /// When the last targets were measured, and when they arrived (s).
     measured: f64,
     arrived: f64,
-}
-
-/// Targets on their way into the stream.
-#[derive(Debug)]
-pub(super) struct Arriving {
-    pub targets: TargetRow,
-    pub velocity: Option<[f64; 3]>,
-    pub stamp: Option<f64>,
-}
-
-impl Arriving {
-    /// One target.
-    pub fn of_one(target: Target, velocity: Option<[f64; 3]>, stamp: Option<f64>) -> Self {
-        Self { targets: smallvec![target], velocity, stamp }
-    }
 }
 
 impl TargetStream {
@@ -81,19 +65,26 @@ impl TargetStream {
         Ok(Self { filter, filters, timeout, repeated, last: None, before: None, measured, arrived: 0.0 })
     }
 
-    /// The last targets, filtered.
-    pub fn last(&self) -> Option<&[Target]> {
-        self.last.as_ref().map(|wanted| &wanted.targets[..])
+    /// The last targets, filtered; empty before the first.
+    pub fn last(&self) -> &[Target] {
+        self.last.as_ref().map_or(&[], |arrival| &arrival.targets)
     }
 
-    /// The velocity of the last target, if known (m/s).
-    pub fn velocity(&self) -> Option<[f64; 3]> {
-        self.last.as_ref().and_then(|wanted| wanted.velocity)
-    }
-
-    /// Target and velocity at the end of the previous tick; of several the first.
-    pub fn before(&self) -> Option<(&Target, Option<[f64; 3]>)> {
-        self.before.as_ref().and_then(|wanted| Some((wanted.targets.first()?, wanted.velocity)))
+    /// Motion of the first target to its `end` during the last tick, of `dt` (s). Without a previous tick, the target has moved with its
+    /// velocity or, if that is unknown, stood still.
+    pub fn motion(&self, end: Target, dt: f64) -> TargetMotion {
+        let first = |arrival: &Arrival| Some((*arrival.targets.first()?, arrival.velocity));
+        match (self.before.as_ref().and_then(first), self.last.as_ref().and_then(|arrival| arrival.velocity)) {
+            (Some((begin, before)), velocity) => {
+                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
+                TargetMotion { begin, end, velocities, dt }
+            }
+            (None, None) => TargetMotion { begin: end, end, velocities: None, dt },
+            (None, Some(linear)) => {
+                let begin = end.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
+                TargetMotion { begin, end, velocities: Some([linear; 2]), dt }
+            }
+        }
     }
 
     /// Whether a target has moved since the previous tick.
@@ -103,8 +94,8 @@ impl TargetStream {
     }
 
     /// Sets the targets at t = 0.
-    pub fn place(&mut self, targets: TargetRow, velocity: Option<[f64; 3]>) {
-        self.last = Some(LastTargets { targets, velocity });
+    pub fn place(&mut self, arrival: Arrival) {
+        self.last = Some(arrival);
         self.before.clone_from(&self.last);
     }
 
@@ -113,9 +104,11 @@ impl TargetStream {
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
-    pub fn take(&mut self, arrival: Option<Arriving>, time: f64) -> Result<Option<f64>> {
-        let Some(Arriving { mut targets, velocity, stamp }) = arrival else { return Ok(None) };
-        if let Some(velocity) = &velocity {
+    pub fn take(&mut self, arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
+        let Some(mut arrival) = arrival else { return Ok(None) };
+        let Arrival { targets, velocity, stamp, .. } = &mut arrival;
+        let stamp = *stamp;
+        if let Some(velocity) = velocity {
             require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
         }
         let measured = stamp.unwrap_or(time);
@@ -129,7 +122,7 @@ impl TargetStream {
         if measured < self.measured || stamp.is_some() && measured == self.measured {
             return Ok(None);
         }
-        if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(&targets, time)) {
+        if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(targets, time)) {
             return Ok(None);
         }
         let interval = measured - self.measured;
@@ -140,7 +133,7 @@ impl TargetStream {
                 *target = filter.filtered(target, interval);
             }
         }
-        self.last = Some(LastTargets { targets, velocity });
+        self.last = Some(arrival);
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
     }
 

@@ -3,157 +3,230 @@
 use super::approach_motion::ApproachMotion;
 use super::record::Record;
 use super::session::Session;
+use super::step::Step;
+use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
-use crate::ik::{Prefer, SolveOptions, solve};
+use crate::ik::{Prefer, SolveOptions, solve_tips};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
-use crate::solver::Stopwatch;
-use crate::solver::{Monitor, Status, Stop};
-use crate::task::{Goal, Target, Tolerance};
+use crate::solver::{Monitor, Status, Stop, Stopwatch};
+use crate::task::{Goal, NamedTask, Target, TargetRow, Tolerance};
 
-/// Follows `reference` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
+/// Follows `path` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
 ///
 /// # Errors
 /// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. If the
 /// monitor asks to stop, the record holds the finished ticks.
 pub fn track(
     robot: &Robot,
-    reference: &Reference,
+    path: &Reference,
     start: Option<&[f64]>,
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Record> {
     robot.require_one_tip("track")?;
+    track_tips(robot, &TipPaths { tips: &[], paths: std::slice::from_ref(path) }, start, options, monitor)
+}
+
+/// Paths that are followed at the same time.
+#[derive(Debug, Clone, Copy)]
+pub struct TipPaths<'a> {
+    /// The tasks of several tips, in the order of their paths; empty for a robot with one tip.
+    pub tips: &'a [NamedTask],
+    /// The paths, sampled at the same times.
+    pub paths: &'a [Reference],
+}
+
+/// [`track`] with each of several tips. Pairs of tips that are where they are to be are held there before anything else: where one arm
+/// cannot follow, both lag.
+///
+/// # Errors
+/// As [`track`]; [`Error::WrongLength`] for paths that are not sampled at the same times.
+pub fn track_tips(
+    robot: &Robot,
+    asked: &TipPaths<'_>,
+    start: Option<&[f64]>,
+    options: &TrackOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Record> {
     let stopwatch = Stopwatch::start();
+    let first = asked.first()?;
+    if options.ease && robot.tip_count() > 1 {
+        let problem = "the approach of ease=True is for one tip: leave it out, or bring the arms to the paths first";
+        return Err(Error::Contradiction { problem: problem.into() });
+    }
     let limits = options.limits_for(robot);
-    limits.validate(reference.dt(), reference.len() - 1)?;
-    options.criterion()?; // checked before a start is solved with other tolerances
+    limits.validate(first.dt(), first.len() - 1)?;
+    options.require_tips(robot)?;
+    let only = options.only_task()?; // checked before a start is solved with other tolerances
     let start = match start {
         Some(q) => q.to_vec(),
-        None => first_configuration(robot, reference, &limits, options, monitor)?,
+        None => first_configuration(robot, asked, &limits, options, monitor)?,
     };
-    let mut session = Session::new(robot, &start, reference.dt(), options)?;
+    let mut session = Session::new(robot, &start, first.dt(), options)?;
     if options.ease && session.space().is_some() {
         let problem = "the approach of ease=True is not kept clear of obstacles: leave one of the two out, or plan to the path first";
         return Err(Error::Contradiction { problem: problem.into() });
     }
-    let (limits, criterion) = (session.limits().clone(), *session.criterion());
-    let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
-    let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
-    record.push(&session.accepted(), reference.position(0), &beginning);
+    let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
+    let limits = session.limits().clone();
+    let mut record = Record::new(start.len(), first.len(), limits, options.limit_at, criterion, first.dt());
+    let beginning = session.begin(asked.arrival(0))?;
+    asked.push(&session, &beginning, &mut record);
     if options.ease {
-        let target = |i: usize| target(reference, i);
-        match ApproachMotion::find(robot, reference, &start, options, target, monitor)? {
-            Some(approach) => drive(&approach, reference, &mut session, &mut record)?,
+        match ApproachMotion::find(robot, asked, &start, options, monitor)? {
+            Some(approach) => drive(&approach, asked, &mut session, &mut record)?,
             None => record.note_no_approach(),
         }
     }
-    let finished = follow(reference, &mut session, &mut record, monitor)?;
+    let finished = follow(asked, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
     if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
-        record.out_of_reach = farthest_out_of_reach(reference, record.joined().unwrap_or(0), &session)?;
+        record.out_of_reach = farthest_out_of_reach(asked, record.joined().unwrap_or(0), &mut session)?;
     }
     Ok(record)
 }
 
-/// Returns the largest distance by which the path is provably out of reach from row `first` on, and its time (s).
+impl<'a> TipPaths<'a> {
+    /// The first path, of which there is one at least; all are sampled at the same times.
+    fn first(&self) -> Result<&'a Reference> {
+        let [first, others @ ..] = self.paths else {
+            return Err(Error::WrongLength { what: "paths".into(), expected: "one at least".into(), got: 0 });
+        };
+        match others.iter().find(|path| path.len() != first.len() || path.dt() != first.dt()) {
+            None => Ok(first),
+            Some(other) => {
+                let expected = format!("{} samples of {} s, as the first path has", first.len(), first.dt());
+                Err(Error::WrongLength { what: "a path of several".into(), expected, got: other.len() })
+            }
+        }
+    }
+
+    /// Number of rows.
+    pub(super) fn len(&self) -> usize {
+        self.paths[0].len()
+    }
+
+    /// Time of row `i` (s).
+    pub(super) fn time(&self, i: usize) -> f64 {
+        self.paths[0].time(i)
+    }
+
+    /// Targets of row `i`: poses of paths with orientations, else positions.
+    fn targets(&self, i: usize) -> TargetRow {
+        let target =
+            |path: &Reference| path.pose(i).map_or(Target::Position(path.position(i)), |pose| Target::from(&pose));
+        self.paths.iter().map(target).collect()
+    }
+
+    /// The targets of row `i` as they arrive.
+    pub(super) fn arrival(&self, i: usize) -> Arrival {
+        Arrival { tips: self.tips.to_vec(), targets: self.targets(i), velocity: self.paths[0].velocity(i), stamp: None }
+    }
+
+    /// Appends the result of the next tick to `record`.
+    fn push(&self, session: &Session, step: &Step, record: &mut Record) {
+        let row = record.rows();
+        let references = self.paths.iter().map(|path| path.position(row));
+        record.push(&session.accepted(), self.paths[0].position(row), step);
+        if !self.tips.is_empty() {
+            record.tips.push(session.tip_positions(), references, session.tip_errors());
+            record.position[row] = record.tips.positions[row * self.paths.len()];
+        }
+    }
+}
+
+/// Returns the largest distance by which a path is provably out of reach from row `first` on, and its time (s).
 fn farthest_out_of_reach(
-    reference: &Reference,
+    asked: &TipPaths<'_>,
     first: usize,
-    session: &Session,
+    session: &mut Session,
 ) -> Result<Option<(ReachShortfall, f64)>> {
     let mut farthest: Option<(ReachShortfall, f64)> = None;
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // limits vary over time
-    for i in first..reference.len() {
-        if let Some(shortfall) = session.reach_shortfall(&target(reference, i), &bounds)?
+    for i in first..asked.len() {
+        if let Some(shortfall) = session.reach_shortfall(asked.arrival(i), &bounds)?
             && farthest.is_none_or(|(most, _)| (shortfall.distance, shortfall.angle) > (most.distance, most.angle))
         {
-            farthest = Some((shortfall, reference.time(i)));
+            farthest = Some((shortfall, asked.time(i)));
         }
     }
     Ok(farthest)
 }
 
 /// Drives the approach.
-fn drive(approach: &ApproachMotion, reference: &Reference, session: &mut Session, record: &mut Record) -> Result<()> {
+fn drive(approach: &ApproachMotion, asked: &TipPaths<'_>, session: &mut Session, record: &mut Record) -> Result<()> {
     for i in 1..=approach.ticks {
-        let step = session.drive(&approach.at(reference.time(i))?, &target(reference, i), reference.velocity(i))?;
-        record.push(&session.accepted(), reference.position(i), &step);
+        let step = session.drive(&approach.at(asked.time(i))?, asked.arrival(i))?;
+        asked.push(session, &step, record);
     }
     record.note_approach(approach.ticks);
     Ok(())
 }
 
-/// Steps to the end of `reference`; returns false if the monitor asked to stop before.
-fn follow(
-    reference: &Reference,
-    session: &mut Session,
-    record: &mut Record,
-    monitor: &mut dyn Monitor,
-) -> Result<bool> {
-    let last = reference.len() - 1;
+/// Steps to the end of the paths; returns false if the monitor asked to stop before.
+fn follow(asked: &TipPaths<'_>, session: &mut Session, record: &mut Record, monitor: &mut dyn Monitor) -> Result<bool> {
+    let last = asked.len() - 1;
     for i in record.rows()..=last {
         // Polled here too, since most ticks end before the evaluator polls the monitor.
         if !monitor.keep_going() {
             return Ok(false);
         }
-        let step = session.step_moving(&target(reference, i), reference.velocity(i), monitor)?;
+        let step = session.advance(Some(asked.arrival(i)), monitor)?;
         if step.interrupted {
             return Ok(false);
         }
-        record.push(&session.accepted(), reference.position(i), &step);
+        asked.push(session, &step, record);
         monitor.progress(i, last);
     }
     Ok(true)
-}
-
-/// Returns the target of row `i`: a pose if the reference has orientations, else a position.
-pub(super) fn target(reference: &Reference, i: usize) -> Target {
-    match reference.pose(i) {
-        Some(pose) => Target::from(&pose),
-        None => Target::Position(reference.position(i)),
-    }
 }
 
 /// Evaluation budget of the first configuration: most of the time no worse than the best of all, in a sixth of the
 /// time. If the target is still unsolved, the full budget of a solve is used.
 const CHOOSING: usize = 1000;
 
-/// Solves for a configuration on, or nearest to, the first point of the path: the best for the goals or, without goals,
-/// one away from singularities and limits.
+/// Solves for a configuration on, or nearest to, the first points of the paths: the best for the goals or, without goals, one away from
+/// limits and, for one tip, from singularities.
 fn first_configuration(
     robot: &Robot,
-    reference: &Reference,
+    asked: &TipPaths<'_>,
     limits: &Limits,
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<f64>> {
-    let limits = limits_at_start(robot, limits)?;
     // Tighter than the band, so that the track does not start at its edge.
-    let tolerance =
-        Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
-    let target = target(reference, 0);
-    let goals = if options.goals.is_empty() { start_goals(&target) } else { options.goals.clone() };
-    let TrackOptions { task, seed, .. } = *options;
-    let surroundings = options.surroundings.clone();
-    let (limits, prefer) = (Some(limits), Prefer::Best);
+    let tight =
+        |Tolerance { position, rotation }: Tolerance| Tolerance { position: 0.1 * position, rotation: 0.1 * rotation };
+    let targets = asked.targets(0);
+    let choices = SolveOptions {
+        task: options.task,
+        tips: asked.tips.iter().map(|task| NamedTask { tolerance: tight(task.tolerance), ..*task }).collect(),
+        goals: if options.goals.is_empty() { start_goals(robot, &targets[0]) } else { options.goals.clone() },
+        tolerance: tight(options.tolerance),
+        limits: Some(limits_at_start(robot, limits)?),
+        surroundings: options.surroundings.clone(),
+        seed: options.seed,
+        ..SolveOptions::default()
+    };
+    if robot.tip_count() > 1 {
+        return Ok(solve_tips(robot, &targets, &choices, monitor)?.q.to_vec());
+    }
     let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
-    let options =
-        SolveOptions { task, goals, prefer, tolerance, limits, surroundings, stop, seed, ..SolveOptions::default() };
-    let chosen = solve(robot, &target, &options, monitor)?;
+    let best = SolveOptions { prefer: Prefer::Best, stop, ..choices };
+    let chosen = solve_tips(robot, &targets, &best, monitor)?;
     if chosen.status != Status::BudgetSpent {
         return Ok(chosen.q.to_vec());
     }
-    let options = SolveOptions { stop: Stop::default(), ..options };
-    Ok(solve(robot, &target, &options, monitor)?.q.to_vec())
+    Ok(solve_tips(robot, &targets, &SolveOptions { stop: Stop::default(), ..best }, monitor)?.q.to_vec())
 }
 
 /// The position limits at t = 0.
-pub(super) fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> {
+fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> {
     let at_start = |field: Field| -> Vec<Profile> {
         let profiles = limits.field(field).unwrap_or_default().iter();
         profiles.map(|profile| Profile::Constant(profile.at(0.0))).collect()
@@ -161,8 +234,12 @@ pub(super) fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> 
     Limits::of(robot).replace(Field::Lower, at_start(Field::Lower))?.replace(Field::Upper, at_start(Field::Upper))
 }
 
-/// Default goals of the start: away from singularities and limits.
-fn start_goals(target: &Target) -> Vec<Goal> {
+/// Default goals of the start.
+fn start_goals(robot: &Robot, target: &Target) -> Vec<Goal> {
+    let centring = Goal::Centring { weight: 1.0 };
+    if robot.tip_count() > 1 {
+        return vec![centring];
+    }
     let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
-    vec![Goal::Manipulability { motion, tip: None, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
+    vec![Goal::Manipulability { motion, tip: None, weight: 1.0 }, centring]
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
-use crate::task::{Criterion, Goal, Task, Tolerance};
+use crate::task::{Goal, NamedTask, Task, TipCriterion, Tolerance};
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
@@ -37,11 +37,9 @@ pub struct TrackOptions {
 }
 
 impl TrackOptions {
-    /// Returns the criterion that a tick is in its band.
-    pub(super) fn criterion(&self) -> Result<Criterion> {
-        self.task.as_ref().map_or(Ok(()), Task::validate)?;
-        let criterion = self.task.map_or(self.tolerance.into(), |task| task.criterion(self.tolerance));
-        criterion.validate().map(|()| criterion)
+    /// The task of the only tip, which decides whether a tick is in its band.
+    pub(super) fn only_task(&self) -> Result<TipCriterion> {
+        NamedTask::of_only(self.task, self.tolerance).validated()
     }
 
     /// Checks that rule and task serve this robot's number of tips.

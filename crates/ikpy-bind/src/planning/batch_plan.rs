@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
 
 use super::plan::PyPlan;
-use super::plan_arguments::{EndArguments, PlanArguments, ReadOptions, read_problem};
+use super::plan_arguments::{PlanArguments, ReadOptions, read_problem};
 use crate::convert::{optional_count, row};
 use crate::error::{invalid, raise};
 use crate::indexing::{Selection, iterate, select};
@@ -228,16 +228,9 @@ pub fn plan_batch<'py>(
     };
     let threads = optional_count("threads", threads)?;
     let arm = robot.get().core.clone();
-    let (results, kept, stopwatch) = if arm.tip_count() > 1 {
-        let read = |ends: &EndArguments<'_>, task: &_| ends.read_tips(robot.get(), task);
-        let (read, kept) = read_problems(robot, problems, &common, read)?;
-        let stopwatch = Stopwatch::start();
-        (watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?, kept, stopwatch)
-    } else {
-        let (read, kept) = read_problems(robot, problems, &common, |ends, _| ends.read(robot.get()))?;
-        let stopwatch = Stopwatch::start();
-        (watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?, kept, stopwatch)
-    };
+    let (read, kept) = read_problems(robot, problems, &common)?;
+    let stopwatch = Stopwatch::start();
+    let results = watched(py, progress, |watcher| batch::plan_batch(&arm, &read, threads, watcher))?;
     let elapsed = stopwatch.elapsed().as_secs_f64();
     let status = results.iter().map(|result| plan_status(result) as u8).collect();
     let (plans, errors) = converted(robot, results, &kept)?;
@@ -250,12 +243,11 @@ pub fn plan_batch<'py>(
 type Kept = Arc<ReadOptions>;
 
 /// Reads all problems. Those without options of their own share the common ones.
-fn read_problems<'py, E>(
+fn read_problems<'py>(
     robot: &Bound<'py, PyRobot>,
     problems: &Bound<'py, PyAny>,
     common: &PlanArguments<'py>,
-    read_ends: impl Fn(&EndArguments<'py>, &Option<Bound<'py, PyAny>>) -> PyResult<(E, Vec<E>)>,
-) -> PyResult<(Vec<PlanProblem<E>>, Vec<Kept>)> {
+) -> PyResult<(Vec<PlanProblem>, Vec<Kept>)> {
     let py = robot.py();
     let of_all = Arc::new(common.read(py, robot.get())?);
     let (mut read, mut kept) = (vec![], vec![]);
@@ -263,9 +255,9 @@ fn read_problems<'py, E>(
     for (i, problem) in problems.try_iter().map_err(|_| wrong())?.enumerate() {
         py.check_signals()?;
         let problem = problem?;
-        let one = || -> PyResult<(PlanProblem<E>, Kept)> {
+        let one = || -> PyResult<(PlanProblem, Kept)> {
             let (ends, own) = read_problem(&problem, common)?;
-            let (start, ends) = read_ends(&ends, own.as_ref().map_or(&common.task, |own| &own.task))?;
+            let (start, ends) = ends.read(robot.get(), own.as_ref().map_or(&common.task, |own| &own.task))?;
             let kept = match own {
                 None => of_all.clone(),
                 Some(own) => Arc::new(own.read_over(py, robot.get(), common, &of_all)?),

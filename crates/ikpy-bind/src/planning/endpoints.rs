@@ -1,7 +1,6 @@
 //! Reading of the ends of a motion.
 
-use ikcore::ik::SolveOptions;
-use ikcore::planning::{Endpoint, TipsEndpoint};
+use ikcore::planning::Endpoint;
 use ikcore::task::{Target, Tolerance};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -15,8 +14,43 @@ use crate::tips::{Asked, TaskArguments, ToleranceArgument, read_only};
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// Reads the start, given as a target or as joint positions.
-/// The ends of a robot with one tip, without the dicts that may name it.
+/// Reads the start, given as targets or as joint positions.
+pub fn read_start(
+    robot: &PyRobot,
+    target: Argument<'_, '_>,
+    q: Argument<'_, '_>,
+    task: Argument<'_, '_>,
+) -> PyResult<Endpoint> {
+    match one_of("start", target, q)? {
+        Given::Target(targets) if robot.core.tip_count() > 1 => read_tips("start", robot, targets, task),
+        Given::Target(target) => {
+            let target = plain("start", robot, target)?;
+            refuse_angles("start", &array("start", &target)?)?;
+            read_target("start", &target).map(Endpoint::from)
+        }
+        Given::Configuration(q) => vector("start_q", q).map(Endpoint::Configuration),
+    }
+}
+
+/// Reads the ends, one or several, given as targets or as joint positions; those of several tips are dicts.
+pub fn read_ends(
+    robot: &PyRobot,
+    target: Argument<'_, '_>,
+    q: Argument<'_, '_>,
+    task: Argument<'_, '_>,
+) -> PyResult<Vec<Endpoint>> {
+    match one_of("end", target, q)? {
+        Given::Target(target) if robot.core.tip_count() == 1 => read_targets(&plain("end", robot, target)?),
+        Given::Target(several) if several.is_instance_of::<PyList>() => {
+            let ends = several.try_iter()?.enumerate();
+            ends.map(|(i, end)| read_tips(&format!("end[{i}]"), robot, &end?, task)).collect()
+        }
+        Given::Target(targets) => Ok(vec![read_tips("end", robot, targets, task)?]),
+        Given::Configuration(q) => read_configurations(q),
+    }
+}
+
+/// What is for the only tip of a robot, without the dicts that may name it.
 pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let of_one = |name: &str, end: &Bound<'py, PyAny>| match end.is_instance_of::<PyDict>() {
         true => read_only(name, robot, end, |_, end| Ok(end.clone())),
@@ -31,37 +65,17 @@ pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyRes
     }
 }
 
-pub fn read_start(target: Argument<'_, '_>, q: Argument<'_, '_>) -> PyResult<Endpoint> {
-    match one_of("start", target, q)? {
-        Given::Target(target) => {
-            refuse_angles("start", &array("start", target)?)?;
-            read_target("start", target).map(Endpoint::Target)
-        }
-        Given::Configuration(q) => vector("start_q", q).map(Endpoint::Configuration),
-    }
-}
-
-/// Reads the ends, one or several, given as targets or as joint positions.
-pub fn read_ends(target: Argument<'_, '_>, q: Argument<'_, '_>) -> PyResult<Vec<Endpoint>> {
-    match one_of("end", target, q)? {
-        Given::Target(target) => read_targets(target),
-        Given::Configuration(q) => read_configurations(q),
-    }
-}
-
 /// One or several targets.
 fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     let numbers = array("end", value)?;
     refuse_angles("end", &numbers)?;
     let rows = numbers.as_slice()?;
     match numbers.shape() {
-        [3] | [4, 4] => Ok(vec![Endpoint::Target(read_target("end", value)?)]),
-        [k, 3] if *k > 0 => {
-            Ok(rows.as_chunks().0.iter().map(|position| Endpoint::Target(Target::Position(*position))).collect())
-        }
+        [3] | [4, 4] => Ok(vec![read_target("end", value)?.into()]),
+        [k, 3] if *k > 0 => Ok(rows.as_chunks().0.iter().map(|position| Target::Position(*position).into()).collect()),
         [k, 4, 4] if *k > 0 => {
             let matrices = rows.chunks_exact(16).enumerate();
-            let target = |(i, rows)| Ok(Endpoint::Target(Target::from(&rigid_rows(&format!("end[{i}]"), rows)?)));
+            let target = |(i, rows)| Ok(Target::from(&rigid_rows(&format!("end[{i}]"), rows)?).into());
             matrices.map(target).collect()
         }
         shape => Err(invalid(format!(
@@ -85,51 +99,13 @@ fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     }
 }
 
-/// Reads the start of a motion of several tips, given as a dict of targets or as joint positions.
-pub fn read_tips_start(
-    robot: &PyRobot,
-    target: Argument<'_, '_>,
-    q: Argument<'_, '_>,
-    task: Argument<'_, '_>,
-) -> PyResult<TipsEndpoint> {
-    match one_of("start", target, q)? {
-        Given::Target(target) => read_tips("start", robot, target, task),
-        Given::Configuration(q) => vector("start_q", q).map(TipsEndpoint::Configuration),
-    }
-}
-
-/// Reads the ends of a motion of several tips: a dict of targets, a list of dicts, or joint positions.
-pub fn read_tips_ends(
-    robot: &PyRobot,
-    target: Argument<'_, '_>,
-    q: Argument<'_, '_>,
-    task: Argument<'_, '_>,
-) -> PyResult<Vec<TipsEndpoint>> {
-    match one_of("end", target, q)? {
-        Given::Target(several) if several.is_instance_of::<PyList>() => {
-            let ends = several.try_iter()?.enumerate();
-            ends.map(|(i, end)| read_tips(&format!("end[{i}]"), robot, &end?, task)).collect()
-        }
-        Given::Target(target) => Ok(vec![read_tips("end", robot, target, task)?]),
-        Given::Configuration(q) => {
-            let configuration = |end| match end {
-                Endpoint::Configuration(q) => Some(TipsEndpoint::Configuration(q)),
-                Endpoint::Target(_) => None,
-            };
-            Ok(read_configurations(q)?.into_iter().filter_map(configuration).collect())
-        }
-    }
-}
-
 /// The targets of several tips.
-fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argument<'_, '_>) -> PyResult<TipsEndpoint> {
+fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argument<'_, '_>) -> PyResult<Endpoint> {
     let asked = Asked::read(name, robot, target, read_target)?;
-    let mut options = SolveOptions::default();
-    let Tolerance { position, rotation } = options.tolerance;
-    let tolerances = [position, rotation].map(ToleranceArgument::All);
-    let tasks = TaskArguments { task, position_tolerance: &tolerances[0], rotation_tolerance: &tolerances[1] };
-    tasks.write(robot, &asked, &mut options)?;
-    Ok(TipsEndpoint::Targets(options.tips.into_iter().zip(asked.values().iter().copied()).collect()))
+    let Tolerance { position, rotation } = Tolerance::default();
+    let [position_tolerance, rotation_tolerance] = &[position, rotation].map(ToleranceArgument::All);
+    let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot, &asked)?;
+    Ok(Endpoint::Targets { tips: settings.tasks(&asked), targets: asked.values().iter().copied().collect() })
 }
 
 enum Given<'a, 'py> {

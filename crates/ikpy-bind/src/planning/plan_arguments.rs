@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use ikcore::planning::{Endpoint, PointToPointOptions, TipsEndpoint};
+use ikcore::planning::{Endpoint, PointToPointOptions};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::endpoints::{plain, read_ends, read_start, read_tips_ends, read_tips_start};
+use super::endpoints::{plain, read_ends, read_start};
 use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
@@ -32,18 +32,10 @@ pub struct EndArguments<'py> {
 }
 
 impl EndArguments<'_> {
-    /// Converts them to the start and the possible ends.
-    pub fn read(&self, robot: &PyRobot) -> PyResult<(Endpoint, Vec<Endpoint>)> {
-        let start = self.start.as_ref().map(|start| plain("start", robot, start)).transpose()?;
-        let end = self.end.as_ref().map(|end| plain("end", robot, end)).transpose()?;
-        let start = read_start(start.as_ref(), self.start_q.as_ref())?;
-        Ok((start, read_ends(end.as_ref(), self.end_q.as_ref())?))
-    }
-
-    /// The same for a robot with several tips.
-    pub fn read_tips(&self, robot: &PyRobot, task: &Argument<'_>) -> PyResult<(TipsEndpoint, Vec<TipsEndpoint>)> {
-        let start = read_tips_start(robot, self.start.as_ref(), self.start_q.as_ref(), task.as_ref())?;
-        Ok((start, read_tips_ends(robot, self.end.as_ref(), self.end_q.as_ref(), task.as_ref())?))
+    /// Converts them to the start and the possible ends; `task` is for their targets of several tips.
+    pub fn read(&self, robot: &PyRobot, task: &Argument<'_>) -> PyResult<(Endpoint, Vec<Endpoint>)> {
+        let start = read_start(robot, self.start.as_ref(), self.start_q.as_ref(), task.as_ref())?;
+        Ok((start, read_ends(robot, self.end.as_ref(), self.end_q.as_ref(), task.as_ref())?))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `plan_point_to_point`.
 
-use ikcore::planning::{self, plan_point_to_point_tips};
+use ikcore::planning;
 use pyo3::prelude::*;
 
 use super::plan::PyPlan;
@@ -93,15 +93,9 @@ pub fn plan_point_to_point<'py>(
         seed,
     };
     let options = asked.read(py, robot.get())?;
-    let plan = if arm.tip_count() > 1 {
-        let (start, ends) = ends.read_tips(robot.get(), &asked.task)?;
-        let call = |watcher: &mut Watcher| plan_point_to_point_tips(&arm, &start, &ends, &options.core, watcher);
-        watched(py, progress, call)?
-    } else {
-        let (start, ends) = ends.read(robot.get())?;
-        let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
-        watched(py, progress, call)?
-    };
+    let (start, ends) = ends.read(robot.get(), &asked.task)?;
+    let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
+    let plan = watched(py, progress, call)?;
     python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
     PyPlan::new(plan, robot, options.limits, options.obstacles)
 }

@@ -15,9 +15,8 @@ use crate::solver::{known_solver, solver_names};
 /// The arguments as Python gives them; the rule is read first, since it decides how a path is sampled.
 pub struct TrackArguments<'a, 'py> {
     pub rule: TickRule,
-    /// Those of the only tip; several tips have their own.
-    pub task: Option<Task>,
-    pub tolerance: Tolerance,
+    /// Task and tolerance of the only tip; several tips have their own.
+    pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub surroundings: Surroundings,
     pub seed: i128,
@@ -27,11 +26,12 @@ pub struct TrackArguments<'a, 'py> {
 impl TrackArguments<'_, '_> {
     /// The options of the core, with the `limits` of the call.
     pub fn read(self, limits: Option<Limits>) -> PyResult<TrackOptions> {
+        let (task, tolerance) = self.only;
         Ok(TrackOptions {
             rule: self.rule,
-            task: self.task,
+            task,
             goals: read_goals(self.goals)?,
-            tolerance: self.tolerance,
+            tolerance,
             limits,
             surroundings: self.surroundings,
             ease: false,

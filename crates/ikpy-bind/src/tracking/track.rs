@@ -1,12 +1,11 @@
 //! `track` and `TrackResult`.
 
-use ikcore::ik::SolveOptions;
 use ikcore::math::Pose;
 use ikcore::obstacle::Surroundings;
 use ikcore::path::Reference;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Target, TipError, TipTask};
-use ikcore::tracking::{self, Record, TipTable, TipsRecord, TrackOptions};
+use ikcore::task::{Target, TipError};
+use ikcore::tracking::{Record, TipPaths, TrackOptions, track_tips};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -33,9 +32,8 @@ use crate::traversal::traversed;
 pub struct PyTrackResult {
     core: Record,
     columns: Columns,
-    /// What was asked of each tip, and of several tips what became of it.
+    /// What was asked of each tip.
     tips: TipErrors,
-    table: TipTable,
     /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
     #[pyo3(get)]
     clearance: Py<PyArray1<f64>>,
@@ -98,13 +96,13 @@ impl PyTrackResult {
     /// its first tip.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.points(py, &self.core.position, &self.table.positions)
+        self.points(py, &self.core.position, &self.core.tips.positions)
     }
 
     /// Reference positions of each target, as `positions`.
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.points(py, &self.core.reference, &self.table.references)
+        self.points(py, &self.core.reference, &self.core.tips.references)
     }
 
     /// Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits.
@@ -134,7 +132,7 @@ impl PyTrackResult {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("track", &self.core))?;
-        let table = pickling::bytes(py, to_bytes("track of several tips", &self.table))?;
+        let table = pickling::bytes(py, to_bytes("track of several tips", &self.core.tips))?;
         let (robot, limits) = (self.robot.clone_ref(py), self.limits.clone_ref(py));
         pickling::restored_from::<Self>(py, (core, robot, limits, self.tips.bytes(py)?, table))
     }
@@ -150,25 +148,20 @@ impl PyTrackResult {
         tips: Option<&[u8]>,
         table: Option<&[u8]>,
     ) -> PyResult<Self> {
-        let track = from_bytes("track", bytes).map_err(raise)?;
+        let mut track: Record = from_bytes("track", bytes).map_err(raise)?;
         let tips =
             if tips.is_some() { TipErrors::restored(tips)? } else { TipErrors::of_one(robot.get().tips.clone()) };
-        let table = table.map(|bytes| from_bytes("track of several tips", bytes)).transpose().map_err(raise)?;
-        Self::new(py, track, (tips, table.unwrap_or_default()), robot, limits)
+        if let Some(table) = table {
+            track.tips = from_bytes("track of several tips", table).map_err(raise)?;
+        }
+        Self::new(py, track, tips, robot, limits)
     }
 }
 
 impl PyTrackResult {
-    fn new(
-        py: Python<'_>,
-        core: Record,
-        (tips, several): (TipErrors, TipTable),
-        robot: Py<PyRobot>,
-        limits: Py<PyLimits>,
-    ) -> PyResult<Self> {
+    fn new(py: Python<'_>, core: Record, tips: TipErrors, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
         Ok(Self {
             tips,
-            table: several,
             columns: Columns::new(py, &core)?,
             velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
             clearance: row(py, core.clearance.clone()).unbind(),
@@ -266,23 +259,15 @@ pub fn track(
     let start = start.map(|start| vector("start", start)).transpose()?;
     let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
     let surroundings = Surroundings { obstacles, margin, self_collision };
-    let mut tasks = SolveOptions::default();
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
-    TaskArguments { task, position_tolerance, rotation_tolerance }.write(robot.get(), &asked, &mut tasks)?;
-    let (task, tolerance) = (tasks.task, tasks.tolerance);
-    let read = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
+    let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
+    let only = settings.of_only(robot.get());
+    let read = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
     let options = TrackOptions { ease, ..read.read(resolved)? };
-    let start = start.as_deref();
-    let keys = asked.keys(robot.get());
-    let (record, tips) = if asked.subjects().is_none() {
-        let record = watched(py, progress, |watcher| tracking::track(&arm, &references[0], start, &options, watcher))?;
-        (record, (TipErrors::of_one(keys), TipTable::default()))
-    } else {
-        let paths: Vec<(TipTask, Reference)> = tasks.tips.into_iter().zip(references).collect();
-        let TipsRecord { track, tips } =
-            watched(py, progress, |watcher| tracking::track_tips(&arm, &paths, start, &options, watcher))?;
-        (track, (TipErrors { keys, errors: tips.errors.clone() }, tips))
-    };
+    let (start, tips) = (start.as_deref(), settings.tasks(&asked));
+    let paths = TipPaths { tips: &tips, paths: &references };
+    let record = watched(py, progress, |watcher| track_tips(&arm, &paths, start, &options, watcher))?;
+    let tips = TipErrors { keys: asked.keys(robot.get()), errors: record.tips.errors.clone() };
     python_calls::log(py, format!("track: {}", record.message()))?;
     PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
 }

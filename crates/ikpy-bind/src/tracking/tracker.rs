@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::tracking::{Arrival, Session, TickRule, TipArrival, TrackOptions};
+use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -103,13 +103,9 @@ impl PyTracker {
         let shapes = given.as_ref().map(|given| given.shapes.clone());
         let surroundings = Surroundings { obstacles: shapes, margin, self_collision };
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
-        let given_tasks = TaskArguments { task, position_tolerance, rotation_tolerance };
-        let settings = TipSettings::read(robot.get(), &given_tasks)?;
-        let (task, tolerance) = match arm.tip_count() {
-            1 => settings.of_only(arm),
-            _ => Default::default(),
-        };
-        let asked = TrackArguments { rule, task, tolerance, goals, surroundings, seed, limit_at };
+        let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
+        let only = settings.of_only(robot.get());
+        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
@@ -151,26 +147,24 @@ impl PyTracker {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
         }
         let (watch, mut session) = (Stopwatch::start(), self.session());
-        let core = match target {
-            Some(Asked::Tips { keys, subjects, values }) => {
-                if velocity.is_some() {
-                    return Err(invalid("velocity is for the target of one tip: leave it out".into()));
-                }
-                let targets = self.settings.tasks(&keys, &subjects).zip(values).collect();
-                let step = session.advance_tips(Some(TipArrival { targets, stamp }), &mut Unattended).map_err(raise)?;
-                *self.keys() = keys;
-                step
+        let arrival = match &target {
+            Some(Asked::Tips { .. }) if velocity.is_some() => {
+                return Err(invalid("velocity is for the target of one tip: leave it out".into()));
             }
-            target => {
-                let one = |target| if let Asked::One(target) = target { Some(target) } else { None };
-                let arrival = target.and_then(one).map(|target| Arrival { target, velocity, stamp });
-                if self.runs_solver {
-                    watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
-                } else {
-                    session.advance(arrival, &mut Unattended).map_err(raise)?
-                }
+            Some(asked) => {
+                let tips = self.settings.tasks(asked);
+                Some(Arrival { tips, targets: asked.values().iter().copied().collect(), velocity, stamp })
             }
+            None => None,
         };
+        let core = if self.runs_solver {
+            watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
+        } else {
+            session.advance(arrival, &mut Unattended).map_err(raise)?
+        };
+        if let Some(Asked::Tips { keys, .. }) = target {
+            *self.keys() = keys;
+        }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };

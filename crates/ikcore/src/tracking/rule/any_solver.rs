@@ -4,15 +4,17 @@ use super::tick::{Tick, TickResult};
 use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Status, Stop};
-use crate::task::{Criterion, Outside};
+use crate::task::{Aims, Criterion, Outside};
+use crate::tracking::step_context::StepContext;
 
-pub(super) fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
-    let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
+pub(super) fn advance(solver: &AnySolver, tick: Tick<'_>) -> TickResult {
+    let Tick { context, target, criterion, rng, monitor, .. } = tick;
+    let StepContext { robot, q, tick_box, last_value, .. } = context;
     // The arm starts inside its region, so points outside need not be considered.
-    let kept = Criterion { outside: Outside::Infinite, ..*criterion };
-    let mut problem = Problem::new(robot, target, kept);
+    let kept = Criterion { outside: Outside::Infinite, ..*criterion }.into();
+    let mut problem = Problem::new(robot, Aims::of_one(&kept, target));
     let objective: &mut dyn Differentiable = &mut problem;
-    let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
+    let mut evaluator = Evaluator::new(objective, &tick_box.bounds, stop(solver, last_value), rng, monitor);
     let status = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
     TickResult {

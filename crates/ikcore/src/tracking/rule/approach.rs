@@ -8,11 +8,12 @@
 
 use super::tick::Tick;
 use crate::math::Columns;
+use crate::math::Frame;
 use crate::math::box_step::{BoxStep, least_damping};
-use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Point, TaskBlock};
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
+use crate::tracking::step_context::StepContext;
 
 /// A target is slow if following it takes no more than this fraction of any velocity limit.
 const SLOW: f64 = 0.5;
@@ -36,7 +37,8 @@ pub(super) struct Approach {
 impl Approach {
     /// The approach from `q`. `tip` and `columns` are those at `near`, the configuration nearest to `q` in the box of
     /// the tick.
-    pub(super) fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
+    pub(super) fn new(near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
+        let StepContext { q, tick_box, dt, .. } = tick.context;
         let to = |target: &Target| -> Point {
             let end = destination(target, near, tip, columns, tick);
             end.iter().zip(q).map(|(end, q)| end - q).collect()
@@ -44,9 +46,8 @@ impl Approach {
         let whole = to(tick.target);
         let mut catch_up = to(&tick.motion().begin);
         let mut keep_up: Point = whole.iter().zip(&catch_up).map(|(whole, catch_up)| whole - catch_up).collect();
-        let takes = |share: f64| {
-            keep_up.iter().zip(tick.velocity_limit).all(|(step, limit)| step.abs() <= share * limit * tick.dt)
-        };
+        let takes =
+            |share: f64| keep_up.iter().zip(&tick_box.velocity).all(|(step, limit)| step.abs() <= share * limit * dt);
         let far_below = if takes(SLOW) { 1.0 } else { NEAR };
         // A target faster than the arm is treated like a jump.
         if !takes(1.0) {
@@ -54,12 +55,12 @@ impl Approach {
             keep_up.fill(0.0);
         }
         let mut approach = Self { catch_up, keep_up, far_below, within_reach: 1.0 };
-        approach.find_share(q, tick);
+        approach.find_share(tick);
         approach
     }
 
-    fn find_share(&mut self, q: &[f64], tick: &Tick<'_>) {
-        let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
+    fn find_share(&mut self, tick: &Tick<'_>) {
+        let (q, [lower, upper]) = (tick.context.q, tick.context.ends());
         for (j, (catch_up, keep_up)) in self.catch_up.iter().zip(&self.keep_up).enumerate() {
             let end = if *catch_up > 0.0 { upper[j] } else { lower[j] };
             let reach = (end - q[j] - keep_up) / catch_up;
@@ -80,7 +81,7 @@ impl Approach {
         for (q, (catch_up, keep_up)) in q.iter_mut().zip(self.catch_up.iter().zip(&self.keep_up)) {
             *q += keep_up + self.within_reach * catch_up;
         }
-        tick.tick_box.clip(q);
+        tick.bounds().clip(q);
     }
 }
 
@@ -90,13 +91,11 @@ fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick:
     let n = q.len();
     let mut at = TaskBlock { columns: columns.clone(), ..TaskBlock::default() };
     let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
-    let (mut lower, mut upper) = ([0.0; MAX_DOF], [0.0; MAX_DOF]);
-    for j in 0..n {
-        [lower[j], upper[j]] = tick.limits.position_range(j, tick.time, tick.time + tick.dt);
-    }
+    let positions = tick.context.positions();
+    let [lower, upper] = positions.ends();
     let lambda = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
     let mut end = Point::from_slice(q);
     let TaskBlock { columns, residual } = &at;
-    BoxStep { columns, residual, lambda, x: q, lower: &lower[..n], upper: &upper[..n] }.write(&mut end);
+    BoxStep { columns, residual, lambda, x: q, lower, upper }.write(&mut end);
     end
 }

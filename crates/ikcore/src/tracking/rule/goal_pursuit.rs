@@ -8,11 +8,9 @@
 use super::tick::{Tick, TickResult};
 use crate::math::vector::distance;
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
-use crate::objective::{Bounds, Differentiable, Linearization, Point};
-use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
-use crate::task::TipAims;
-use crate::tracking::kept_motion::GoalToClear;
-use crate::tracking::limited_motion::LimitedMotion;
+use crate::objective::{Bounds, Linearization, Point};
+use crate::solver::{LevenbergMarquardt, Stop};
+use crate::tracking::step_context::StepContext;
 
 /// Steps that Gauss-Newton may take in a tick; they converge quadratically.
 const MOST_STEPS: usize = 6;
@@ -29,13 +27,13 @@ const NO_GAIN: f64 = 1e-3;
 /// A descent that lowers the error by less than this for each unit of its way (m/rad) goes along a flat valley, which need not end.
 const FLAT: f64 = 1e-5;
 
-/// So many samples after obstacles changed one, the goal begins anew: what it remembers are motions along obstacles, not noise.
+/// Restarts the goal this many samples after obstacles changed one: its memory holds motions along obstacles, not noise.
 const RELEASED: usize = 5;
 
 /// A goal farther from the arm than this (rad, m) does not show the way along an obstacle.
 const FAR: f64 = 0.1;
 
-/// After so many ticks in which an arm that holds pairs gets no nearer to a goal that is far, there is no way to it.
+/// Ticks without progress of an arm that holds pairs, after which there is no way to a far goal.
 const NO_WAY: usize = 10;
 
 /// State of the rule between ticks.
@@ -59,11 +57,11 @@ impl GoalPursuit {
         self.goal = None;
     }
 
-    /// Runs one tick from `q`. A target counts as a sample if `tick.sampled_ago` is given: its age at the end of the tick, in
-    /// ticks.
-    pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+    /// Finds a sample of the goal if new targets have arrived, which have the age `tick.sampled_ago` at the end of the tick, in ticks.
+    pub(super) fn find_sample(&mut self, tick: &mut Tick<'_>) -> TickResult {
+        let StepContext { q, aims, limited, .. } = tick.context;
         let mut found = TickResult::at(q);
-        let Some(motion) = tick.limited else { return found };
+        let Some(motion) = limited else { return found };
         let released = self.since_held == Some(RELEASED);
         if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none() || released) {
             self.since_held = None;
@@ -73,53 +71,53 @@ impl GoalPursuit {
         if let Some(goal) = &mut self.goal {
             goal.advance(motion.scales());
         }
-        if let Some(ago) = tick.sampled_ago {
-            self.take_sample(q, ago, &mut found, &mut tick, motion);
+        let Some(ago) = tick.sampled_ago else { return found };
+        let time = self.now - ago;
+        if let Some(goal) = &self.goal {
+            goal.expected(time, &mut self.expected);
+        }
+        let anew = (aims.has_pairs() && self.has_no_way(self.away(q))).then_some(q);
+        self.solve(anew, time, &tick.context.positions(), &mut found, tick);
+        found
+    }
+
+    /// How far the expected goal is from an arm at `q` (rad, m).
+    fn away(&self, q: &[f64]) -> f64 {
+        self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max)
+    }
+
+    /// Where to look for a clear sample of an arm at `q`, and the sample to replace.
+    pub(super) fn sample_to_clear<'s>(&'s mut self, q: &'s [f64]) -> (&'s [f64], &'s mut Point) {
+        // A goal that obstacles have kept far away may be on the wrong side of one.
+        let is_near = self.away(q) < FAR;
+        (if is_near { &self.expected } else { q }, &mut self.sample)
+    }
+
+    /// Notes whether obstacles changed the sample.
+    pub(super) fn note_held(&mut self, held: bool) {
+        self.since_held = if held { Some(0) } else { self.since_held.map(|samples| samples + 1) };
+    }
+
+    /// Corrects the goal by the sample, if there is one, and moves the arm one tick towards it.
+    pub(super) fn pursue(&mut self, mut found: TickResult, tick: &Tick<'_>) -> TickResult {
+        let StepContext { robot, q, aims, limited, .. } = tick.context;
+        let Some(motion) = limited else { return found };
+        if let (Some(goal), Some(ago)) = (&mut self.goal, tick.sampled_ago) {
+            goal.correct(GoalSample { q: &self.sample, time: self.now - ago }, &self.expected, motion.scales());
         }
         match &self.goal {
             Some(goal) if !found.interrupted => {
-                let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.tick_box);
+                let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.bounds());
                 Pursuit { goal, braking, scales, reachable }.write(q, motion.state(), &mut found.q);
             }
             _ => {
                 found.q = motion.stopping(q);
-                tick.tick_box.clip(&mut found.q);
+                tick.bounds().clip(&mut found.q);
             }
         }
-        found.assess(tick.robot, &tick.aim());
+        found.assess(robot, &aims);
         found.evaluations += 1;
         found
-    }
-
-    /// Corrects the goal by the target, of the given age in ticks.
-    fn take_sample(
-        &mut self,
-        q: &[f64],
-        ago: f64,
-        found: &mut TickResult,
-        tick: &mut Tick<'_>,
-        motion: &LimitedMotion,
-    ) {
-        let time = self.now - ago;
-        let positions = tick.positions();
-        if let Some(goal) = &self.goal {
-            goal.expected(time, &mut self.expected);
-        }
-        let away = self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max);
-        let holds_pairs = tick.tips.as_ref().is_some_and(TipAims::has_pairs);
-        let anew = (holds_pairs && self.has_no_way(away)).then_some(q);
-        self.solve(anew, time, &positions, found, tick);
-        let aim = tick.aim();
-        if let Some(kept) = &mut tick.kept {
-            let goal = GoalToClear { robot: tick.robot, aim, positions: &positions };
-            // A goal that obstacles have kept far away may be on the wrong side of one.
-            let from = if away < FAR { &self.expected } else { q };
-            kept.clear_goal(&goal, from, &mut self.sample);
-            self.since_held = if kept.goal_is_held() { Some(0) } else { self.since_held.map(|samples| samples + 1) };
-        }
-        if let Some(goal) = &mut self.goal {
-            goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
-        }
     }
 
     /// Whether an arm that holds pairs has got no nearer to its goal, which is `away` (rad, m), for long.
@@ -160,7 +158,7 @@ impl GoalPursuit {
             let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(time, positions, tick));
             let least = self.linearization.least_damping(n);
             let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
-            let ends = [positions.lower(), positions.upper()];
+            let ends = positions.ends();
             match preferred {
                 Some(preferred) => {
                     self.linearization.write_step_near(&preferred, lambda, &begin, ends, &mut self.sample);
@@ -199,7 +197,8 @@ impl GoalPursuit {
     fn linearize(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> f64 {
         found.evaluations += 1;
         found.iterations += 1;
-        tick.aim().linearize(tick.robot, &self.sample, &mut self.linearization).score.value
+        let StepContext { robot, aims, .. } = tick.context;
+        aims.linearize(robot, &self.sample, &mut self.linearization, |_| ()).score.value
     }
 
     /// Where the joints should be at `time` as far as the target leaves them free: where the goal was before the samples that it
@@ -212,8 +211,9 @@ impl GoalPursuit {
         }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();
-            tick.goals.cost(tick.robot, None, &self.sample, &mut slope);
-            preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= tick.dt * slope);
+            let StepContext { robot, dt, .. } = tick.context;
+            tick.goals.cost(robot, None, &self.sample, &mut slope);
+            preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= dt * slope);
         }
         positions.clip(&mut preferred);
         preferred
@@ -221,18 +221,14 @@ impl GoalPursuit {
 
     /// Lowers the error as far as one tick allows, where Gauss-Newton fails.
     fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
-        let mut problem = tick.aim().problem(tick.robot);
-        let objective: &mut dyn Differentiable = &mut problem;
-        let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
-        let mut evaluator = Evaluator::new(objective, positions, stop, tick.rng, tick.monitor);
-        run(&LevenbergMarquardt::default(), &mut evaluator, &self.sample);
-        found.evaluations += evaluator.evaluations();
-        found.iterations += evaluator.iterations();
-        let end = Point::from_slice(&evaluator.best().x);
-        drop(evaluator);
-        let [before, after] = [&self.sample, &end].map(|q| problem.assess(q).score);
-        if after.solved || before.value.sqrt() - after.value.sqrt() > FLAT * distance(&self.sample, &end) {
-            self.sample = end;
+        let StepContext { robot, aims, .. } = tick.context;
+        let mut end = TickResult::at(&self.sample);
+        tick.descend(&mut end, positions, Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() });
+        found.evaluations += end.evaluations;
+        found.iterations += end.iterations;
+        let [before, after] = [&self.sample, &end.q].map(|q| aims.assess(robot, q).score);
+        if after.solved || before.value.sqrt() - after.value.sqrt() > FLAT * distance(&self.sample, &end.q) {
+            self.sample = end.q;
         }
     }
 }

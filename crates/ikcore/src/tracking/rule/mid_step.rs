@@ -13,10 +13,9 @@ use crate::math::{
     Frame,
     box_step::{BoxStep, least_damping},
 };
-use crate::objective::{Differentiable, Point, TaskBlock};
-use crate::problem::Problem;
+use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
-use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
+use crate::solver::Stop;
 use crate::task::Assessment;
 
 /// Maximum number of model steps in a tick; they converge quadratically, so more would not help.
@@ -73,13 +72,14 @@ impl Kinematics {
     }
 }
 
-pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResult {
+    let q = tick.context.q;
     let mut found = TickResult::at(q);
-    tick.tick_box.clip(&mut found.q);
+    tick.bounds().clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
         // The first tick, or one that starts elsewhere because q is outside its limits.
         memory.begin.place(&found.q);
-        memory.begin.update(tick.robot);
+        memory.begin.update(tick.context.robot);
         memory.before_known = false;
         found.evaluations += 1;
     }
@@ -88,7 +88,7 @@ pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) 
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() {
         moved = true;
-        if !memory.follow_approach(q, value_at_rest, &mut found, &tick) {
+        if !memory.follow_approach(value_at_rest, &mut found, &tick) {
             memory.levenberg_marquardt(&mut found, tick);
         }
     }
@@ -105,16 +105,8 @@ impl MidStepState {
     /// Takes one step along the negative gradient of the goals, as far as the target leaves the joints free, then model
     /// steps until the tip is in the band. Returns whether it got there; if not, `found` keeps its configuration.
     fn towards_goals(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
-        if tick.goals.is_empty() {
-            return false;
-        }
+        let Some(preferred) = tick.preferred(&found.q) else { return false };
         let mut trial = found.clone();
-        let mut preferred = found.q.clone();
-        tick.goals.cost(tick.robot, None, &found.q, &mut preferred);
-        for (preferred, q) in preferred.iter_mut().zip(&found.q) {
-            *preferred = q - tick.dt * *preferred;
-        }
-        tick.tick_box.clip(&mut preferred);
         self.step(&mut trial, tick, self.first_model(), Some(&preferred));
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
         self.accept_trial(&mut trial, assessment);
@@ -181,7 +173,7 @@ impl MidStepState {
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
         let TaskBlock { columns, residual } = &*self.linearization;
-        let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
+        let [lower, upper] = tick.context.ends();
         let lambda = least_damping(&columns[..n]);
         let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };
         let to = &mut self.trial.q;
@@ -190,22 +182,23 @@ impl MidStepState {
             None => step.write(to),
             Some(preferred) => step.write_near(preferred, to),
         }
-        self.trial.update(tick.robot);
+        self.trial.update(tick.context.robot);
         found.evaluations += 1;
         found.iterations += 1;
     }
 
     /// Approaches a target that is far. Returns false if it is not, or if the tick would not bring the arm nearer.
-    fn follow_approach(&mut self, q: &[f64], value_at_rest: f64, found: &mut TickResult, tick: &Tick<'_>) -> bool {
+    fn follow_approach(&mut self, value_at_rest: f64, found: &mut TickResult, tick: &Tick<'_>) -> bool {
+        let q = tick.context.q;
         let mut near = Point::from_slice(q);
-        tick.tick_box.clip(&mut near);
-        let approach = Approach::new(q, &near, &self.begin.tip, &self.begin.columns, tick);
+        tick.bounds().clip(&mut near);
+        let approach = Approach::new(&near, &self.begin.tip, &self.begin.columns, tick);
         if !approach.is_far() {
             return false;
         }
         self.trial.place(q);
         approach.advance(&mut self.trial.q, tick);
-        self.trial.update(tick.robot);
+        self.trial.update(tick.context.robot);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
         let nearer = assessment.score.value < value_at_rest;
         if nearer {
@@ -217,19 +210,13 @@ impl MidStepState {
     }
 
     /// Lowers the error as far as possible when model steps cannot.
-    fn levenberg_marquardt(&mut self, found: &mut TickResult, tick: Tick<'_>) {
-        let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
-        let objective: &mut dyn Differentiable = &mut problem;
-        let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
-        let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
-        let (evaluations, iterations) = (evaluator.evaluations(), evaluator.iterations());
-        found.q.copy_from_slice(&evaluator.best().x);
+    fn levenberg_marquardt(&mut self, found: &mut TickResult, mut tick: Tick<'_>) {
+        let context = tick.context;
+        tick.descend(found, &context.tick_box.bounds, Stop::default());
         self.here.place(&found.q);
-        self.here.update(tick.robot);
+        self.here.update(context.robot);
         found.set_tip(&self.here.tip, tick.target, tick.criterion);
-        found.evaluations += evaluations + 1;
-        found.iterations += iterations;
-        found.interrupted = status == Status::Interrupted;
+        found.evaluations += 1;
     }
 
     /// Passes the kinematics at the end of this tick to the start of the next.

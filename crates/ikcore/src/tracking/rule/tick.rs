@@ -1,82 +1,65 @@
 //! Input and result of a rule for one tick.
 
-use crate::limits::Limits;
 use crate::math::Frame;
-use crate::objective::{Bounds, Point, Score};
+use crate::objective::{Bounds, Differentiable, Point, Score};
+use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::solver::Monitor;
-use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, TipAims, Twist};
-use crate::tracking::kept_motion::KeptMotion;
-use crate::tracking::limited_motion::LimitedMotion;
-use crate::tracking::tick_aim::TickAim;
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
+use crate::task::{Aims, Assessment, Criterion, Goals, SquaredError, Target, TargetMotion};
+use crate::tracking::step_context::StepContext;
+use crate::tracking::target_stream::TargetStream;
 
 /// The input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
-    pub robot: &'a Robot,
-    /// The target, and its criterion; of several tips the first.
+    pub context: StepContext<'a>,
+    /// The target of the only tip, and its criterion; of several tips the first.
     pub target: &'a Target,
     pub criterion: &'a Criterion,
-    /// Tasks and targets of several tips.
-    pub tips: Option<TipAims<'a>>,
-    /// Goals in the null space of the target.
+    /// Goals in the null space of the targets.
     pub goals: &'a mut Goals,
-    /// Velocity of the target at the end of the tick (m/s), if known.
-    pub velocity: Option<[f64; 3]>,
-    /// Target and its velocity at the end of the previous tick, if there was one.
-    pub before: Option<(&'a Target, Option<[f64; 3]>)>,
-    /// Whether a target has moved since the previous tick.
-    pub moves: bool,
-    /// Start of the tick (s).
-    pub time: f64,
-    /// Length of the tick (s).
-    pub dt: f64,
-    /// The limits that the box of the tick comes from.
-    pub limits: &'a Limits,
-    /// The velocity limits of the tick (n,) (rad/s, m/s).
-    pub velocity_limit: &'a [f64],
-    /// Steps, changes and limits of an arm under acceleration or jerk limits.
-    pub limited: Option<&'a LimitedMotion>,
-    /// What the arm keeps to.
-    pub kept: Option<&'a mut KeptMotion>,
-    /// Age of the target at the end of the tick, in ticks; `None` if it is the one of an earlier tick.
+    /// The targets so far.
+    pub targets: &'a TargetStream,
+    /// Age of the targets at the end of the tick, in ticks; `None` for those of an earlier tick.
     pub sampled_ago: Option<f64>,
-    /// The box of joint positions at the end of the tick.
-    pub tick_box: &'a Bounds,
-    /// The value accepted in the previous tick, if any.
-    pub last_value: Option<f64>,
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,
 }
 
-impl<'a> Tick<'a> {
-    /// What the tick is to achieve.
-    pub(super) fn aim(&self) -> TickAim<'a> {
-        let Self { target, criterion, tips, .. } = *self;
-        tips.map_or(TickAim::Tip { target, criterion }, TickAim::Tips)
+impl Tick<'_> {
+    /// The box of joint positions at the end of the tick.
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.context.tick_box.bounds
     }
 
-    /// The position limits of the tick.
-    pub(super) fn positions(&self) -> Bounds {
-        let range = |j: usize| self.limits.position_range(j, self.time, self.time + self.dt).into();
-        Bounds::from_ranges((0..self.velocity_limit.len()).map(range))
-    }
-
-    /// Motion of the target during the tick. Without a previous tick, the target has moved with its velocity or, if
-    /// that is unknown, stood still.
+    /// Motion of the first target during the tick.
     pub(super) fn motion(&self) -> TargetMotion {
-        let Self { target: end, dt, velocity, .. } = *self;
-        match (self.before, velocity) {
-            (Some((begin, before)), _) => {
-                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
-                TargetMotion { begin: *begin, end: *end, velocities, dt }
-            }
-            (None, None) => TargetMotion { begin: *end, end: *end, velocities: None, dt },
-            (None, Some(linear)) => {
-                let begin = end.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
-                TargetMotion { begin, end: *end, velocities: Some([linear; 2]), dt }
-            }
+        self.targets.motion(*self.target, self.context.dt)
+    }
+
+    /// The configuration in `bounds` that the goals in the null space ask for after `q`, if there are goals.
+    pub(super) fn preferred(&mut self, q: &Point) -> Option<Point> {
+        if self.goals.is_empty() {
+            return None;
         }
+        let mut preferred = q.clone();
+        self.goals.cost(self.context.robot, None, q, &mut preferred);
+        preferred.iter_mut().zip(q).for_each(|(preferred, q)| *preferred = q - self.context.dt * *preferred);
+        self.bounds().clip(&mut preferred);
+        Some(preferred)
+    }
+
+    /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt. The result is not assessed.
+    pub(super) fn descend(&mut self, found: &mut TickResult, bounds: &Bounds, stop: Stop) {
+        let StepContext { robot, aims, .. } = self.context;
+        let mut problem = Problem::new(robot, aims);
+        let objective: &mut dyn Differentiable = &mut problem;
+        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
+        found.evaluations += evaluator.evaluations();
+        found.iterations += evaluator.iterations();
+        found.interrupted = status == Status::Interrupted;
+        found.q.copy_from_slice(&evaluator.best().x);
     }
 }
 
@@ -108,10 +91,10 @@ impl TickResult {
     }
 
     /// Assesses `q`.
-    pub(crate) fn assess(&mut self, robot: &Robot, aim: &TickAim<'_>) {
-        match aim {
-            TickAim::Tip { target, criterion } => self.set_tip(&robot.tip(&self.q), target, criterion),
-            TickAim::Tips(_) => self.assessment = aim.assess(robot, &self.q),
+    pub(crate) fn assess(&mut self, robot: &Robot, aims: &Aims<'_>) {
+        match aims.only(robot) {
+            Some((target, criterion)) => self.set_tip(&robot.tip(&self.q), target, criterion),
+            None => self.assessment = aims.assess(robot, &self.q),
         }
     }
 

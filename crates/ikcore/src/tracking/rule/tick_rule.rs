@@ -9,6 +9,8 @@ use super::weighted_pseudo_inverse::{self, WeightedPseudoInverse};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
+use crate::tracking::safety_filter::SafetyFilter;
+use crate::tracking::tracked_arm::TrackedArm;
 
 /// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -77,11 +79,16 @@ impl TickRule {
         }
     }
 
-    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without, with several tips or one.
-    pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
+    /// Whether the rule extrapolates targets, and so can use their stamps, `under_acceleration` or jerk limits or without.
+    pub(in crate::tracking) fn extrapolates(&self, under_acceleration: bool) -> bool {
+        *self == Self::MidStep && under_acceleration
+    }
+
+    /// Starts the rule.
+    pub(in crate::tracking) fn start(&self, arm: &TrackedArm) -> RunningRule {
         match self {
-            Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
-            Self::MidStep if several_tips => RunningRule::TipStep(TipStep::default()),
+            Self::MidStep if arm.limited.is_some() => RunningRule::GoalPursuit(Box::default()),
+            Self::MidStep if !arm.has_one_tip() => RunningRule::TipStep(TipStep::default()),
             Self::MidStep => RunningRule::MidStep(MidStepState::default()),
             Self::Solver(solver) => RunningRule::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
@@ -101,19 +108,22 @@ impl RunningRule {
         }
     }
 
-    /// Whether the rule extrapolates targets, and so can use their stamps.
-    pub(crate) fn extrapolates(&self) -> bool {
-        matches!(self, Self::GoalPursuit(_))
-    }
-
-    /// Runs one tick from `q`.
-    pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
+    /// Runs one tick. `safety` moves samples of a goal away from obstacles.
+    pub(crate) fn advance(&mut self, mut tick: Tick<'_>, safety: Option<&mut SafetyFilter>) -> TickResult {
         match self {
-            Self::MidStep(memory) => mid_step::advance(memory, q, tick),
-            Self::GoalPursuit(pursuit) => pursuit.advance(q, tick),
-            Self::TipStep(step) => step.advance(q, tick),
-            Self::Solver(solver) => any_solver::advance(solver, q, tick),
-            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
+            Self::MidStep(memory) => mid_step::advance(memory, tick),
+            Self::GoalPursuit(pursuit) => {
+                let found = pursuit.find_sample(&mut tick);
+                if let (Some(safety), Some(_)) = (safety, tick.sampled_ago) {
+                    let (from, sample) = pursuit.sample_to_clear(tick.context.q);
+                    let held = safety.clear_goal(&tick.context, from, sample);
+                    pursuit.note_held(held);
+                }
+                pursuit.pursue(found, &tick)
+            }
+            Self::TipStep(step) => step.advance(tick),
+            Self::Solver(solver) => any_solver::advance(solver, tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, tick),
         }
     }
 }

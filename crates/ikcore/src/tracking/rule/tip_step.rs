@@ -4,8 +4,9 @@
 //! error, as out of reach, Levenberg-Marquardt lowers it as far as the tick allows.
 
 use super::tick::{Tick, TickResult};
-use crate::objective::{Differentiable, Linearization, Point};
-use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
+use crate::objective::{Linearization, Point};
+use crate::solver::{LevenbergMarquardt, Stop};
+use crate::tracking::step_context::StepContext;
 
 /// Most steps of Gauss-Newton in a tick; they converge quadratically.
 const MOST_STEPS: usize = 6;
@@ -25,13 +26,14 @@ pub(crate) struct TipStep {
 
 impl TipStep {
     /// Runs one tick from `q`.
-    pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+    pub(super) fn advance(&mut self, mut tick: Tick<'_>) -> TickResult {
+        let StepContext { robot, q, aims, tick_box, .. } = tick.context;
         let mut begin = TickResult::at(q);
-        tick.tick_box.clip(&mut begin.q);
-        begin.assessment = tick.aim().linearize(tick.robot, &begin.q, &mut self.begin);
+        tick_box.bounds.clip(&mut begin.q);
+        begin.assessment = aims.linearize(robot, &begin.q, &mut self.begin, |_| ());
         begin.evaluations = 1;
         let mut found = begin.clone();
-        let preferred = preferred(&begin.q, &mut tick);
+        let preferred = tick.preferred(&begin.q);
         if let Some(preferred) = &preferred {
             self.gauss_newton(&mut found, Some(preferred), &tick);
         }
@@ -40,7 +42,10 @@ impl TipStep {
             self.gauss_newton(&mut found, None, &tick);
         }
         if !found.is_solved() && !self.approach(&begin, &mut found, &tick) {
-            descend(&mut found, tick);
+            let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
+            tick.descend(&mut found, &tick_box.bounds, stop);
+            found.assess(robot, &aims);
+            found.evaluations += 1;
         }
         found
     }
@@ -48,7 +53,8 @@ impl TipStep {
     /// Steps from `found`, which is at the start of the tick, while they lower the error; the first one, towards what is `preferred`
     /// where the targets leave the joints free, may raise it.
     fn gauss_newton(&mut self, found: &mut TickResult, preferred: Option<&Point>, tick: &Tick<'_>) {
-        let ends = [tick.tick_box.lower(), tick.tick_box.upper()];
+        let StepContext { robot, aims, .. } = tick.context;
+        let ends = tick.context.ends();
         for i in 0..MOST_STEPS {
             // At least one step: an arm that waits until it is out of its band would move in jerks.
             if i > 0 && found.is_solved() {
@@ -61,7 +67,7 @@ impl TipStep {
                 Some(preferred) => at.write_step_near(preferred, lambda, &found.q, ends, &mut q),
                 None => at.write_step(lambda, &found.q, ends, &mut q),
             }
-            let assessment = tick.aim().linearize(tick.robot, &q, &mut self.trial);
+            let assessment = aims.linearize(robot, &q, &mut self.trial, |_| ());
             found.evaluations += 1;
             found.iterations += 1;
             if !(assessment.score.value < found.value()) && preferred.is_none() {
@@ -76,12 +82,13 @@ impl TipStep {
     /// targets that move, each as far as it may. Returns false if the targets are not far, or if that brings the arm no nearer.
     fn approach(&mut self, begin: &TickResult, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let n = begin.q.len();
-        let positions = tick.positions();
+        let StepContext { robot, aims, tick_box, .. } = tick.context;
+        let positions = tick.context.positions();
         let least = self.begin.least_damping(n);
         let lambda = least.max(LevenbergMarquardt::default().initial_damping * begin.value());
         let mut end = begin.q.clone();
-        self.begin.write_step(lambda, &begin.q, [positions.lower(), positions.upper()], &mut end);
-        let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
+        self.begin.write_step(lambda, &begin.q, positions.ends(), &mut end);
+        let [lower, upper] = tick.context.ends();
         let share = |j: usize| {
             let way = end[j] - begin.q[j];
             let room = if way > 0.0 { upper[j] } else { lower[j] } - begin.q[j];
@@ -92,42 +99,14 @@ impl TipStep {
             return false;
         }
         let mut near = begin.clone();
-        let share = if tick.moves { 1.0 } else { share };
+        let share = if tick.targets.moves() { 1.0 } else { share };
         near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += share * (end - *q));
-        tick.tick_box.clip(&mut near.q);
-        near.assess(tick.robot, &tick.aim());
+        tick_box.bounds.clip(&mut near.q);
+        near.assess(robot, &aims);
         let is_nearer = near.value() < begin.value();
         if is_nearer {
             *found = TickResult { evaluations: found.evaluations + 1, iterations: found.iterations + 1, ..near };
         }
         is_nearer
     }
-}
-
-/// Where the joints should be as far as the targets leave them free, if there are goals.
-fn preferred(q: &Point, tick: &mut Tick<'_>) -> Option<Point> {
-    if tick.goals.is_empty() {
-        return None;
-    }
-    let mut preferred = q.clone();
-    tick.goals.cost(tick.robot, None, q, &mut preferred);
-    preferred.iter_mut().zip(q).for_each(|(preferred, q)| *preferred = q - tick.dt * *preferred);
-    tick.tick_box.clip(&mut preferred);
-    Some(preferred)
-}
-
-/// Lowers the error as far as one tick allows.
-fn descend(found: &mut TickResult, tick: Tick<'_>) {
-    let mut problem = tick.aim().problem(tick.robot);
-    let objective: &mut dyn Differentiable = &mut problem;
-    let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
-    let mut evaluator = Evaluator::new(objective, tick.tick_box, stop, tick.rng, tick.monitor);
-    let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
-    found.evaluations += evaluator.evaluations() + 1;
-    found.iterations += evaluator.iterations();
-    found.interrupted = status == Status::Interrupted;
-    found.q.copy_from_slice(&evaluator.best().x);
-    drop(evaluator);
-    let assessment = problem.assess(&found.q);
-    found.assessment = assessment;
 }

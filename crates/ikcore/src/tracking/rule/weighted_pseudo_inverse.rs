@@ -18,6 +18,7 @@ use crate::math::box_step::BoxStep;
 use crate::math::vector::norm;
 use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
+use crate::tracking::step_context::StepContext;
 use crate::trajectory::Trajectory;
 use crate::wording::words;
 
@@ -115,16 +116,12 @@ pub(crate) struct Scratch {
     neighbours: [Box<TaskBlock>; 2],
 }
 
-pub(super) fn advance(
-    rule: &WeightedPseudoInverse,
-    scratch: &mut Scratch,
-    q: &[f64],
-    mut tick: Tick<'_>,
-) -> TickResult {
+pub(super) fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, mut tick: Tick<'_>) -> TickResult {
+    let StepContext { robot, q, tick_box, .. } = tick.context;
     let mut found = TickResult::at(q);
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;
-        displacement(rule, scratch, q, from, share, &mut tick)
+        displacement(rule, scratch, from, share, &mut tick)
     };
     match rule.integrator {
         Integrator::Euler => {
@@ -141,8 +138,8 @@ pub(super) fn advance(
             }
         }
     }
-    tick.tick_box.clip(&mut found.q);
-    found.set_tip(&tick.robot.tip(&found.q), tick.target, tick.criterion);
+    tick_box.bounds.clip(&mut found.q);
+    found.set_tip(&robot.tip(&found.q), tick.target, tick.criterion);
     found.evaluations += 1;
     found.iterations = 1;
     found
@@ -153,30 +150,30 @@ pub(super) fn advance(
 fn displacement(
     rule: &WeightedPseudoInverse,
     scratch: &mut Scratch,
-    q: &[f64],
     from: &[f64],
     share: f64,
     tick: &mut Tick<'_>,
 ) -> Point {
-    let gain = rule.gain.unwrap_or(SHARE_A_TICK / tick.dt);
+    let StepContext { q, tick_box, dt, .. } = tick.context;
+    let gain = rule.gain.unwrap_or(SHARE_A_TICK / dt);
     let drift = linearize(scratch, from, share, tick);
     let null_space_step = null_space_step(rule, from, share, tick);
     let TaskBlock { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
     // Scaled so that the norm of W becomes the Euclidean norm: y = W^(1/2) q.
-    let units = units(rule, tick.velocity_limit);
+    let units = units(rule, &tick_box.velocity);
     for (column, unit) in columns.iter_mut().zip(&units) {
         column.iter_mut().for_each(|entry| *entry *= unit);
     }
     let scaled = |values: &[f64]| -> Point { values.iter().zip(&units).map(|(value, unit)| value / unit).collect() };
     let equations = ScaledEquations {
         // J q' = -K r - dr/dt, times dt.
-        residual: std::array::from_fn(|i| tick.dt * (gain * residual[i] + drift[i])),
+        residual: std::array::from_fn(|i| dt * (gain * residual[i] + drift[i])),
         lambda: rule.damping * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>(),
         columns,
         y: scaled(q),
-        lower: scaled(tick.tick_box.lower()),
-        upper: scaled(tick.tick_box.upper()),
+        lower: scaled(tick_box.bounds.lower()),
+        upper: scaled(tick_box.bounds.upper()),
     };
     let y = equations.solve(&scaled(&null_space_step));
     y.iter().zip(&units).zip(q).map(|((y, unit), q)| y * unit - q).collect()
@@ -243,37 +240,39 @@ impl ScaledEquations<'_> {
 /// Writes residual and Jacobian at `from` to the scratch; returns the rate of change of the residual by the target's
 /// own motion (1/s).
 fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -> [f64; 6] {
+    let StepContext { robot, dt, .. } = tick.context;
     let (target, twist) = tick.motion().at(share);
     let n = from.len();
-    let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
-    for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {
+    let tip = robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
+    for (neighbour, time) in scratch.neighbours.iter_mut().zip([dt, -dt]) {
         neighbour.columns.fit(n);
         neighbour.columns[..n].copy_from_slice(&scratch.linearization.columns[..n]);
         target.moved(&twist, time).linearize_tip(&tip, n, tick.criterion, neighbour);
     }
     target.linearize_tip(&tip, n, tick.criterion, &mut scratch.linearization);
     let [later, earlier] = &scratch.neighbours;
-    std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * tick.dt))
+    std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * dt))
 }
 
 /// Returns dt q0', the motion of the joints if the tip were free.
 fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick: &mut Tick<'_>) -> Point {
+    let StepContext { robot, time, dt, .. } = tick.context;
     let n = from.len();
     let mut step = Point::from_elem(0.0, n);
     if !tick.goals.is_empty() {
-        tick.goals.cost(tick.robot, None, from, &mut step);
-        step.iter_mut().for_each(|slope| *slope *= -tick.dt);
+        tick.goals.cost(robot, None, from, &mut step);
+        step.iter_mut().for_each(|slope| *slope *= -dt);
     }
     if let Some(posture) = &rule.posture {
         let (mut q, mut qd, mut qdd) = ([0.0; MAX_DOF], [0.0; MAX_DOF], [0.0; MAX_DOF]);
         // Lengths were checked; after its end the posture trajectory stands still.
-        let time = tick.time + share * tick.dt;
+        let time = time + share * dt;
         let known = posture.at(time, &mut q[..n], &mut qd[..n], &mut qdd[..n]);
         if known.is_ok() && time <= posture.duration() {
-            step.iter_mut().zip(&qd).for_each(|(step, velocity)| *step += tick.dt * velocity);
+            step.iter_mut().zip(&qd).for_each(|(step, velocity)| *step += dt * velocity);
         }
         for (j, step) in step.iter_mut().enumerate() {
-            *step += tick.dt * rule.posture_gain * (q[j] - from[j]);
+            *step += dt * rule.posture_gain * (q[j] - from[j]);
         }
     }
     step

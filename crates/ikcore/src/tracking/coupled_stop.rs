@@ -1,0 +1,148 @@
+//! Coupled stops, which keep pairs of tips together: all joints brake in proportion, and are led back to the poses of the pairs.
+
+use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
+use super::step_context::StepContext;
+use crate::math::vector::dot;
+use crate::motion::{Braking, JointState};
+use crate::objective::Point;
+use crate::obstacle::JointMotion;
+
+/// Longest coupled stop, as a multiple of the fastest, plus ticks.
+const SLOWER: f64 = 3.0;
+const MORE_TICKS: usize = 8;
+
+/// A step below this (rad, m) is rest if the next tick can end it.
+const REST: f64 = 1e-8;
+
+/// The configurations of a stop, tick by tick.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CoupledStop {
+    /// Before the command, after it, and at the ends of the ticks of the stop.
+    places: Vec<Point>,
+    /// Displacements in the tick before.
+    before: Point,
+    /// Largest accelerations (rad, m per tick^2).
+    acceleration: Point,
+    /// Places that have been passed.
+    passed: usize,
+    /// Whether the arm follows a spline between ticks.
+    limited: bool,
+}
+
+impl CoupledStop {
+    /// Forgets it.
+    pub fn clear(&mut self) {
+        self.places.clear();
+        self.passed = 0;
+    }
+
+    /// The next place of an arm that stops.
+    pub fn next(&self) -> Option<&Point> {
+        self.places.get(self.passed + 2).or(self.places.last())
+    }
+
+    /// The arm has gone on to the next place.
+    pub fn pass(&mut self) {
+        self.passed += 1;
+    }
+
+    /// Where it ends.
+    pub fn rest(&self) -> Option<&Point> {
+        self.places.last()
+    }
+
+    /// Ticks until the arm is at rest: from the end of the command, or from the last place that has been passed.
+    pub fn ticks_to_stop(&self) -> f64 {
+        self.places.len().saturating_sub(2 + self.passed) as f64
+    }
+
+    /// Finds the stop after `command`. Returns whether there is one that holds the pairs within all limits.
+    pub fn find(&mut self, context: &StepContext<'_>, command: &[f64], rows: &mut ConstrainedStep) -> bool {
+        self.clear();
+        self.places.extend([Point::from_slice(context.q), Point::from_slice(command)]);
+        self.limited = context.limited.is_some();
+        let Some(limited) = context.limited else { return true };
+        self.before.clone_from(&limited.state().step);
+        self.acceleration = limited.braking().iter().map(|braking| braking.acceleration).collect();
+        let mut state = limited.state().clone();
+        state.advance(command.iter().zip(context.q).map(|(to, from)| to - from));
+        let mut tick_box = context.tick_box.clone();
+        let mut q = Point::from_slice(command);
+        let most = MORE_TICKS + (SLOWER * state.ticks_to_stop(limited.braking())) as usize;
+        for tick in 1..=most {
+            if is_at_rest(&state, limited.braking()) {
+                return true;
+            }
+            let from = context.time + tick as f64 * context.dt;
+            let StepContext { limits, limit_at, dt, .. } = *context;
+            if !(limits.narrow(&q, [from, from + dt], dt, limit_at, &mut tick_box)
+                && limited.narrow_ahead(&q, &state, from, limits, &mut tick_box))
+            {
+                return false;
+            }
+            let mut next = braked(context, &state, &q);
+            tick_box.bounds.clip(&mut next);
+            if !rows.hold(&StepRequest { ends: tick_box.bounds.ends(), ..context.request(Towards::Start) }, &mut next) {
+                return false;
+            }
+            state.advance(next.iter().zip(&q).map(|(to, from)| to - from));
+            self.places.push(next.clone());
+            q = next;
+        }
+        false
+    }
+}
+
+/// Whether all joints hardly move, and can stand within the next tick.
+fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
+    let mut joints = state.step.iter().zip(&state.change).zip(braking);
+    joints.all(|((step, change), most)| {
+        step.abs() < REST && step.abs() <= most.acceleration && (step + change).abs() <= most.jerk
+    })
+}
+
+/// The next place of a stop: all joints slow down by the same share, by which the first of them may.
+fn braked(context: &StepContext<'_>, state: &JointState, q: &Point) -> Point {
+    let mut step = Point::from_elem(0.0, q.len());
+    let Some(limited) = context.limited else { return q.clone() };
+    state.brake(limited.braking(), &mut step);
+    // By how much each would slow down, as a share: weighed by its speed, so that slow joints do not count.
+    let squared = dot(&state.step, &state.step);
+    let share = step.iter().zip(&state.step).filter(|(_, now)| now.powi(2) > 1e-6 * squared);
+    let share = share.map(|(next, now)| next / now).fold(0.0, f64::max);
+    if share < 1.0 {
+        step.iter_mut().zip(&state.step).for_each(|(step, now)| *step = share * now);
+    }
+    q.iter().zip(&step).map(|(q, step)| q + step).collect()
+}
+
+impl JointMotion for CoupledStop {
+    fn write(&self, tick: f64, q: &mut [f64]) {
+        let Some(first) = self.places.first() else { return };
+        if tick < 0.0 && self.limited {
+            q.iter_mut().zip(first.iter().zip(&self.before)).for_each(|(q, (first, step))| *q = first - step);
+            return;
+        }
+        let last = self.places.len() - 1;
+        let before = (tick.max(0.0).floor() as usize).min(last);
+        let (from, to) = (&self.places[before], &self.places[(before + 1).min(last)]);
+        for (q, (from, to)) in q.iter_mut().zip(from.iter().zip(to)) {
+            *q = from + tick.fract() * (to - from);
+        }
+    }
+
+    fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
+        if to - from > 1.0 {
+            let bends = off_line.iter_mut().zip(&self.acceleration);
+            bends.for_each(|(off_line, acceleration)| *off_line = acceleration * (to - from).powi(2) / 8.0);
+        }
+    }
+
+    fn middle(&self, from: f64, to: f64) -> Option<f64> {
+        super::stop_motion::middle(from, to, self.limited)
+    }
+
+    fn is_spline(&self) -> bool {
+        self.limited
+    }
+}

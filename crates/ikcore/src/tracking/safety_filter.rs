@@ -1,0 +1,334 @@
+//! Safety filter of commands: keeps distances from everything around the arm, and pairs of tips together.
+//!
+//! Invariant: braking now ends in a configuration known to be clear. Each near pair of bodies gives a row: how far the place of rest may
+//! move towards the other body. The filter takes the command nearest to the proposed one, measured by its effect on the task, that keeps
+//! these rows and the box of the tick. It is sent if the command together with the stop after it is certified clear, between ticks too;
+//! otherwise a part of it is, and in the end the stop goes on that was certified before.
+//!
+//! Pairs of tips at their relative pose stay there: they are equations beside the rows, and the stop keeps to them as well.
+
+use std::sync::Arc;
+
+use super::around_arm::{Around, ObstacleMotion, Response};
+use super::constrained_step::{ConstrainedStep, Resting, StepRequest, Towards};
+use super::coupled_stop::CoupledStop;
+use super::progress::{ArmProgress, Pace, is_nearer};
+use super::step_context::StepContext;
+use crate::error::Result;
+use crate::limits::Limits;
+use crate::math::vector::between;
+use crate::objective::{Bounds, Point};
+use crate::obstacle::{ClearSpace, MOST_COMING, MOST_ROWS};
+use crate::task::Aims;
+
+/// Parts of a command that are tried if the whole is not certified.
+const PARTS: [f64; 2] = [0.5, 0.125];
+
+/// Gauss-Newton steps towards the target along the rows.
+const STEPS: usize = 3;
+
+/// Rows of a goal are trusted for joint motions up to this (rad, m).
+const TRUSTED: f64 = 0.05;
+
+/// Keeps an arm clear and pairs of tips held, tick by tick.
+#[derive(Debug)]
+pub(super) struct SafetyFilter {
+    around: Option<Around>,
+    rows: ConstrainedStep,
+    /// The stop of an arm that holds pairs, after its last command; empty if it holds none.
+    stop: CoupledStop,
+    /// That of the command in question.
+    next_stop: CoupledStop,
+    /// Obstacles keep the last goal from its target.
+    goal_is_held: bool,
+    progress: ArmProgress,
+}
+
+/// Outcome of the filter for a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kept {
+    /// Whether it was changed.
+    pub changed: bool,
+    /// Whether it was because of what is around the arm.
+    pub by_obstacles: bool,
+}
+
+impl SafetyFilter {
+    /// Of an arm with these limits, in `space` if there is something to keep clear of.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
+    /// obstacle.
+    pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
+        Ok(Self {
+            around: space.map(|space| Around::new(space, ObstacleMotion::default(), limits)).transpose()?,
+            rows: ConstrainedStep::with_room(limits.dof(), 2 * MOST_ROWS + MOST_COMING),
+            stop: CoupledStop::default(),
+            next_stop: CoupledStop::default(),
+            goal_is_held: false,
+            progress: ArmProgress::new(limits),
+        })
+    }
+
+    /// The space to stay in.
+    pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
+        self.around.as_ref().map(|around| &around.space)
+    }
+
+    /// Velocities of the obstacles (m/s); empty if all are at rest.
+    pub fn velocities(&self) -> &[[f64; 3]] {
+        self.around.as_ref().map_or(&[], |around| &around.obstacles.velocities)
+    }
+
+    /// Replaces what is around the arm: `space` with the obstacles where they are now, and how they move.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn replace(
+        &mut self,
+        space: Option<ClearSpace<'static>>,
+        obstacles: ObstacleMotion,
+        limits: &Limits,
+    ) -> Result<()> {
+        self.progress.note_replaced();
+        match (space, &mut self.around) {
+            (Some(space), Some(around)) => {
+                (around.space, around.obstacles, around.since) = (Arc::new(space), obstacles, 0.0);
+            }
+            (Some(space), none) => *none = Some(Around::new(space, obstacles, limits)?),
+            (None, around) => (*around, self.goal_is_held) = (None, false),
+        }
+        Ok(())
+    }
+
+    /// Forgets the stop, because the arm is not where it was.
+    pub fn forget(&mut self) {
+        self.stop.clear();
+        self.progress.restart();
+    }
+
+    /// Moves on by one tick, of `dt` (s), of the stop after the last command. Returns its next configuration if pairs are held;
+    /// otherwise each joint stops as fast as it may.
+    pub fn stop_on(&mut self, dt: f64) -> Option<Point> {
+        self.progress.restart();
+        if let Some(around) = &mut self.around {
+            around.since += dt;
+        }
+        let next = self.stop.next().cloned();
+        self.stop.pass();
+        next
+    }
+
+    /// Ticks until an arm that holds pairs is at rest if it stops now; `None` if it holds none.
+    pub fn ticks_to_stop(&self) -> Option<f64> {
+        self.stop.rest().map(|_| self.stop.ticks_to_stop())
+    }
+
+    /// Changes the command `q` that the rule has found to one that keeps the arm clear and pairs of tips held. Pairs that cannot be held
+    /// are tasks like others, until they are where they are to be.
+    pub fn keep(&mut self, context: &StepContext<'_>, q: &mut Point) -> Kept {
+        let wanted = q.clone();
+        match context.errors() {
+            Some(errors) => self.progress.begin_tick(errors, context.dt),
+            None => self.progress.restart(),
+        }
+        let held = if context.aims.has_pairs() { self.keep_held(context, q) } else { None };
+        let by_obstacles = held.unwrap_or_else(|| {
+            self.stop.clear();
+            q.copy_from_slice(&wanted);
+            self.keep_clear(context, q)
+        });
+        if let Some(around) = &mut self.around {
+            around.since += context.dt;
+        }
+        if by_obstacles || self.goal_is_held {
+            self.progress.note_held();
+        }
+        Kept { changed: *q != wanted, by_obstacles }
+    }
+
+    /// Changes the command `q` to one that keeps the arm clear. Returns whether it had to.
+    fn keep_clear(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
+        if self.around.is_none() {
+            return false;
+        }
+        let brake = context.braking();
+        let stop = context.stop_after(&brake);
+        let rest = stop.rest();
+        let wanted = q.clone();
+        let blocked = self.set_rows(context, (&rest, stop.ticks_to_stop()), &wanted);
+        let pace = self.pace(&brake);
+        self.move_beside_rows(context, (pace, blocked), [&rest, &brake], q);
+        let nearer_than = (pace != Pace::Free).then_some(&rest);
+        let allowed = pace != Pace::Rest
+            && (self.allows(context, nearer_than, q) || {
+                self.correct(context, q);
+                self.allows(context, nearer_than, q)
+            });
+        let best = q.clone();
+        let mut parts = PARTS.into_iter().filter(|_| pace != Pace::Rest);
+        let allowed = allowed
+            || parts.any(|part| {
+                between(&brake, &best, part, q);
+                self.allows(context, nearer_than, q)
+            });
+        if !allowed {
+            q.copy_from_slice(&brake);
+        }
+        if pace == Pace::Free {
+            return *q != wanted;
+        }
+        let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
+        blocked || !self.allows(context, nearer_than, &wanted)
+    }
+
+    /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether what is around the arm made it
+    /// another; None if pairs cannot be held.
+    fn keep_held(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
+        let mut brake = self.stop.next().cloned().unwrap_or_else(|| context.braking());
+        context.tick_box.bounds.clip(&mut brake);
+        let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
+        let wanted = q.clone();
+        let mut blocked = self.set_rows(context, (&rest, self.stop.ticks_to_stop()), &wanted);
+        let pace = self.pace(&brake);
+        self.move_beside_rows(context, (pace, blocked), [&rest, &brake], q);
+        let best = q.clone();
+        for part in [1.0].into_iter().chain(PARTS).filter(|_| pace != Pace::Rest) {
+            between(&brake, &best, part, q);
+            if !(self.rows.hold(&context.request(Towards::Start), q) && self.finds_stop(context, q)) {
+                continue;
+            }
+            let (stop, dt) = (&self.next_stop, context.dt);
+            if pace == Pace::Nearer && !stop.rest().is_some_and(|to| is_nearer(context, &rest, to)) {
+                continue;
+            }
+            let end = 1.0 + stop.ticks_to_stop();
+            if self.around.as_mut().is_none_or(|around| around.certifies(stop, end, dt)) {
+                std::mem::swap(&mut self.stop, &mut self.next_stop);
+                return Some(blocked);
+            }
+            blocked = true;
+        }
+        if !context.aims.pairs_are_held(context.robot, &brake) {
+            return None;
+        }
+        q.copy_from_slice(&brake);
+        self.stop.pass();
+        Some(blocked)
+    }
+
+    /// How the arm moves, which brakes by the command `brake`. Where bodies are too near or it has to give way, it moves in any case.
+    fn pace(&mut self, brake: &[f64]) -> Pace {
+        if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
+            self.progress.restart();
+        }
+        self.progress.pace()
+    }
+
+    /// Moves the command `q` to one beside the rows: the nearest, or the one after which the arm rests nearest to the target. It would
+    /// rest at `rest` after the command `brake`.
+    fn move_beside_rows(
+        &mut self,
+        context: &StepContext<'_>,
+        (pace, blocked): (Pace, bool),
+        [rest, brake]: [&[f64]; 2],
+        q: &mut Point,
+    ) {
+        match pace {
+            Pace::Free if blocked => self.step_beside_rows(context, q),
+            Pace::Free | Pace::Rest => {}
+            Pace::Nearer => {
+                let slope = Response::new(context, rest).slope;
+                let resting = Resting { rest, slope: &slope, command: brake };
+                self.rows.write_resting(&context.request(Towards::Target), &resting, q);
+            }
+        }
+    }
+
+    /// Finds the stop after the command `q`, beside no rows: these are for the command.
+    fn finds_stop(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        let Self { rows, next_stop, .. } = self;
+        let [near, wanted] = [&mut rows.rows, &mut rows.wanted].map(std::mem::take);
+        let found = next_stop.find(context, q, rows);
+        (rows.rows, rows.wanted) = (near, wanted);
+        found
+    }
+
+    /// Whether the command `q` and the stop after it are certainly clear and, of an arm that has to come nearer than it would at
+    /// `rest`, whether it does.
+    fn allows(&mut self, context: &StepContext<'_>, rest: Option<&Point>, q: &[f64]) -> bool {
+        let motion = context.stop_after(q);
+        let comes_nearer = |rest: &Point| is_nearer(context, rest, &motion.rest());
+        rest.is_none_or(comes_nearer)
+            && self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), context.dt))
+    }
+
+    /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it.
+    fn correct(&mut self, context: &StepContext<'_>, q: &mut Point) {
+        let stop = context.stop_after(q);
+        let rest = stop.rest();
+        self.rows.rows.clear();
+        if let Some(around) = &mut self.around {
+            around.set_rows_after(context, (&rest, stop.ticks_to_stop()), q, &mut self.rows.rows);
+        }
+        let start = q.clone();
+        // The effect on the tip itself counts, whatever the task.
+        let aims = if context.robot.tip_count() > 1 { context.aims } else { Aims::default() };
+        // An arm that gives way is corrected by as little as possible, lest the joints that the task leaves free take a leap that no
+        // certificate allows.
+        let gives_way = self.around.as_ref().is_some_and(|around| around.obstacles.fastest() > 0.0);
+        let towards = if gives_way { Towards::Joints } else { Towards::Start };
+        self.rows.write(&StepRequest { aims, ..context.request(towards) }, &start, q);
+    }
+
+    /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
+    /// beside the rows, beginning at `from`. Returns whether it had to.
+    pub fn clear_goal(&mut self, context: &StepContext<'_>, from: &[f64], sample: &mut Point) -> bool {
+        let Self { around: Some(around), rows, goal_is_held, .. } = self else { return self.goal_is_held };
+        rows.wanted.clear();
+        *goal_is_held = !around.set_goal_rows(sample, &mut rows.rows);
+        if !*goal_is_held {
+            return false;
+        }
+        let positions = context.positions();
+        sample.copy_from_slice(from);
+        positions.clip(sample);
+        for _ in 0..STEPS {
+            around.set_goal_rows(sample, &mut rows.rows);
+            let start = sample.clone();
+            let ends = start.iter().zip(positions.lower().iter().zip(positions.upper()));
+            let near = ends.map(|(q, (lower, upper))| ((q - TRUSTED).max(*lower), (q + TRUSTED).min(*upper)));
+            let near = Bounds::from_ranges(near);
+            rows.write(&StepRequest { ends: near.ends(), ..context.request(Towards::Target) }, &start, sample);
+        }
+        true
+    }
+
+    /// Whether obstacles changed the last goal.
+    pub fn goal_is_held(&self) -> bool {
+        self.goal_is_held
+    }
+
+    /// Sets the rows of the command. Returns whether `command` breaks one.
+    fn set_rows(&mut self, context: &StepContext<'_>, (rest, stop_ticks): (&[f64], f64), command: &[f64]) -> bool {
+        let Self { around, rows, .. } = self;
+        rows.rows.clear();
+        rows.wanted.clear();
+        around.as_mut().is_some_and(|around| {
+            around.find_near(context, rest);
+            around.set_rows(context, (rest, stop_ticks), command, rows)
+        })
+    }
+
+    /// Moves `q` to the command that keeps the rows and disturbs the task least.
+    fn step_beside_rows(&mut self, context: &StepContext<'_>, q: &mut Point) {
+        // What the rule wants under acceleration limits is not the target itself, but on the way there. A target far away must not
+        // rival bodies that are to part.
+        let at_once = context.limited.is_none() && self.rows.wanted.is_empty();
+        let (towards, steps) = if at_once { (Towards::Target, STEPS) } else { (Towards::Start, 1) };
+        for _ in 0..steps {
+            let start = q.clone();
+            self.rows.write(&context.request(towards), &start, q);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Tasks of the last targets.
+
+use super::track_options::TrackOptions;
+use crate::error::{Error, Result};
+use crate::ik::{checked_tasks, reduce};
+use crate::robot::Robot;
+use crate::task::{Aims, NamedTask, Region, Target, TipCriterion};
+
+/// Weight of pairs beside other tasks, so that what is not within reach costs them little: they are then held exactly.
+const PAIR_WEIGHT: f64 = 100.0;
+
+/// The tasks of the last targets; the task of the only tip never changes.
+#[derive(Debug)]
+pub(super) struct TipTasks {
+    asked: Vec<NamedTask>,
+    tasks: Vec<TipCriterion>,
+}
+
+impl TipTasks {
+    /// The task of the only tip, which carries its tool; none yet of several tips.
+    ///
+    /// # Errors
+    /// Those of a wrong task or tolerance.
+    pub fn new(robot: &Robot, options: &TrackOptions) -> Result<Self> {
+        let only = options.only_task()?.without_own_tool();
+        let tasks = if robot.tip_count() == 1 { vec![only] } else { vec![] };
+        Ok(Self { asked: vec![], tasks })
+    }
+
+    /// The tasks with their `targets`; empty before the first.
+    pub fn with<'a>(&'a self, targets: &'a [Target]) -> Aims<'a> {
+        if targets.is_empty() { Aims::default() } else { Aims { tasks: &self.tasks, targets } }
+    }
+
+    /// The region of the only tip.
+    pub fn region(&self) -> Option<&Region> {
+        self.tasks.first().and_then(|task| task.criterion.region.as_ref())
+    }
+
+    /// Reduces validated `targets` to the parts that their tasks use. Returns whether the tasks of several tips, `asked`, are not those of
+    /// the last targets.
+    ///
+    /// # Errors
+    /// Those of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region; the tasks are then as before.
+    pub fn read(&mut self, robot: &Robot, asked: &[NamedTask], targets: &mut [Target]) -> Result<bool> {
+        targets.iter().try_for_each(Target::validate)?;
+        if asked.is_empty() && !targets.is_empty() {
+            robot.require_one_tip("a plain target")?;
+        }
+        if !asked.is_empty() && robot.tip_count() == 1 {
+            let problem = format!("robot '{}' has one tip: give a plain target", robot.name());
+            return Err(Error::Contradiction { problem });
+        }
+        if asked == self.asked && !targets.is_empty() {
+            return reduce(robot, &self.tasks, targets).map(|()| false);
+        }
+        let tasks = checked(robot, asked)?;
+        reduce(robot, &tasks, targets)?;
+        (self.asked, self.tasks) = (asked.to_vec(), tasks);
+        Ok(true)
+    }
+}
+
+fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
+    if tasks.is_empty() {
+        let problem = "no tip has a target: name one tip at least".into();
+        return Err(Error::Contradiction { problem });
+    }
+    if tasks.iter().any(|task| task.task.is_some_and(|task| task.region.is_some())) {
+        let problem = "a tracked region is for one tip: leave within= out of the tasks of several".into();
+        return Err(Error::Contradiction { problem });
+    }
+    let weighed = |task: TipCriterion| if task.subject.is_pair() { task.weighing(PAIR_WEIGHT) } else { task };
+    Ok(checked_tasks(robot, tasks)?.into_iter().map(weighed).collect())
+}

@@ -1,0 +1,184 @@
+//! The arm of a control loop: its accepted configuration, clock, limits and targets.
+
+use std::sync::Arc;
+
+use super::limited_motion::LimitedMotion;
+use super::repeated_targets::RepeatedTargets;
+use super::rule::TickResult;
+use super::step_context::StepContext;
+use super::target_stream::TargetStream;
+use super::tip_tasks::TipTasks;
+use super::track_options::TrackOptions;
+use crate::error::Result;
+use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::objective::Point;
+use crate::robot::Robot;
+use crate::task::Aims;
+
+/// An arm in motion, tick by tick.
+#[derive(Debug)]
+pub(super) struct TrackedArm {
+    pub robot: Arc<Robot>,
+    pub limits: Limits,
+    pub limit_at: LimitAt,
+    pub tick_box: TickBox,
+    /// Under acceleration or jerk limits.
+    pub limited: Option<LimitedMotion>,
+    pub tasks: TipTasks,
+    pub targets: TargetStream,
+    pub dt: f64,
+    pub ticks: usize,
+    pub q: Point,
+    /// Configuration at the start of the last tick.
+    pub before: Point,
+    /// The value accepted in the previous tick, which a random search must beat.
+    pub last_value: Option<f64>,
+}
+
+impl TrackedArm {
+    /// At rest at `start` (n,) at t = 0, with ticks of `dt` (s).
+    ///
+    /// # Errors
+    /// Those of wrong tasks, limits or settings of targets, and of a start outside limits or region.
+    pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        let (tasks, limits) = (TipTasks::new(robot, options)?, options.limits_for(robot));
+        limits.require_for(robot)?;
+        limits.validate(dt, 0)?;
+        let limited = LimitedMotion::new(&limits, dt);
+        let repeated = options.rule.extrapolates(limited.is_some()).then(|| RepeatedTargets::new(dt));
+        let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
+        if tasks.region().is_some() {
+            require_room_to_stop(&limits)?;
+        }
+        robot.check("start", start)?;
+        let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
+        let arm = Self {
+            robot,
+            tick_box: TickBox::around(start, &limits),
+            limited,
+            limits,
+            limit_at: options.limit_at,
+            tasks,
+            targets,
+            dt,
+            ticks: 0,
+            q: Point::from_slice(start),
+            before: Point::from_slice(start),
+            last_value: None,
+        };
+        arm.require_inside("start", start)?;
+        Ok(arm)
+    }
+
+    /// Inputs of the next step.
+    pub fn context(&self) -> StepContext<'_> {
+        StepContext {
+            robot: &self.robot,
+            q: &self.q,
+            aims: self.aims(),
+            tick_box: &self.tick_box,
+            limits: &self.limits,
+            limit_at: self.limit_at,
+            limited: self.limited.as_ref(),
+            last_value: self.last_value,
+            time: self.time(),
+            dt: self.dt,
+        }
+    }
+
+    /// Tasks and targets; empty before the first target.
+    pub fn aims(&self) -> Aims<'_> {
+        self.tasks.with(self.targets.last())
+    }
+
+    /// Whether the robot has one tip.
+    pub fn has_one_tip(&self) -> bool {
+        self.robot.tip_count() == 1
+    }
+
+    /// Time of the accepted configuration (s).
+    pub fn time(&self) -> f64 {
+        self.ticks as f64 * self.dt
+    }
+
+    /// End of the next tick (s).
+    pub fn next_time(&self) -> f64 {
+        (self.ticks + 1) as f64 * self.dt
+    }
+
+    /// Sets the box of the next tick by the limits on position and velocity. Returns whether all joints can be inside.
+    pub fn narrow(&mut self) -> bool {
+        let tick = [self.time(), self.next_time()];
+        self.limits.narrow(&self.q, tick, self.dt, self.limit_at, &mut self.tick_box)
+    }
+
+    /// Narrows the box to the commands that leave a full stop. Returns whether there are any.
+    pub fn narrow_to_stop(&mut self) -> bool {
+        let time = self.time();
+        let Self { limited, limits, q, tick_box, .. } = self;
+        limited.as_mut().is_none_or(|limited| limited.narrow(q, time, limits, tick_box))
+    }
+
+    /// Whether the region keeps the only tip from its target.
+    pub fn is_blocked_by_region(&self) -> bool {
+        let only = self.aims().only(&self.robot);
+        only.is_some_and(|(target, criterion)| criterion.blocked_by_region(target).is_some())
+    }
+
+    /// Assesses what has been found, with one evaluation.
+    pub fn assess(&self, found: &mut TickResult) {
+        found.evaluations += 1;
+        match self.targets.last() {
+            [] => found.position = self.robot.tip_position(&found.q),
+            _ => found.assess(&self.robot, &self.aims()),
+        }
+    }
+
+    /// Ends the tick at `q`.
+    pub fn accept(&mut self, q: &[f64], value: f64) {
+        if let Some(limited) = &mut self.limited {
+            limited.advance(&self.q, q);
+        }
+        self.before.copy_from_slice(&self.q);
+        self.q.copy_from_slice(q);
+        (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
+        self.targets.accept();
+    }
+
+    /// Begins anew at `q` and t = 0, with these velocities (rad/s, m/s) and accelerations (rad/s^2, m/s^2); `None`: at rest.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) for a start, and for an arm that could not stop inside its limits; the arm is then as before.
+    pub fn reset(&mut self, q: &[f64], [qd, qdd]: [Option<&[f64]>; 2]) -> Result<()> {
+        self.robot.check("q", q)?;
+        self.require_inside("q", q)?;
+        let zero = Point::from_elem(0.0, q.len());
+        let (qd, qdd) = (qd.unwrap_or(&zero), qdd.unwrap_or(&zero));
+        self.robot.check("qd", qd)?;
+        self.robot.check("qdd", qdd)?;
+        if let Some(limited) = &mut self.limited {
+            limited.set(q, [qd, qdd], &self.limits)?;
+        }
+        self.q.copy_from_slice(q);
+        self.before = q.iter().zip(qd).map(|(q, qd)| q - self.dt * qd).collect();
+        (self.ticks, self.last_value) = (0, None);
+        self.targets.clear();
+        Ok(())
+    }
+
+    /// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
+    fn require_inside(&self, what: &str, q: &[f64]) -> Result<()> {
+        self.limits.require_inside(what, 0.0, q)?;
+        let region = self.tasks.region();
+        region.map_or(Ok(()), |region| region.require_inside(what, &self.robot.tip_position(q)))
+    }
+}
+
+/// Checks that the arm can stop at any time, without which it cannot be kept in a region.
+fn require_room_to_stop(limits: &Limits) -> Result<()> {
+    let method = "a task with a region";
+    let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
+    limits.require_none(&[Field::Acceleration, Field::Jerk], method, remedy)?;
+    let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
+    [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
+}
