@@ -58,7 +58,6 @@ OF_EXAMPLES = {
     "17_joint_at_its_limit": Example(camera=WIDE, at=(0.2, 0.0, 0.65)),
     "20_motion_for_ros": Example(result="plan"),
     "22_mobile_base": Example(result="plan", camera=(1.0, -1.9, 2.2), at=(0.8, 0.7, 0.6)),
-    "23_reachability_map": Example(result="found", camera=(2.0, -1.7, 1.5)),
     "26_circle_by_bas": Example(camera=WIDE, at=(0.2, 0.1, 0.6)),
     "28_without_a_model": Example(robot="drawn", result="without", camera=WIDE, at=(0.2, 0.1, 0.6)),
 }
@@ -183,12 +182,30 @@ def circle() -> Iterator[Recorded]:
         yield Recorded(viewer)
 
 
+@contextmanager
+def reach() -> Iterator[Recorded]:
+    """Yields a map of what an arm reaches, in which it moves."""
+    left = variables("23_reachability_map")
+    robot, q = left["robot"], np.array(READY)
+    with viewed(robot, q, camera=(2.0, -1.7, 1.5)) as viewer:
+        viewer.show(left["found"])
+        viewer.follow = "off"
+
+        def frames() -> Iterator[float]:
+            for turn in np.linspace(0.0, 2 * np.pi, 120):
+                viewer.q = q + np.sin(turn) * np.array([0.0, 0.4, 0.0, 0.5, 0.0, 0.0, 0.0])
+                yield 2 * TICK
+
+        yield Recorded(viewer, frames())
+
+
 SCENES: dict[str, Callable[[], AbstractContextManager[Recorded]]] = {
     "circle": circle,
     "past_a_shelf": past_a_shelf,
     "dodge": dodge,
     "11_pick_and_place": pick_and_place,
     "21_tray_in_two_hands": tray,
+    "23_reachability_map": reach,
 }
 NAMES = (*SCENES, *OF_EXAMPLES)
 
