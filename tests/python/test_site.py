@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_viewer_record import plays, served
+from test_viewer_record import plays
 
 import beetle_ik as bik
 from beetle_ik.viewing import write_player
@@ -20,6 +20,7 @@ DOCS = ROOT / "docs"
 sys.path += [str(ROOT / "tools"), str(DOCS / "extensions")]
 
 import recorded_scenes  # noqa: E402
+from check_site import served  # noqa: E402
 from viewer_pictures import chromium, visits  # noqa: E402
 
 PAGES = {page: page.read_text(encoding="utf-8") for page in sorted(DOCS.rglob("*.md"))}
