@@ -184,6 +184,14 @@ def pair() -> Iterator[bik.Viewer]:
         yield viewer
 
 
+def test_an_arm_with_several_tips_begins_where_it_is_told(pair: bik.Viewer) -> None:
+    q = PAIR.random_configurations(1, seed=0)[0]
+    pair.q = q
+    np.testing.assert_array_equal(pair.q, q)
+    with pytest.raises(bik.InvalidInputError, match=r"^q must be one configuration \(16,\), got shape \(1, 16\)$"):
+        pair.q = q[None]
+
+
 def test_each_tip_has_a_target(pair: bik.Viewer) -> None:
     assert pair.follow == "track"
     before = pair.target

@@ -1,12 +1,8 @@
 """Recordings of the viewer: what a file holds, and that a browser plays it."""
 
-import functools
-import http.server
 import sys
-import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import repeat
 from pathlib import Path
 from typing import Any
@@ -19,6 +15,7 @@ from beetle_ik.viewing import write_player
 from beetle_ik.viewing.camera import FIELD, _corners, _fitting
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
+from check_site import served
 from viewer_pictures import chromium, hide_notes, visits
 
 ROBOT = bik.Robot.named("panda").with_capsules(radius=0.06)
@@ -200,18 +197,6 @@ def test_frames_do_not_record(viewer: bik.Viewer, tmp_path: Path) -> None:
 
 
 # --- in a browser ---
-
-
-@contextmanager
-def served(folder: Path) -> Iterator[str]:
-    class Quiet(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, *_: Any) -> None:
-            pass
-
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=folder)) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_address[1]}"
-        server.shutdown()
 
 
 @pytest.fixture(scope="module")
