@@ -7,7 +7,7 @@ use ikcore::math::Frame;
 use ikcore::obstacle::Surroundings;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Target, TipError};
+use ikcore::task::{Target, TargetRow, TipError};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -225,7 +225,7 @@ pub fn solve(
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
-    let tips = tip_errors(robot, &asked, |_| asked.values().iter().copied().collect(), &options, &core.q)?;
+    let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;
     let surroundings = options.surroundings;
     let around = (surroundings.is_given() && core.nearest.is_none())
         .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));

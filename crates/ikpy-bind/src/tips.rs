@@ -59,10 +59,10 @@ impl<T> Asked<T> {
     }
 
     /// What each is for.
-    pub fn keys(&self, robot: &PyRobot) -> TipKeys {
+    pub fn keys<'a>(&'a self, robot: &'a PyRobot) -> &'a TipKeys {
         match self {
-            Self::One(_) => robot.tips.clone(),
-            Self::Tips { keys, .. } => keys.clone(),
+            Self::One(_) => &robot.tips,
+            Self::Tips { keys, .. } => keys,
         }
     }
 
@@ -132,9 +132,9 @@ impl TaskArguments<'_, '_> {
     /// Reads them for the targets that were `asked`.
     pub fn read_for<T>(&self, robot: &PyRobot, asked: &Asked<T>) -> PyResult<TipSettings> {
         let (settings, keys) = (self.read(robot)?, asked.keys(robot));
-        settings.task.require_targets("task", &keys)?;
-        settings.position.require_targets("position_tolerance", &keys)?;
-        settings.rotation.require_targets("rotation_tolerance", &keys)?;
+        settings.task.require_targets("task", keys)?;
+        settings.position.require_targets("position_tolerance", keys)?;
+        settings.rotation.require_targets("rotation_tolerance", keys)?;
         Ok(settings)
     }
 }
@@ -216,7 +216,7 @@ pub fn tip_errors<T>(
         Asked::One(_) => vec![],
         Asked::Tips { .. } => ikcore::ik::tip_errors(&robot.core, targets, options, qs).map_err(raise)?,
     };
-    Ok(TipErrors { keys: asked.keys(robot), errors })
+    Ok(TipErrors { keys: asked.keys(robot).clone(), errors })
 }
 
 /// What was asked of each tip, and the errors; without errors of each for the only tip.

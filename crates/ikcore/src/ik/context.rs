@@ -71,7 +71,7 @@ impl<'a> SolveContext<'a> {
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.only_task(robot).map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
         if with_tool.is_some() {
-            tasks[0] = tasks[0].without_own_tool();
+            tasks[0].leave_tool();
         }
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
         Ok(Self { robot, with_tool, options, tasks, goals, bounds, central: OnceLock::new(), space })
@@ -157,6 +157,7 @@ impl<'a> SolveContext<'a> {
     ///
     /// # Errors
     /// [`Error::WrongTarget`], or [`Error::Contradiction`] for targets of tips that contradict each other.
+    #[inline]
     pub(crate) fn reduce(&self, targets: &mut [Target]) -> Result<()> {
         reduce(self.robot, &self.tasks, targets)
     }

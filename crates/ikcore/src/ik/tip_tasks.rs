@@ -9,6 +9,7 @@ use crate::robot::Robot;
 use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
 
 /// The tasks of `options`, validated; of one tip that of plain targets.
+#[inline]
 pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {
     if options.tips.is_empty() {
         robot.require_one_tip("a plain target")?;

@@ -41,7 +41,7 @@ pub struct NamedTask {
 }
 
 /// A validated task.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct TipCriterion {
     /// The pose that counts.
     pub(crate) subject: Subject,
@@ -50,13 +50,14 @@ pub struct TipCriterion {
     /// When its target counts as reached.
     pub(crate) criterion: Criterion,
     /// The tool of the task, in the frame of the tip that is moved.
-    tool: Option<Frame>,
+    tool: Option<Box<Frame>>,
     /// Factor on its residual, beside those of the other tasks.
     weight: f64,
 }
 
 impl NamedTask {
     /// That of the only tip of a robot.
+    #[inline]
     pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
         Self { subject: Subject::Tip(0), task, tolerance }
     }
@@ -65,12 +66,13 @@ impl NamedTask {
     ///
     /// # Errors
     /// Those of [`Task::validate`] and of the tolerances.
+    #[inline]
     pub(crate) fn validated(&self) -> Result<TipCriterion> {
         let Self { subject, task, tolerance } = *self;
         task.map_or(Ok(()), |task| task.validate())?;
         let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
         criterion.validate()?;
-        let tool = task.and_then(|task| task.tool).map(|tool| Frame::from(&tool));
+        let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
         Ok(TipCriterion { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
     }
 }
@@ -90,9 +92,9 @@ impl Subject {
 }
 
 impl TipCriterion {
-    /// The same task of a robot that carries its tool.
-    pub(crate) fn without_own_tool(self) -> Self {
-        Self { tool: None, ..self }
+    /// Leaves the tool to the robot, which carries it.
+    pub(crate) fn leave_tool(&mut self) {
+        self.tool = None;
     }
 
     /// The same task, weighing `weight` beside the others.
@@ -133,7 +135,7 @@ impl TipCriterion {
 
     /// Where the tip itself is to be for a target of its tool.
     pub(crate) fn without_tool(&self, target: &Target) -> Target {
-        match (self.tool, target) {
+        match (&self.tool, target) {
             (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
             _ => *target,
         }
@@ -142,7 +144,7 @@ impl TipCriterion {
     /// The frame that counts at `q`.
     fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
         let tip = |tip: usize| robot.tip_of(tip, q);
-        let at_tool = |frame: Frame| self.tool.map_or(frame, |tool| frame.then::<NoFma>(&tool));
+        let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
         match self.subject {
             Subject::Tip(of) => at_tool(tip(of)),
             Subject::Pair { from, of } => tip(from).inverse().then::<NoFma>(&at_tool(tip(of))),
@@ -153,8 +155,8 @@ impl TipCriterion {
     fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
         let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
         let mut frame = robot.tip_and_jacobian_of(of, q, columns);
-        if let Some(tool) = self.tool {
-            let moved = frame.then::<NoFma>(&tool);
+        if let Some(tool) = &self.tool {
+            let moved = frame.then::<NoFma>(tool);
             let lever = std::array::from_fn(|k| moved.origin[k] - frame.origin[k]);
             columns[..q.len()].iter_mut().for_each(|column| add_moment(column, &lever, 1.0));
             frame = moved;
@@ -319,7 +321,7 @@ impl<'a> Aims<'a> {
         for (task, target) in self.iter() {
             let Subject::Pair { from, of } = task.subject else { continue };
             let (Some(base), Some(frame)) = (pose_of(from), pose_of(of)) else { continue };
-            let at_tool = task.tool.map_or(frame, |tool| frame.then::<NoFma>(&tool));
+            let at_tool = task.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
             let seen = base.inverse().then::<NoFma>(&at_tool);
             let Assessment { score, error } = target.assess_tip(&seen, &task.criterion);
             if !score.solved {

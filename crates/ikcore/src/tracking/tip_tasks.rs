@@ -22,7 +22,8 @@ impl TipTasks {
     /// # Errors
     /// Those of a wrong task or tolerance.
     pub fn new(robot: &Robot, options: &TrackOptions) -> Result<Self> {
-        let only = options.only_task()?.without_own_tool();
+        let mut only = options.only_task()?;
+        only.leave_tool();
         let tasks = if robot.tip_count() == 1 { vec![only] } else { vec![] };
         Ok(Self { asked: vec![], tasks })
     }

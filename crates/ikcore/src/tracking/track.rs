@@ -120,7 +120,9 @@ impl<'a> TipPaths<'a> {
     fn targets(&self, i: usize) -> TargetRow {
         let target =
             |path: &Reference| path.pose(i).map_or(Target::Position(path.position(i)), |pose| Target::from(&pose));
-        self.paths.iter().map(target).collect()
+        let mut targets = TargetRow::new();
+        self.paths.iter().for_each(|path| targets.push(target(path)));
+        targets
     }
 
     /// The targets of row `i` as they arrive.

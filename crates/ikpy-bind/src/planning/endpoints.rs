@@ -1,7 +1,7 @@
 //! Reading of the ends of a motion.
 
 use ikcore::planning::Endpoint;
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Target, TargetRow, Tolerance};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -105,7 +105,7 @@ fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argum
     let Tolerance { position, rotation } = Tolerance::default();
     let [position_tolerance, rotation_tolerance] = &[position, rotation].map(ToleranceArgument::All);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot, &asked)?;
-    Ok(Endpoint::Targets { tips: settings.tasks(&asked), targets: asked.values().iter().copied().collect() })
+    Ok(Endpoint::Targets { tips: settings.tasks(&asked), targets: TargetRow::from_slice(asked.values()) })
 }
 
 enum Given<'a, 'py> {

@@ -267,7 +267,7 @@ pub fn track(
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };
     let record = watched(py, progress, |watcher| track_tips(&arm, &paths, start, &options, watcher))?;
-    let tips = TipErrors { keys: asked.keys(robot.get()), errors: record.tips.errors.clone() };
+    let tips = TipErrors { keys: asked.keys(robot.get()).clone(), errors: record.tips.errors.clone() };
     python_calls::log(py, format!("track: {}", record.message()))?;
     PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
 }

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
+use ikcore::task::TargetRow;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -153,7 +154,7 @@ impl PyTracker {
             }
             Some(asked) => {
                 let tips = self.settings.tasks(asked);
-                Some(Arrival { tips, targets: asked.values().iter().copied().collect(), velocity, stamp })
+                Some(Arrival { tips, targets: TargetRow::from_slice(asked.values()), velocity, stamp })
             }
             None => None,
         };
