@@ -32,7 +32,7 @@ PANDA = bik.Robot.named("panda")
 BALL = bik.obstacles.Sphere((0.5, 0.1, 0.5), 0.05)
 # Messages that are put together from parts.
 PRODUCED: dict[str, Callable[[], Any]] = {
-    "expected 7 joints": lambda: PANDA.fk(np.zeros(9)),
+    "expected 7 joints (panda_joint1 to panda_joint7), got 9": lambda: PANDA.fk(np.zeros(9)),
     "inside obstacle": lambda: bik.solve(PANDA.with_capsules(radius=0.06), BALL.center, obstacles=[BALL]),
     "waypoint 1 is the same as waypoint 0": lambda: bik.time_optimal([[0], [0], [1]], bik.Limits(acceleration=1)),
 }
