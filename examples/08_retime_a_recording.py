@@ -19,9 +19,8 @@ robot = bik.Robot.named("ur5e")
 # The recording: 12 s at 100 Hz, in steps of a 12-bit encoder, and with pauses.
 # Yours may be a file: ``bik.Trajectory.from_csv("taught.csv")``.
 time = np.arange(0.0, 12.0, 0.01)
-progress = (
-    time - np.sin(np.pi * time) / np.pi
-)  # slow, then quick, every two seconds
+# Slow, then quick, every two seconds.
+progress = time - np.sin(np.pi * time) / np.pi
 angles = 2 * np.pi * progress[:, None] / 12.0 * [1, 1, 2, 1, 2, 1]
 angles = np.add(angles, [0, 1, 2, 0, 1, 2])
 guided = np.add([0.0, -1.6, 1.6, -1.6, -1.6, 0.0], 0.4 * np.sin(angles))

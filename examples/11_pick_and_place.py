@@ -3,7 +3,7 @@ Pick and place
 ==============
 
 A gripper moves to a part, down to it along a straight line, lifts it, carries it
-past a bin and sets it down. The part is a body of the robot as long as it is held;
+over a wall and sets it down. The part is a body of the robot as long as it is held;
 fingers may touch it on the line to the grasp, and nothing else may touch anything.
 """
 

@@ -19,6 +19,11 @@ def problems(tag: str) -> list[str]:
     for name, address in tomllib.loads(_text("pyproject.toml"))["project"]["urls"].items():
         if "FILL-IN" in address:
             found.append(f"The address {name} in pyproject.toml is still to be filled in: {address}.")
+    if links := re.findall(r"\]\((?!https?:|#)([^)#]+)", _text("README.md")):
+        found.append(
+            f"README.md has {len(links)} links into the repository, which PyPI does not follow: write them with its "
+            f"address, such as {links[0]}."
+        )
     return found
 
 

@@ -77,6 +77,8 @@ def misfits(browser: Any, address: str, names: list[str]) -> dict[str, list[str]
     found: dict[str, list[str]] = {}
     laptop = browser.new_page(viewport={"width": LAPTOP[0], "height": LAPTOP[1]})
     phone = browser.new_page(viewport={"width": PHONE[0], "height": PHONE[1]})
+    for page in (laptop, phone):
+        page.route("**/recordings/player.html*", lambda route: route.abort())  # drawing takes long
     for name in names:
         for page in (laptop, phone):
             page.goto(f"{address}/{name}.html", wait_until="domcontentloaded")

@@ -47,7 +47,7 @@ def _of_wheel(file: Path) -> list[str]:
 
 
 def _of_metadata(file: Path, metadata: Message) -> list[str]:
-    """What a plain `pip install` brings, and the links of the long description, which PyPI shows without the pages."""
+    """What a plain `pip install` brings."""
     needed = [text for text in metadata.get_all("Requires-Dist", []) if "extra ==" not in text]
     names = [re.match(r"[\w-]+", text)[0] for text in needed]  # type: ignore[index]
     return [] if names == _OF_CORE else [f"{file.name} needs {', '.join(needed)}, but should need numpy alone."]

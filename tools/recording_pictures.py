@@ -6,14 +6,15 @@ Writes docs/static/pictures/NAME.webp; docs/extensions/recorded_scenes.py has th
 playwright and Chromium.
 """
 
+import importlib
 import io
 import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
 from check_site import served
+from PIL import Image
 from viewer_pictures import visits
 
 from beetle_ik.viewing import write_player
@@ -22,8 +23,8 @@ ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "static" / "pictures"
 sys.path.insert(0, str(ROOT / "docs" / "extensions"))
 _SIZE, _BAR = (640, 432), 40  # pixels; the bar below is the player's
-_UNDER_WAY, _PATIENCE = 3000, 120_000  # ms
-_NO_NOTES = ".mantine-Notification-root { display: none !important; }"
+_UNDER_WAY, _PATIENCE = 9000, 120_000  # ms; shapes fade in
+_NO_NOTES = ".mantine-Notification-root, .mantine-ActionIcon-root { display: none !important; }"
 
 
 def take(browser: Any, address: str, name: str) -> bytes:
@@ -40,8 +41,7 @@ def take(browser: Any, address: str, name: str) -> bytes:
 
 def main() -> None:
     """Takes the pictures that are named, or all."""
-    import recorded_scenes
-
+    recorded_scenes = importlib.import_module("recorded_scenes")
     PICTURES.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         site = Path(folder)

@@ -38,6 +38,11 @@ def chromium() -> str | None:
     return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
+def hide_notes(page: Any) -> None:
+    """Hides notes of viser, of which the first says that this browser draws without a graphics card."""
+    page.add_style_tag(content=".mantine-Notification-root { display: none }")
+
+
 class Visitor:
     """Someone who looks at a viewer and uses it, with a mouse."""
 
@@ -51,14 +56,7 @@ class Visitor:
         self.page.wait_for_selector("[data-beetle-ik=status]")
         self.until(lambda: set(viewer.server.get_clients()) - known)
         (self._client,) = set(viewer.server.get_clients()) - known
-        self._dismiss_warning()
-
-    def _dismiss_warning(self) -> None:
-        """Closes the note that this browser draws without a graphics card."""
-        note = self.page.locator(".mantine-Notification-root", has_text="Software WebGL")
-        if note.count():
-            note.locator("button").dispatch_event("click")  # a click would wait until the page draws quickly
-            note.wait_for(state="detached")
+        hide_notes(self.page)
 
     def until(self, happened: Callable[[], object]) -> None:
         """Waits until something has happened.

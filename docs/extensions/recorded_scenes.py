@@ -21,8 +21,8 @@ import beetle_ik as bik
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TICK = 0.02  # s
 READY = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
-FRONT, SIDE, WIDE = (1.5, -1.2, 1.1), (-0.5, -1.6, 1.3), (2.2, -1.9, 1.7)  # m, where the camera is
-CENTER = (0.25, 0.0, 0.4)  # m, what it looks at
+FRONT, SIDE, WIDE = (1.15, -0.95, 0.9), (-0.35, -1.3, 1.2), (1.5, -1.25, 1.2)  # m, where the camera is
+CENTER = (0.2, 0.0, 0.38)  # m, what it looks at
 
 
 class Recorded(NamedTuple):
@@ -44,23 +44,22 @@ class Example(NamedTuple):
 
 OF_EXAMPLES = {
     "01_pose_ik": Example(result="solution"),
-    "02_your_urdf": Example(result="solution"),
+    "02_your_urdf": Example(result="solution", camera=WIDE, at=(0.2, 0.0, 0.5)),
     "03_pointing": Example(result="pointing"),
     "05_all_solutions": Example(result="solutions"),
     "06_self_motion": Example(result="longest"),
     "07_waypoints_in_minimum_time": Example(result="trajectory"),
     "08_retime_a_recording": Example(result="motion"),
     "09_change_of_target": Example(result="to_first"),
-    "10_around_an_obstacle": Example(result="plan", camera=WIDE),
+    "10_around_an_obstacle": Example(result="plan", camera=(1.5, -0.9, 1.0)),
     "12_among_obstacles": Example(result="around", obstacles=("scene",)),
     "13_path_among_obstacles": Example(result="around", obstacles=("scene",)),
     "15_drawing_at_constant_speed": Example(),
-    "17_joint_at_its_limit": Example(),
+    "17_joint_at_its_limit": Example(camera=WIDE, at=(0.2, 0.0, 0.65)),
     "20_motion_for_ros": Example(result="plan"),
-    "22_mobile_base": Example(result="plan", camera=(1.0, -2.6, 2.6), at=(0.9, 0.7, 0.5)),
-    "23_reachability_map": Example(result="found", camera=WIDE),
-    "26_circle_by_bas": Example(camera=WIDE),
-    "28_without_a_model": Example(robot="drawn", result="without", camera=WIDE),
+    "22_mobile_base": Example(result="plan", camera=(1.0, -1.9, 2.2), at=(0.8, 0.7, 0.6)),
+    "26_circle_by_bas": Example(camera=WIDE, at=(0.2, 0.1, 0.6)),
+    "28_without_a_model": Example(robot="drawn", result="without", camera=WIDE, at=(0.2, 0.1, 0.6)),
 }
 
 
@@ -84,7 +83,6 @@ def viewed(robot: bik.Robot, q: Any = None, *, camera: Any = FRONT, at: Any = CE
     with contextlib.redirect_stdout(io.StringIO()), bik.view(robot, q, port=0, **options) as viewer:
         viewer.server.initial_camera.position = camera
         viewer.server.initial_camera.look_at = at
-        viewer.server.scene.configure_default_lights(cast_shadow=False)  # pages have several, phones show them
         yield viewer
 
 
@@ -105,7 +103,7 @@ def pick_and_place() -> Iterator[Recorded]:
     gripper, motion, part = left["gripper"], left["whole"], left["part"]
     grasped = left["pick"].trajectory.duration
     inverse = np.linalg.inv(gripper.fk(motion.at(grasped)[0]))
-    with viewed(gripper, motion.q[0], camera=(1.5, 0.9, 0.9), at=(0.3, -0.05, 0.2)) as viewer:
+    with viewed(gripper, motion.q[0], camera=(1.25, 0.75, 0.8), at=(0.3, -0.05, 0.22)) as viewer:
         viewer.follow = "off"
 
         def frames() -> Iterator[float]:
@@ -124,7 +122,7 @@ def tray() -> Iterator[Recorded]:
     """Yields two arms that carry a tray along a circle."""
     left = variables("21_tray_in_two_hands")
     robot, run = left["robot"], left["together"]
-    with viewed(robot, run.q[0], camera=(2.6, -1.6, 2.0), at=(0.2, 0.0, 0.9)) as viewer:
+    with viewed(robot, run.q[0], camera=(1.9, -1.2, 1.7), at=(0.3, 0.0, 0.85)) as viewer:
         viewer.follow = "off"
         board = viewer.server.scene.add_box("/tray", color=(242, 177, 52), dimensions=(0.03, 0.5, 0.3))
 
@@ -160,7 +158,7 @@ def dodge() -> Iterator[Recorded]:
     hand, speed = robot.fk(READY), np.array([0.0, -0.3, 0.0])
     limits = bik.Limits(acceleration=8.0)
     tracker = bik.Tracker(robot, READY, dt=TICK, limits=limits, obstacles=[], margin=0.02)
-    with viewed(robot, READY, camera=(1.5, 0.9, 1.0), at=CENTER) as viewer:
+    with viewed(robot, READY, camera=(1.3, 0.8, 0.9), at=CENTER) as viewer:
         viewer.follow = "off"
 
         def frames() -> Iterator[float]:
@@ -179,9 +177,26 @@ def circle() -> Iterator[Recorded]:
     """Yields a tracked circle."""
     robot = bik.Robot.named("iiwa14")
     path = bik.paths.circle((0.45, 0.0, 0.75), diameter=0.5, duration=6.0, a=(0, 1, 0), b=(0, 0, 1))
-    with viewed(robot, camera=(1.5, -1.1, 1.2), at=(0.2, 0.0, 0.6)) as viewer:
+    with viewed(robot, camera=(1.3, -0.95, 1.1), at=(0.2, 0.0, 0.6)) as viewer:
         viewer.show(bik.track(robot, path, dt=TICK))
         yield Recorded(viewer)
+
+
+@contextmanager
+def reach() -> Iterator[Recorded]:
+    """Yields a map of what an arm reaches, in which it moves."""
+    left = variables("23_reachability_map")
+    robot, q = left["robot"], np.array(READY)
+    with viewed(robot, q, camera=(2.0, -1.7, 1.5)) as viewer:
+        viewer.show(left["found"])
+        viewer.follow = "off"
+
+        def frames() -> Iterator[float]:
+            for turn in np.linspace(0.0, 2 * np.pi, 120):
+                viewer.q = q + np.sin(turn) * np.array([0.0, 0.4, 0.0, 0.5, 0.0, 0.0, 0.0])
+                yield 2 * TICK
+
+        yield Recorded(viewer, frames())
 
 
 SCENES: dict[str, Callable[[], AbstractContextManager[Recorded]]] = {
@@ -190,6 +205,7 @@ SCENES: dict[str, Callable[[], AbstractContextManager[Recorded]]] = {
     "dodge": dodge,
     "11_pick_and_place": pick_and_place,
     "21_tray_in_two_hands": tray,
+    "23_reachability_map": reach,
 }
 NAMES = (*SCENES, *OF_EXAMPLES)
 

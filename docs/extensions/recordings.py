@@ -63,7 +63,7 @@ def write_all(_app: Sphinx) -> None:
 def use_pictures(app: Sphinx) -> None:
     """Puts pictures of recordings into the gallery, which has drawn its figures by now."""
     thumbnails = DOCS / "gallery" / "images" / "thumb"
-    names = [name for name in recorded_scenes.NAMES if (DOCS / "gallery" / f"{name}.rst").is_file()]
+    names = [file.stem for file in sorted(PICTURES.glob("*.webp")) if (DOCS / "gallery" / f"{file.stem}.rst").is_file()]
     for name in names:
         Image.open(PICTURES / f"{name}.webp").save(thumbnails / f"sphx_glr_{name}_thumb.png")
     shown = ",\n".join(f'.sphx-glr-thumbcontainer img[src*="sphx_glr_{name}_thumb"]' for name in names)

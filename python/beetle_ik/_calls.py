@@ -11,8 +11,6 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-import numpy as np
-
 from ._core import CallError
 from ._names import meant
 
@@ -47,7 +45,7 @@ def worded(error: Exception, call: Any, arguments: tuple[Any, ...], keywords: Ma
     signature = _signature(call)
     if signature is None:
         return error
-    name = call.__name__
+    name = _name(call)
     for note in getattr(error, "__notes__", ()):
         if of_type := _MISFIT.search(note):
             return CallError(_misfit_of(call, signature, of_type[1], error, _given(signature, arguments, keywords)))
@@ -73,6 +71,11 @@ def worded_call(function: Callable[_Arguments, _Made]) -> Callable[_Arguments, _
             raise worded(error, function, arguments, keywords) from None
 
     return call
+
+
+def _name(call: Any) -> str:
+    """Returns the name of a function, or of the class that a constructor makes."""
+    return str(call.__name__ if call.__name__ != "__init__" else call.__qualname__.split(".")[-2])
 
 
 def _signature(call: Any) -> inspect.Signature | None:
@@ -115,7 +118,7 @@ def _misfit_of(
     message, kind = misfit(argument, given.get(argument), error), _kind(str(error))
     swapped = any(type(value).__name__ == kind for name, value in given.items() if name != argument)
     if swapped and argument in _positional(signature):
-        return f"{message}; the order is {call.__name__}{_shape(signature)}"
+        return f"{message}; the order is {_name(call)}{_shape(signature)}"
     default = signature.parameters[argument].default
     return f"{message} (default: {default!r})" if kind == "str" and isinstance(default, str) else message
 
@@ -139,8 +142,9 @@ def _robot_from(text: str) -> str:
 
 def shown(value: object) -> str:
     """Returns the repr of a value on one line, cut where it is long; of an array its shape."""
-    if isinstance(value, np.ndarray) and value.ndim > 0:
-        return f"an array of shape {value.shape}"
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple) and shape:
+        return f"an array of shape {shape}"
     try:
         text = " ".join(repr(value).split())
     except Exception:  # of a class of the caller

@@ -10,6 +10,7 @@ from datetime import timedelta
 from ._core import InvalidInputError
 
 _WIDTH = 40  # letters
+_COLUMNS = 80  # of a terminal that does not tell
 _INTERVAL = 0.1  # s between two drawings
 
 
@@ -35,8 +36,8 @@ class Bar:
         share = done / total if total else 0.0
         bar = "#" * round(_WIDTH * share)
         line = f"{bar:.<{_WIDTH}} {share:4.0%} {done}/{total} {timedelta(seconds=int(now - self._begun))} {what}"
-        columns = max(os.get_terminal_size(sys.stderr.fileno()).columns - 1, 1)  # a broken line could not be drawn over
-        print(f"\r{line[:columns]:<{columns}}", end="", file=sys.stderr, flush=True)
+        room = (os.get_terminal_size(sys.stderr.fileno()).columns or _COLUMNS) - 1  # a broken line cannot be drawn over
+        print(f"\r{line[:room]:<{room}}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
         """Ends the line of the bar."""

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
+from ._calls import worded_call
 from ._core import InvalidInputError, Obstacle, PreparedObstacles
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class Scene(Sequence[Obstacle]):
         InvalidInputError: something else is among them. Names its place.
     """
 
+    @worded_call
     def __init__(self, obstacles: Iterable[Obstacle] = ()) -> None:
         if isinstance(obstacles, Obstacle):
             raise InvalidInputError(f"obstacles must be a list, got a single one: [{obstacles!r:.60}]")

@@ -39,8 +39,8 @@ _MAKERS = {
     "fr3": Look("#F4F4F2", "#E9EAEA", _DARK, 1.15),
     "iiwa": Look("#D9DCDF", "#D9DCDF", "#F08A24", 1.35),
     "kr210": Look("#F2691B", "#F2691B", _DARK, 1.35),
-    "ur": Look("#D5DADF", "#C3C9CF", "#4F9BD9", 1.0),
-    "gen3": Look("#F2F2F2", _DARK, _DARK, 1.0),
+    **dict.fromkeys(("ur3", "ur5", "ur10"), Look("#D5DADF", "#C3C9CF", "#4F9BD9")),
+    "gen3": Look("#F2F2F2", _DARK, _DARK),
 }
 
 
@@ -60,7 +60,7 @@ class Solid(NamedTuple):
 
 
 def solids(robot: Robot, q: Array) -> list[Solid]:
-    """Returns what is seen of the links of a robot that has no meshes. `q` (n,) is any configuration.
+    """Returns solids for the links of a robot that has no meshes. `q` (n,) is any configuration.
 
     One with bodies of other shapes than capsules and balls, which usually stand for an arm, looks like these: nothing
     is returned.
@@ -108,7 +108,7 @@ class _Drawing:
             self._arrival(part, each)
 
     def part(self, part: Part) -> None:
-        """Draws a part that moves: what is about its own axis, and the way to the next ones and to the tips."""
+        """Draws a part that moves: the housing of its joint, the links to the next joints and to the tips."""
         axis, r = part.about, self._radius(part)
         if axis.travel is not None:
             self._rod(

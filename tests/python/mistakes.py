@@ -8,6 +8,7 @@ import beetle_ik as bik
 
 Invalid, Limit, Urdf, Unknown = bik.InvalidInputError, bik.LimitError, bik.UrdfError, bik.UnknownNameError
 # What can be done about a position outside its limits.
+RADIANS = ": angles are in radians; np.radians converts degrees"
 INSIDE = ": move it inside, such as by np.clip"
 Case = tuple[Callable[[], object], type[Exception], str]
 

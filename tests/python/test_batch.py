@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mistakes import INSIDE, Case, Invalid, Limit, assert_told, told
+from mistakes import RADIANS, Case, Invalid, Limit, assert_told, told
 
 import beetle_ik as bik
 
@@ -189,12 +189,12 @@ MISTAKES: list[Case] = [
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH),
         Limit,
-        f"row 3: start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]{INSIDE}",
+        f"row 3: start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]{RADIANS}",
     ),
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[3], on_invalid="skip"),
         Limit,
-        f"start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]{INSIDE}",
+        f"start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]{RADIANS}",
     ),
     (
         lambda: bik.solve_batch(PANDA, [[0, 0, 0], [0, np.inf, 0]]),

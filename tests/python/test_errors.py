@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from iiwa_circle import IIWA, START
-from mistakes import INSIDE, Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
+from mistakes import INSIDE, RADIANS, Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
 
 import beetle_ik as bik
 
@@ -171,8 +171,7 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]: angles are in radians; "
-            "np.radians converts degrees",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]{RADIANS}",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),

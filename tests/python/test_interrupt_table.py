@@ -215,8 +215,9 @@ SHORT: dict[str, str] = {
     **dict.fromkeys(MADE_BY_THE_LIBRARY, "made by other calls"),
     **dict.fromkeys(
         [
-            "APPS", "APPS.paper", "BAS", "PSO", "QPSO", "TPBSO", "ZNNBAS", "ZNNBAS.session", "BeeColony", "BeetleSwarm",
-            "BroydenBAS", "BroydenBAS.session", "CircleSwarm", "DifferentialEvolution", "Firefly", "Genetic",
+            "papers.APPS", "papers.APPS.paper", "papers.BAS", "papers.PSO", "papers.QPSO", "papers.TPBSO",
+            "papers.ZNNBAS", "papers.ZNNBAS.session", "papers.BeeColony", "papers.BeetleSwarm", "BroydenBAS",
+            "BroydenBAS.session", "papers.CircleSwarm", "DifferentialEvolution", "papers.Firefly", "papers.Genetic",
             "JacobianTranspose", "KinematicPlant", "LevenbergMarquardt", "MultiStart", "NewtonRaphson",
             "Path.with_orientation", "Sinusoid", "Stop", "WeightedPseudoInverse", "show_versions", "tasks.Orientation",
             "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.Clearance",

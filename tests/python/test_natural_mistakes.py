@@ -4,10 +4,11 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
-from mistakes import INSIDE, Invalid, Limit, Unknown, assert_told, told
+from mistakes import INSIDE, RADIANS, Invalid, Limit, Unknown, assert_told, told
 from typer.testing import CliRunner
 
 import beetle_ik as bik
@@ -149,8 +150,7 @@ SOLVERS = (
         (
             lambda: bik.solve(PANDA, TARGET, start=[0, -45, 0, -135, 0, 90, 45]),
             Limit,
-            "start: joint 'panda_joint2' at -45 is outside its limits [-1.7628, 1.7628]: angles are in radians; "
-            "np.radians converts degrees",
+            f"start: joint 'panda_joint2' at -45 is outside its limits [-1.7628, 1.7628]{RADIANS}",
         ),
         (
             lambda: bik.reachability(PANDA, voxel_size=0.1),  # type: ignore[call-arg]
@@ -158,6 +158,12 @@ SOLVERS = (
             "reachability() got an unexpected keyword argument 'voxel_size' (did you mean 'voxel'?); its arguments: "
             "robot, voxel, directions, rolls, region, task, obstacles, margin, self_collision, evaluations, "
             "quality, threads, progress, store",
+        ),
+        (
+            lambda: bik.Scene(obstacle=[]),  # type: ignore[call-arg]
+            bik.CallError,
+            "Scene() got an unexpected keyword argument 'obstacle' (did you mean 'obstacles'?); its arguments: "
+            "obstacles",
         ),
         (
             lambda: bik.view("panda"),  # type: ignore[arg-type]
@@ -319,3 +325,37 @@ def test_the_command_line_says_which_extra_it_needs() -> None:
         2,
         "Error: the command line needs typer: pip install 'beetle-ik[cli]'\n",
     )
+
+
+@pytest.mark.parametrize(
+    ("call", "wrong", "meant"),
+    [
+        (bik.solve, "q0", "start"),
+        (bik.solve, "initial_guess", "start"),
+        (bik.solve, "Start", "start"),
+        (bik.solve, "pose", "target"),
+        (bik.solve, "tol", "position_tolerance"),
+        (bik.solve, "rot_tolerance", "rotation_tolerance"),
+        (bik.solve, "max_iter", "stop"),
+        (bik.solve, "world", "obstacles"),
+        (bik.plan_point_to_point, "goal", "end"),
+        (bik.plan_point_to_point, "q_start", "start_q"),
+        (bik.plan_point_to_point, "velocity_limits", None),
+        (bik.obstacles.Box, "extents", "size"),
+        (bik.obstacles.Sphere, "centre", "center"),
+        (bik.Limits, "vel", "velocity"),
+        (bik.Limits, "acc", "acceleration"),
+        (bik.Limits, "max_velocity", "velocity"),
+        (bik.Limits, "x", None),
+        (bik.Robot.from_urdf, "end_effector", "tip"),
+        (bik.Robot.from_urdf, "base_link", "base"),
+        (bik.track, "timestep", "dt"),
+        (bik.reachability, "resolution", "voxel"),
+        (PANDA.fk, "frame", "link"),
+    ],
+)
+def test_the_argument_that_is_meant_is_suggested(call: Any, wrong: str, meant: str | None) -> None:
+    with pytest.raises(bik.CallError) as caught:
+        call(**{wrong: 1})
+    hint = f"(did you mean '{meant}'?)" if meant else "did you mean"
+    assert (hint in str(caught.value)) == (meant is not None), str(caught.value)

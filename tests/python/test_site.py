@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_viewer_record import plays, served
+from test_viewer_record import plays
 
 import beetle_ik as bik
 from beetle_ik.viewing import write_player
@@ -20,6 +20,7 @@ DOCS = ROOT / "docs"
 sys.path += [str(ROOT / "tools"), str(DOCS / "extensions")]
 
 import recorded_scenes  # noqa: E402
+from check_site import served  # noqa: E402
 from viewer_pictures import chromium, visits  # noqa: E402
 
 PAGES = {page: page.read_text(encoding="utf-8") for page in sorted(DOCS.rglob("*.md"))}
@@ -31,7 +32,7 @@ PANDA = bik.Robot.named("panda")
 BALL = bik.obstacles.Sphere((0.5, 0.1, 0.5), 0.05)
 # Messages that are put together from parts.
 PRODUCED: dict[str, Callable[[], Any]] = {
-    "expected 7 joints, got 9": lambda: PANDA.fk(np.zeros(9)),
+    "expected 7 joints (panda_joint1 to panda_joint7), got 9": lambda: PANDA.fk(np.zeros(9)),
     "inside obstacle": lambda: bik.solve(PANDA.with_capsules(radius=0.06), BALL.center, obstacles=[BALL]),
     "waypoint 1 is the same as waypoint 0": lambda: bik.time_optimal([[0], [0], [1]], bik.Limits(acceleration=1)),
 }

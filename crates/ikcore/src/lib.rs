@@ -54,8 +54,11 @@
 //! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
-//! | 8 | [`tracking`], [`planning`], [`posture`], [`map`] |
-//! | 9 | [`batch`] |
+//! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
+//! | 9 | `free_path`, `along_path` |
+//! | 10 | `approach_retreat`, `tpbso` |
+//! | 11 | [`planning`] |
+//! | 12 | [`batch`] |
 
 #[cfg(not(target_pointer_width = "64"))]
 compile_error!("ikcore needs a 64-bit processor: seeds, hashes and stored bytes are defined for 64-bit sizes");
@@ -63,9 +66,12 @@ compile_error!("ikcore needs a 64-bit processor: seeds, hashes and stored bytes 
 #[cfg(not(target_endian = "little"))]
 compile_error!("ikcore needs a little-endian processor: stored bytes and the lanes of its kernels assume that order");
 
+mod along_path;
+mod approach_retreat;
 pub mod batch;
 mod closed_form;
 pub mod error;
+mod free_path;
 pub mod ik;
 pub mod interrupt;
 pub mod kinematics;
@@ -79,6 +85,7 @@ pub mod motion;
 pub mod objective;
 pub mod obstacle;
 pub mod path;
+mod plan;
 pub mod planning;
 pub mod posture;
 pub mod problem;
@@ -89,6 +96,8 @@ pub mod solver;
 pub mod starts;
 pub mod stored;
 pub mod task;
+mod timing;
+mod tpbso;
 pub mod tracking;
 pub mod trajectory;
 mod wording;

@@ -47,7 +47,7 @@ class Handles:
         set_value(self._follow, self._arm.follow)
 
     def show_handles(self, shown: bool) -> None:
-        """Shows or hides what is dragged."""
+        """Shows or hides the handles."""
         for handle in self._handles:
             handle.gizmo.visible = shown
 
@@ -56,7 +56,7 @@ class _Handle:
     """The handle of one tip, which is dragged, turned or typed.
 
     Attributes:
-        gizmo: what is dragged and turned.
+        gizmo: the arrows, squares and arcs.
     """
 
     def __init__(self, page: Page, tip: str) -> None:

@@ -95,7 +95,7 @@ class Parts:
 
     @contextmanager
     def posed(self) -> Iterator[None]:
-        """Hides what is there to be dragged, and looks at arm, motion and map from near, for a recording."""
+        """Hides the handles, and looks at arm, motion and map from near, for a recording."""
         passed = self.playback.passed(self._page.arm.q)
         boxes = [*(self._links.bounds(q) for q in passed), *self._reach.bounds, *self._obstacles_nearby()]
         try:

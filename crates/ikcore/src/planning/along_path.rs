@@ -2,17 +2,14 @@
 
 use std::borrow::Cow;
 
-use super::cost::Cost;
-use super::missed_points::missed_points;
-use super::motion_limits::MotionLimits;
-use super::plan::Plan;
-use super::planner_options::{AlongPathMethod, AlongPathOptions};
-use super::timed::PathProblem;
-use super::tip_path::TipPath;
-use super::{clear_path, timed, tpbso};
+use crate::along_path::timed::PathProblem;
+use crate::along_path::{TipPath, clear_path, missed_points, timed};
 use crate::error::{Error, Result};
+use crate::plan::{AlongPathMethod, AlongPathOptions, Cost, Plan};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
+use crate::timing::MotionLimits;
+use crate::tpbso;
 
 /// Plans a motion of `robot` whose tip follows `tip_path`.
 ///

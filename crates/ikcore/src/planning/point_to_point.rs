@@ -1,18 +1,15 @@
 //! Planning from point to point.
 
-use super::cost::Cost;
-use super::end_pieces::composed;
-use super::endpoint::{EndName, Endpoint};
-use super::motion_limits::MotionLimits;
-use super::plan::Plan;
-use super::planner_options::{PointToPointMethod, PointToPointOptions};
 use super::several_tips::tip_ends;
-use super::{minmax, tpbso};
+use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
 use crate::obstacle::kept_margin;
+use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
+use crate::timing::MotionLimits;
+use crate::{free_path, tpbso};
 
 /// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
 /// rest, or with the velocity of the options.
@@ -54,7 +51,7 @@ fn plan_joined(
 ) -> Result<Plan> {
     let mut plan = match &options.method {
         PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, options, monitor),
-        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, ends, options, monitor),
+        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
             let end = only_end(ends, options)?;
             tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)

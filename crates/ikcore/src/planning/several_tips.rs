@@ -1,15 +1,13 @@
 //! Point to point for robots with several tips: targets of the tips become configurations, between which the planner joins.
 
-use super::collision_checks::{RESERVE, can_collide};
-use super::endpoint::{EndName, Endpoint, no_usable_end};
-use super::motion_limits::MotionLimits;
-use super::planner_options::PointToPointOptions;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
+use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, can_collide, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
+use crate::timing::MotionLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;

@@ -1,0 +1,308 @@
+//! The planner: layers of postures, the cheapest clear sequence, its timing, and the certificate.
+
+use super::dead_end::Layers;
+use super::passage::Passage;
+use super::postures::{LayerSampling, postures};
+use super::price::Price;
+use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
+use super::smoothing::Smoothing;
+use crate::along_path::missed_points::{missed_at, missed_points};
+use crate::along_path::timed::{
+    Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search,
+};
+use crate::along_path::tip_path::TipPath;
+use crate::error::{Error, Result};
+use crate::interrupt::checkpoint;
+use crate::math::vector::squared_distance;
+use crate::objective::Point;
+use crate::obstacle::{ClearSpace, Sweep, TooNear};
+use crate::plan::{Plan, SearchResult, TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
+use crate::solver::{Monitor, Status, Stop};
+
+/// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
+const SPACING: f64 = 0.03;
+const INTERVALS: [f64; 2] = [50.0, 400.0];
+
+/// A path with at least this many segments gets layers at its points alone: between them it is straight, and the curve that
+/// the points sample is not.
+const SEGMENTS: usize = 25;
+
+/// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
+const DENSITIES: [usize; 2] = [32, 128];
+
+/// Motions that are tried at the most, each with more clearance where the one before came too near.
+const ROUNDS: usize = 10;
+
+/// Rounds in which a motion that leaves the path is made to follow it more closely.
+const CLOSER_ROUNDS: usize = 2;
+
+/// Evaluations of the search for a better motion around a clear one.
+const EVALUATIONS: usize = 600;
+
+/// The first extra clearance (m) where a motion came too near.
+const FIRST_EXTRA: f64 = 2.5e-4;
+
+/// How far around such a place it is kept, in intervals between layers.
+const AROUND: f64 = 1.5;
+
+/// A motion is certified to keep this much more than the margin (m), so that the margin remains where it is timed anew.
+const SPARE: f64 = 2e-5;
+
+/// What to try where no motion is found.
+const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by task=";
+
+/// The penalty of a posture in collision, for each metre that is missing of the margin.
+const DEEP: f64 = 1e6;
+
+/// Plans along a path in `space`, or without regard to obstacles.
+///
+/// # Errors
+/// As [`plan_along_path`](crate::planning::plan_along_path).
+pub(crate) fn along_path(
+    problem: &PathProblem<'_>,
+    space: Option<&ClearSpace<'_>>,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    if let (Some(q), Some(space)) = (&problem.options.start, space) {
+        refuse_collision("start", space.scene(), q, space.margin())?;
+    }
+    let mut planner = ClearPlanner {
+        problem,
+        space,
+        price: Price::new(problem),
+        passage: Passage::new(problem, space),
+        shares: problem.tip_path.knots(intervals(problem.tip_path)),
+        postures: vec![],
+        accuracy: problem.accuracy,
+    };
+    match (planner.first_sequence()?, space) {
+        (Ok(sequence), _) => planner.certified(sequence, monitor),
+        (Err(dead_end), Some(space)) => planner.least_deep(space, dead_end),
+        (Err(dead_end), None) => Err(planner.not_found(dead_end)?),
+    }
+}
+
+/// The number of intervals between layers.
+fn intervals(tip_path: &TipPath) -> usize {
+    let wanted = (tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize;
+    let segments = tip_path.positions().len() - 1;
+    if segments < SEGMENTS { wanted } else { wanted.min(segments) }
+}
+
+struct ClearPlanner<'p> {
+    problem: &'p PathProblem<'p>,
+    /// What the motion keeps clear of, if anything.
+    space: Option<&'p ClearSpace<'p>>,
+    price: Price,
+    passage: Passage<'p>,
+    /// Path parameters of the layers, and the postures there, clear or not.
+    shares: Vec<f64>,
+    postures: Vec<Vec<Point>>,
+    /// Allowed deviation of the tip from the path (m, rad); smaller where that keeps it clear.
+    accuracy: f64,
+}
+
+/// Why a motion is not taken.
+enum Fault {
+    TooNear(Box<TooNear>),
+    OutsideLimits,
+    OffPath,
+}
+
+impl ClearPlanner<'_> {
+    /// The cheapest clear sequence of as few postures as suffice.
+    fn first_sequence(&mut self) -> Result<FoundSequence> {
+        let mut dead_end = Unreached(0);
+        for density in DENSITIES {
+            let sampling = LayerSampling { shares: &self.shares, density };
+            self.postures = postures(&mut self.passage, &self.price, &sampling)?;
+            match self.clear_sequence()? {
+                Ok(sequence) => return Ok(Ok(sequence)),
+                Err(end) => dead_end = end,
+            }
+        }
+        Ok(Err(dead_end))
+    }
+
+    fn clear_sequence(&mut self) -> Result<FoundSequence> {
+        let clear = |(share, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
+            checkpoint()?;
+            let clear = postures.iter().filter(|q| self.passage.is_clear(*share, q));
+            Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
+        };
+        let layers = self.shares.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
+        cheapest(&layers, &self.shares, &self.price, &mut self.passage)
+    }
+
+    /// The plan of the first motion without a fault; of the last one tried, where none is.
+    fn certified(mut self, mut sequence: Vec<Point>, monitor: &mut dyn Monitor) -> Result<Plan> {
+        let starts_as_given = self.problem.options.start.is_some();
+        let mut found = None;
+        let mut round = 0;
+        loop {
+            let Self { shares, price, passage, .. } = &mut self;
+            Smoothing { shares, price, passage, starts_as_given }.smooth(&mut sequence)?;
+            let nominal = JointWaypoints { knots: self.shares.clone(), rows: sequence.concat() };
+            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
+            let smooth = self.problem.motion(&interpolation, waypoints.clone(), self.accuracy)?;
+            let fault = self.fault(&smooth);
+            if round == 0 {
+                let improved;
+                (improved, found) = self.improved(interpolation, waypoints, monitor)?;
+                let is_better = fault.is_some() || self.cost(&improved) < self.cost(&smooth);
+                if is_better && self.fault(&improved).is_none() {
+                    return self.finished(improved, found, None);
+                }
+            }
+            let blocked = match fault {
+                None => return self.finished(smooth, found, None),
+                Some(Fault::TooNear(near)) => {
+                    self.keep_away(&smooth, &near)?;
+                    Some(Status::Stalled)
+                }
+                Some(Fault::OutsideLimits) => {
+                    self.passage.stay_inside();
+                    None
+                }
+                Some(Fault::OffPath) if round == CLOSER_ROUNDS => return self.finished(smooth, found, None),
+                Some(Fault::OffPath) => {
+                    self.accuracy *= 0.5;
+                    None
+                }
+            };
+            round += 1;
+            let next = if round < ROUNDS { self.clear_sequence()?.ok() } else { None };
+            let Some(next) = next else { return self.finished(smooth, found, blocked) };
+            sequence = next;
+        }
+    }
+
+    fn cost(&self, motion: &PathMotion) -> f64 {
+        self.problem.options.objective.of(&self.problem.robot, &motion.trajectory)
+    }
+
+    /// The best motion that a search finds around `waypoints`.
+    fn improved(
+        &self,
+        interpolation: Interpolation<'_>,
+        waypoints: JointWaypoints,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(PathMotion, Option<SearchResult>)> {
+        let Self { problem, space, accuracy, .. } = self;
+        let starts_as_given = problem.options.start.is_some();
+        let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
+        let mut cost = TimedCost::new(problem, motion, interpolation);
+        cost.space = *space;
+        let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
+        let found = search(&mut cost, problem.options, problem.options.stop.unwrap_or(budget), monitor)?;
+        let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
+        let (waypoints, _) = cost.waypoints(z);
+        Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
+    }
+
+    fn fault(&self, motion: &PathMotion) -> Option<Fault> {
+        let trajectory = &motion.trajectory;
+        let too_near = self.space.and_then(|space| {
+            let (whole, kept) = ([0.0, trajectory.duration()], space.margin() + SPARE);
+            Sweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
+        });
+        if let Some(near) = too_near {
+            return Some(Fault::TooNear(near));
+        }
+        if !self.problem.limits.violations(trajectory).is_empty() {
+            return Some(Fault::OutsideLimits);
+        }
+        self.problem.leaves_path(motion).then_some(Fault::OffPath)
+    }
+
+    /// Keeps more clearance, and the path more closely, where a motion comes too near.
+    fn keep_away(&mut self, motion: &PathMotion, near: &TooNear) -> Result<()> {
+        let Some(space) = self.space else { return Ok(()) };
+        let q = configuration_at(&motion.trajectory, near.at)?;
+        let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(q.len()).collect();
+        let nearest = (0..rows.len())
+            .min_by(|i, k| squared_distance(rows[*i], &q).total_cmp(&squared_distance(rows[*k], &q)))
+            .unwrap_or(0);
+        let share = motion.waypoints.knots[nearest];
+        let kept = self.passage.kept_beyond_margin(share);
+        let missing = (space.margin() - near.contact.distance).max(0.0);
+        let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
+        let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| space.keeps(q, extra));
+        let reach = AROUND / self.shares.len() as f64;
+        let around: Vec<usize> = (0..self.shares.len()).filter(|i| (self.shares[*i] - share).abs() <= reach).collect();
+        if around.iter().all(leaves_some) {
+            self.passage.keep_more(share, reach, extra);
+        }
+        self.accuracy *= 0.5;
+        Ok(())
+    }
+
+    /// The plan that comes least deep into collision, where there is no clear one.
+    fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
+        let layers = Layers { shares: &self.shares, postures: &self.postures };
+        let obstruction = layers.obstruction(&self.passage, space, dead_end);
+        let missing = |q: &Point| {
+            let distance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+            (space.margin() - distance).max(0.0)
+        };
+        let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
+            checkpoint()?;
+            Ok(postures.iter().map(|q| LayerPosture { q: q.clone(), penalty: DEEP * missing(q) }).collect())
+        };
+        let layers = self.postures.iter().map(candidates).collect::<Result<Vec<_>>>()?;
+        let mut anywhere = Passage::new(self.problem, None);
+        let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
+            Ok(sequence) => sequence,
+            Err(dead_end) => {
+                let PathProblem { robot, tip_path, options, .. } = self.problem;
+                let missed = missed_points(robot, tip_path, options.seed)?;
+                return Err(missed.map_or_else(|| self.not_found(dead_end), Ok)?);
+            }
+        };
+        let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
+        let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
+        let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
+        let plan = self.finished(motion, None, Some(Status::InCollision))?;
+        Ok(Plan { obstruction: Some(obstruction), ..plan })
+    }
+
+    /// The error where no sequence follows the path, clear or not.
+    fn not_found(&self, Unreached(layer): Unreached) -> Result<Error> {
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
+        if self.postures[layer].is_empty()
+            && let Some(error) = missed_at(robot, tip_path, self.shares[layer], options.seed)?
+        {
+            return Ok(error);
+        }
+        let place = tip_path.place(self.shares[layer]);
+        let problem = match self.postures[layer].len() {
+            0 => "none of the motions tried reached it".into(),
+            1 => "the one configuration tried there is on another branch than those before".into(),
+            count => format!("all {count} configurations tried there are on other branches than those before"),
+        };
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") })
+    }
+
+    /// The plan of a motion; `blocked` is the status of one that is not certified.
+    fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
+        let mut plan = self.problem.after(found, self.problem.plan(motion));
+        let Some(space) = self.space else { return Ok(plan) };
+        let (scene, margin) = (space.scene(), space.margin());
+        plan.surroundings = Some(self.problem.options.surroundings.clone());
+        let trajectory = &plan.trajectory;
+        let Some(near) = Sweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()]) else {
+            return Ok(plan);
+        };
+        let distance = near.contact.distance;
+        // What is certified may be more than the search for the smallest distance proves.
+        plan.clearance = Some(if blocked.is_none() { distance.max(margin) } else { distance });
+        plan.nearest = nearest_at(scene, trajectory, near.at)?;
+        if let Some(status) = blocked
+            && distance < margin
+        {
+            plan.violations.push(too_near(&near.contact, margin));
+            plan.status = status;
+        }
+        Ok(plan)
+    }
+}

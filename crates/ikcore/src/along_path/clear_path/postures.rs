@@ -1,0 +1,114 @@
+//! LayerPosture postures at the points of a path.
+
+use super::passage::Passage;
+use super::price::Price;
+use crate::along_path::timed::PathProblem;
+use crate::error::Result;
+use crate::ik::{AllOptions, SolveOptions, solve_all};
+use crate::interrupt::checkpoint;
+use crate::objective::Point;
+use crate::rng;
+use crate::solver::Unattended;
+use crate::task::Target;
+
+/// Starts tried for each motion along the path.
+const TRIES: usize = 4;
+
+/// Where the layers are, and how many postures they have.
+#[derive(Debug)]
+pub(super) struct LayerSampling<'a> {
+    /// Path parameters of the layers.
+    pub shares: &'a [f64],
+    /// Values of the parameter of a redundant arm with a closed form, or a quarter of the motions from random starts.
+    pub density: usize,
+}
+
+/// The postures at each of the layers, clear or not.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted).
+pub(super) fn postures(
+    passage: &mut Passage<'_>,
+    price: &Price,
+    sampling: &LayerSampling<'_>,
+) -> Result<Vec<Vec<Point>>> {
+    let mut layers = vec![vec![]; sampling.shares.len()];
+    if has_closed_form(passage) {
+        layers = by_branches(passage, sampling)?;
+    }
+    if !(has_closed_form(passage) && passage.problem.tip_path.fixes_pose()) {
+        by_following(passage, price, sampling, &mut layers)?;
+    }
+    if let Some(start) = &passage.problem.options.start {
+        layers[0] = vec![Point::from_slice(start)];
+    }
+    Ok(layers)
+}
+
+/// Whether the postures at this place are all that exist, whole turns aside.
+pub(super) fn are_all(passage: &Passage<'_>, share: f64) -> bool {
+    let PathProblem { robot, tip_path, .. } = passage.problem;
+    let found = || solve_all(robot, &tip_path.target(share), &AllOptions::default(), &mut Unattended);
+    tip_path.fixes_pose() && has_closed_form(passage) && found().is_ok_and(|found| found.complete)
+}
+
+fn has_closed_form(passage: &Passage<'_>) -> bool {
+    let PathProblem { robot, tip_path, .. } = passage.problem;
+    matches!(tip_path.target(0.0), Target::Pose(_)) && robot.solves_at_once() == Some(true)
+}
+
+/// All branches; of a redundant arm those at many values of its parameter.
+fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Vec<Vec<Point>>> {
+    let (robot, tip_path) = (&passage.problem.robot, passage.problem.tip_path);
+    let each = SolveOptions { seed: passage.problem.options.seed, ..SolveOptions::default() };
+    let options = AllOptions { each, redundancy: sampling.density, ..AllOptions::default() };
+    let at = |share: &f64| {
+        checkpoint()?;
+        let found = solve_all(robot, &tip_path.target(*share), &options, &mut Unattended)?;
+        Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect())
+    };
+    sampling.shares.iter().map(at).collect()
+}
+
+/// Motions along the path from random starts, to both sides of random places, as far as they lead.
+fn by_following(
+    passage: &mut Passage<'_>,
+    price: &Price,
+    sampling: &LayerSampling<'_>,
+    layers: &mut [Vec<Point>],
+) -> Result<()> {
+    let shares = sampling.shares;
+    let motions = 4 * sampling.density;
+    for motion in 0..motions {
+        checkpoint()?;
+        let mut rng = rng::stream(passage.problem.options.seed, motion as u64 + 1);
+        let begin = motion * shares.len() / motions;
+        let starts = passage.problem.robot.random_configurations(TRIES, &mut rng)?;
+        let starts = starts.chunks_exact(passage.problem.robot.dof());
+        let Some(first) = starts.into_iter().find_map(|start| passage.on_path(shares[begin], start)) else { continue };
+        layers[begin].push(first.clone());
+        follow(passage, price, shares, (begin + 1..shares.len()).zip(begin..), &first, layers);
+        follow(passage, price, shares, (0..begin).rev().zip((0..=begin).rev()), &first, layers);
+    }
+    Ok(())
+}
+
+/// Follows the path from the posture `q` through `steps`, pairs of a layer and the one before, until that takes a jump.
+fn follow(
+    passage: &mut Passage<'_>,
+    price: &Price,
+    shares: &[f64],
+    steps: impl Iterator<Item = (usize, usize)>,
+    q: &Point,
+    layers: &mut [Vec<Point>],
+) {
+    let mut here = q.clone();
+    for (layer, before) in steps {
+        let Some(next) = passage.on_path(shares[layer], &here) else { return };
+        if price.of_step(&here, &next, (shares[layer] - shares[before]).abs()).is_infinite() {
+            return;
+        }
+        layers[layer].push(next.clone());
+        here = next;
+    }
+}

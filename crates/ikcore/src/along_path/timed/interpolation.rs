@@ -1,0 +1,224 @@
+//! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
+
+use super::projection::{NEAR_ENOUGH, approach, project, strays};
+use crate::along_path::deviation::TipDeviation;
+use crate::along_path::tip_path::TipPath;
+use crate::error::{Error, Result};
+use crate::interrupt::checkpoint_at;
+use crate::math::MAX_DOF;
+use crate::math::cubic_spline::SplineEnds;
+use crate::math::vector::largest_difference;
+use crate::objective::{Bounds, Linearization};
+use crate::robot::{Joint, Robot};
+use crate::timing::JointPath;
+
+/// Joint positions along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct JointWaypoints {
+    /// Path parameters, from 0 to 1.
+    pub knots: Vec<f64>,
+    /// Joint positions at each knot, in row-major order.
+    pub rows: Vec<f64>,
+}
+
+/// Behaviour of the joints at the corners of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Corners {
+    /// One spline passes through them: it rounds each corner, less with denser knots.
+    Passed,
+    /// A spline ends at each corner and the next one begins: the arm stops there, and follows the path as closely as
+    /// elsewhere.
+    Stopped,
+}
+
+impl Corners {
+    /// The alternatives for this path.
+    pub(super) fn on(tip_path: &TipPath) -> &'static [Self] {
+        match tip_path.corners().next() {
+            None => &[Self::Passed],
+            Some(_) => &[Self::Passed, Self::Stopped],
+        }
+    }
+}
+
+/// Splines of a robot's joints along a path.
+#[derive(Debug)]
+pub(crate) struct Interpolation<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The path.
+    pub tip_path: &'a TipPath,
+    /// Behaviour at corners.
+    pub corners: Corners,
+}
+
+/// An interval is halved if the tip deviates by more than this fraction of the accuracy.
+const ENOUGH: f64 = 0.8;
+
+/// Samples inside each interval.
+const SAMPLES: usize = 7;
+
+/// An interval is halved too if a joint swings out of its limits by more than this fraction of the accuracy (rad, m).
+const SWING: f64 = 0.05;
+
+/// Maximum number of halvings of an interval: to 1/4096 of its length.
+const HALVINGS: usize = 12;
+
+/// Maximum number of knots added.
+const MOST_KNOTS: usize = 2000;
+
+impl Interpolation<'_> {
+    /// Returns the joint path through these waypoints, over the path parameter.
+    ///
+    /// # Errors
+    /// None in practice: waypoints that differ define a spline.
+    pub(super) fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
+        let joined = JointPath::joined(self.stretches(waypoints)?);
+        joined.ok_or_else(|| Error::InvalidPath { problem: "it has no points".into() })
+    }
+
+    /// Returns the parts of that path between stops.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub(super) fn stretches(&self, waypoints: &JointWaypoints) -> Result<Vec<JointPath>> {
+        let n = self.robot.dof();
+        self.refuse_rest(waypoints)?;
+        let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
+        // Natural ends, i.e. zero curvature, would be less accurate.
+        let spline = |from: usize, to: usize| {
+            let rows = &waypoints.rows[from * n..(to + 1) * n];
+            JointPath::spline(names.clone(), rows, Some(&waypoints.knots[from..=to]), SplineEnds::NotAKnot)
+        };
+        let last = waypoints.knots.len() - 1;
+        if self.corners == Corners::Passed {
+            return Ok(vec![spline(0, last)?]);
+        }
+        let mut ends = vec![0];
+        ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
+        ends.push(last);
+        ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
+    }
+
+    /// Refuses a motion that rests at a part of the path: a spline over the path cannot.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] names that part.
+    fn refuse_rest(&self, waypoints: &JointWaypoints) -> Result<()> {
+        let n = self.robot.dof();
+        let JointWaypoints { knots, rows } = waypoints;
+        let rests = |i: &usize| rows[(i - 1) * n..i * n] == rows[i * n..(i + 1) * n];
+        let Some(i) = (1..knots.len()).find(rests) else { return Ok(()) };
+        let [from, to] = [knots[i - 1], knots[i]].map(|share| self.tip_path.place(share));
+        let problem = format!(
+            "the task leaves the tip so free that the arm need not move from {from} to {to}: ask for more of the pose, or for \
+             smaller tolerances"
+        );
+        Err(Error::InvalidPath { problem })
+    }
+
+    /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more
+    /// knots do not help.
+    ///
+    /// # Errors
+    /// None in practice, as for [`path`](Self::path).
+    pub(super) fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
+        for _ in 0..HALVINGS {
+            let path = self.path(&waypoints)?;
+            let deviation = TipDeviation {
+                robot: self.robot,
+                tip_path: self.tip_path,
+                configurations: |share: f64, q: &mut [f64]| path.position(share, q),
+            };
+            let is_coarse = |i: usize| {
+                checkpoint_at(i)?;
+                let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
+                // A given start may be off the path.
+                let is_off = deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from);
+                Ok((is_off || self.swing(&path, from, to) > SWING * accuracy).then_some(i))
+            };
+            let intervals = 0..waypoints.knots.len() - 1;
+            let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
+            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
+                break;
+            }
+            let finer = self.halved(&waypoints, &coarse, &path, NEAR_ENOUGH * accuracy);
+            if finer.knots.len() == waypoints.knots.len() {
+                break;
+            }
+            waypoints = finer;
+        }
+        Ok(waypoints)
+    }
+
+    /// By how much a joint is outside its limits between two knots, at the most (rad, m).
+    fn swing(&self, path: &JointPath, from: f64, to: f64) -> f64 {
+        let mut q = [0.0; MAX_DOF];
+        let q = &mut q[..self.robot.dof()];
+        let mut most: f64 = 0.0;
+        for sample in 1..=SAMPLES {
+            path.position(from + (to - from) * sample as f64 / (SAMPLES + 1) as f64, q);
+            let beyond = |(joint, q): (&Joint, &f64)| (joint.lower - q).max(q - joint.upper);
+            most = self.robot.joints().iter().zip(&*q).map(beyond).fold(most, f64::max);
+        }
+        most
+    }
+
+    /// Draws each joint that swings out of its limits inside: all its positions are scaled into them.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub(super) fn draw_inside(&self, waypoints: &mut JointWaypoints) -> Result<()> {
+        let path = self.path(waypoints)?;
+        let n = self.robot.dof();
+        for (j, joint) in self.robot.joints().iter().enumerate() {
+            let [lowest, highest] = path.range(j);
+            let (low, high) = (lowest.max(joint.lower), highest.min(joint.upper));
+            if (low, high) == (lowest, highest) || !(low <= high) {
+                continue;
+            }
+            let scale = if highest > lowest { (high - low) / (highest - lowest) } else { 1.0 };
+            let values = waypoints.rows.iter_mut().skip(j).step_by(n);
+            values.for_each(|q| *q = (low + scale * (*q - lowest)).clamp(low, high));
+        }
+        Ok(())
+    }
+
+    /// Returns the waypoints with a knot added in the middle of each of these intervals, if a configuration near the spline has the tip
+    /// there, or `within` this distance (m, rad).
+    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath, within: f64) -> JointWaypoints {
+        let n = self.robot.dof();
+        let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
+        let mut scratch = Linearization::default();
+        let mut finer = JointWaypoints { knots: vec![], rows: vec![] };
+        let mut intervals = intervals.iter().peekable();
+        for (i, knot) in waypoints.knots.iter().enumerate() {
+            finer.knots.push(*knot);
+            finer.rows.extend_from_slice(&waypoints.rows[i * n..(i + 1) * n]);
+            if intervals.next_if_eq(&&i).is_none() {
+                continue;
+            }
+            let middle = 0.5 * (knot + waypoints.knots[i + 1]);
+            let mut spline = [0.0; MAX_DOF];
+            let spline = &mut spline[..n];
+            path.position(middle, spline);
+            bounds.clip(spline);
+            let mut q = [0.0; MAX_DOF];
+            let q = &mut q[..n];
+            q.copy_from_slice(spline);
+            let target = self.tip_path.path_target(middle);
+            let ends = &waypoints.rows[i * n..(i + 2) * n];
+            let apart = largest_difference(&ends[..n], &ends[n..]);
+            let mut is_met = project(self.robot, &target, &bounds, q, &mut scratch) == 0.0;
+            if !is_met || strays(q, spline, apart) {
+                q.copy_from_slice(spline);
+                is_met = approach(self.robot, &target, &bounds, q, &mut scratch, within);
+            }
+            if is_met {
+                finer.knots.push(middle);
+                finer.rows.extend_from_slice(q);
+            }
+        }
+        finer
+    }
+}

@@ -1,0 +1,132 @@
+//! A path, and what the motion along it has to keep.
+
+use super::interpolation::{Corners, Interpolation, JointWaypoints};
+use crate::along_path::deviation::TipDeviation;
+use crate::along_path::tip_path::TipPath;
+use crate::error::{Error, Result, require_positive};
+use crate::limits::Limits;
+use crate::plan::AlongPathOptions;
+use crate::robot::Robot;
+use crate::solver::Stopwatch;
+use crate::timing::{JointPath, MotionLimits, TimingLimits, coarse_duration, time_all};
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+const METHOD: &str = "method=\"timed\"";
+
+/// Segments of the timing per piece of the spline when the alternatives at corners are compared.
+const SEGMENTS_A_PIECE: usize = 4;
+
+/// A path with checked options.
+pub(crate) struct PathProblem<'a> {
+    /// The robot, with the position limits to keep.
+    pub robot: Robot,
+    /// The path of its tip.
+    pub tip_path: &'a TipPath,
+    /// Limits to keep.
+    pub limits: MotionLimits,
+    /// Limits of the timing.
+    pub timing_limits: TimingLimits,
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
+    pub accuracy: f64,
+    /// The options of the call.
+    pub options: &'a AlongPathOptions,
+    /// Measures the call.
+    pub stopwatch: Stopwatch,
+}
+
+/// A motion along the path.
+pub(crate) struct PathMotion {
+    /// The configurations that it passes.
+    pub waypoints: JointWaypoints,
+    /// The joint paths between stops.
+    pub stretches: Vec<JointPath>,
+    /// All of them, joined.
+    pub path: JointPath,
+    /// The same in time.
+    pub trajectory: Trajectory,
+}
+
+impl<'a> PathProblem<'a> {
+    /// # Errors
+    /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path.
+    pub(crate) fn new(robot: &Robot, tip_path: &'a TipPath, options: &'a AlongPathOptions) -> Result<Self> {
+        let stopwatch = Stopwatch::start();
+        let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+        let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
+        let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
+        require_positive("accuracy", accuracy)?;
+        if let Some(q) = options.start_within(robot, &limits)? {
+            require_on_path(robot, q, tip_path, accuracy)?;
+        }
+        let robot = limits.applied_to(robot)?;
+        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options, stopwatch })
+    }
+
+    /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
+    /// with the knots that this motion needs.
+    ///
+    /// # Errors
+    /// None in practice: waypoints that differ define a spline.
+    pub(crate) fn corners_of(
+        &'a self,
+        nominal: &JointWaypoints,
+        accuracy: f64,
+    ) -> Result<(Interpolation<'a>, JointWaypoints)> {
+        let Self { robot, tip_path, timing_limits, .. } = self;
+        let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
+        for corners in Corners::on(tip_path) {
+            let interpolation = Interpolation { robot, tip_path, corners: *corners };
+            let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
+            let path = interpolation.path(&waypoints)?;
+            let duration = coarse_duration(&path, timing_limits, SEGMENTS_A_PIECE * path.pieces())?;
+            if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
+                quickest = Some((duration, interpolation, waypoints));
+            }
+        }
+        let stopping = || (Interpolation { robot, tip_path, corners: Corners::Stopped }, nominal.clone());
+        Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
+    }
+
+    /// The fastest motion through `waypoints`, and through the knots added that its accuracy needs.
+    ///
+    /// # Errors
+    /// None in practice, as for [`corners_of`](Self::corners_of).
+    pub(crate) fn motion(
+        &self,
+        interpolation: &Interpolation<'_>,
+        waypoints: JointWaypoints,
+        accuracy: f64,
+    ) -> Result<PathMotion> {
+        let mut waypoints = interpolation.refined(waypoints, accuracy)?;
+        if self.options.start.is_none() {
+            interpolation.draw_inside(&mut waypoints)?;
+        }
+        let stretches = interpolation.stretches(&waypoints)?;
+        let path = interpolation.path(&waypoints)?;
+        let trajectory = time_all(&stretches, &self.timing_limits)?;
+        Ok(PathMotion { waypoints, stretches, path, trajectory })
+    }
+}
+
+/// Checks that at `q` the tip is at the start of the path, within its tolerance and `accuracy`.
+fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) -> Result<()> {
+    let configurations = |_: f64, out: &mut [f64]| out.copy_from_slice(q);
+    let [distance, angle] = TipDeviation { robot, tip_path, configurations }.parts_at(0.0);
+    let (what, value, unit) = if distance > accuracy {
+        ("has the tip", distance, "m")
+    } else if angle > accuracy {
+        ("turns the tip", angle, "rad")
+    } else {
+        return Ok(());
+    };
+    let leeway = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+    let (value, accuracy) = (number(value), number(accuracy));
+    let problem =
+        format!("start_q {what} {value} {unit}{leeway} from the path's first point, allowed {accuracy} {unit}");
+    Err(Error::Infeasible { problem })
+}
+
+fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {
+    TimingLimits::new(&limits.cloned().unwrap_or_else(|| Limits::of(robot)), METHOD)
+}

@@ -1,0 +1,160 @@
+//! The planner: corners, the search for postures, the timing of the best.
+
+use super::interpolation::{Interpolation, JointWaypoints};
+use super::nominal_motions::NominalMotions;
+use super::path_problem::{PathMotion, PathProblem};
+use super::redundant_motion::RedundantMotion;
+use super::timed_cost::TimedCost;
+use crate::along_path::deviation::TipDeviation;
+use crate::error::{Error, Result};
+use crate::objective::{Objective, Point};
+use crate::plan::{AlongPathOptions, Plan, Search, SearchResult};
+use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
+
+/// Evaluations of the search; more shorten the motion by less than 1 %.
+const EVALUATIONS: usize = 2000;
+
+/// Population size of the search.
+const POPULATION: usize = 30;
+
+/// Plans along a path, around motions that follow it; `None` where each of these ends on the way.
+///
+/// # Errors
+/// As [`plan_along_path`](crate::planning::plan_along_path).
+pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
+    let mut candidates = vec![];
+    for waypoints in NominalMotions::new(problem).all()? {
+        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy)?;
+        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?);
+        candidates.push(Candidate { plan, interpolation, waypoints });
+    }
+    let mut candidates = candidates.into_iter();
+    let Some(widest) = candidates.next() else { return Ok(None) };
+    // The shortest motion is not always the quickest, nor the quickest one after the search.
+    match candidates.reduce(|first, other| if is_better(&other.plan, &first.plan) { other } else { first }) {
+        Some(other) if is_better(&other.plan, &widest.plan) => {
+            let (plan, found) = widest.improved(problem, 2, monitor)?;
+            let (another, later) = other.improved(problem, 2, monitor)?;
+            let found = found.zip(later).map(|(found, later)| found.then(later));
+            Ok(Some(problem.after(found, if is_better(&another, &plan) { another } else { plan })))
+        }
+        _ => {
+            let (plan, found) = widest.improved(problem, 1, monitor)?;
+            Ok(Some(problem.after(found, plan)))
+        }
+    }
+}
+
+/// A motion along the path to search around, and its plan.
+struct Candidate<'p> {
+    plan: Plan,
+    interpolation: Interpolation<'p>,
+    waypoints: JointWaypoints,
+}
+
+impl<'p> Candidate<'p> {
+    /// The best plan that a search around this one finds with a budget for one of so many `searches`.
+    fn improved(
+        self,
+        problem: &'p PathProblem<'p>,
+        searches: u32,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Plan, Option<SearchResult>)> {
+        let PathProblem { robot, tip_path, options, .. } = problem;
+        let motion = RedundantMotion::around(robot, tip_path, self.waypoints, options.start.is_some());
+        let mut cost = TimedCost::new(problem, motion, self.interpolation);
+        let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
+        let stop = Stop {
+            max_evaluations: budget.max_evaluations.div_ceil(searches as usize),
+            max_time: budget.max_time.map(|time| time / searches),
+            ..budget
+        };
+        let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
+        let (waypoints, _) = cost.waypoints(&found.x);
+        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints, problem.accuracy)?);
+        // The search times a motion only roughly.
+        Ok((if is_better(&self.plan, &plan) { self.plan } else { plan }, Some(found)))
+    }
+}
+
+/// Whether a plan keeps everything, and the other one does not or costs more.
+fn is_better(plan: &Plan, other: &Plan) -> bool {
+    plan.violations.is_empty() && (!other.violations.is_empty() || plan.cost < other.cost)
+}
+
+impl PathProblem<'_> {
+    /// Whether the tip of a motion is farther off the path than its accuracy.
+    pub(crate) fn leaves_path(&self, motion: &PathMotion) -> bool {
+        let PathMotion { waypoints, path, .. } = motion;
+        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let tip = TipDeviation { robot: &self.robot, tip_path: self.tip_path, configurations };
+        tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
+    }
+
+    /// The plan of a motion.
+    pub(crate) fn plan(&self, motion: PathMotion) -> Plan {
+        let Self { robot, tip_path, options, .. } = self;
+        let PathMotion { waypoints, stretches, path, trajectory } = motion;
+        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
+        let mut violations = self.limits.violations(&trajectory);
+        violations.extend(deviation.violations(tip_path, self.accuracy));
+        let cost = options.objective.of(robot, &trajectory);
+        Plan {
+            accuracy: Some(deviation.distance.value),
+            reference: Some(tip_path.positions().to_vec()),
+            path: stretches,
+            status: if violations.is_empty() { Status::Solved } else { Status::Stalled },
+            violations,
+            evaluations: 1,
+            elapsed: self.stopwatch.elapsed(),
+            ..Plan::of(trajectory, options.objective, cost)
+        }
+    }
+
+    /// A plan after the search that found it, if there was one.
+    pub(crate) fn after(&self, found: Option<SearchResult>, plan: Plan) -> Plan {
+        let elapsed = self.stopwatch.elapsed();
+        match found {
+            None => Plan { elapsed, ..plan },
+            Some(found) => Plan {
+                status: found.status(plan.violations.is_empty()),
+                evaluations: found.evaluations,
+                history: found.history,
+                elapsed,
+                ..plan
+            },
+        }
+    }
+}
+
+/// Runs the search; `None` if the arm is not redundant.
+///
+/// # Errors
+/// [`Error::Contradiction`] for a solver without anything to search; those of the solver's options.
+pub(crate) fn search(
+    cost: &mut TimedCost<'_>,
+    options: &AlongPathOptions,
+    stop: Stop,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<SearchResult>> {
+    let Some(bounds) = cost.bounds() else {
+        return match &options.solver {
+            None => Ok(None),
+            Some(_) => Err(Error::Contradiction {
+                problem: "solver searches the redundancy of the arm, but on this path it has none: leave solver out"
+                    .into(),
+            }),
+        };
+    };
+    let schedule = Schedule::of(POPULATION);
+    let evolution = || AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
+    let search = Search {
+        solver: options.solver.clone().unwrap_or_else(evolution),
+        stop,
+        seed: options.seed,
+        // The nominal motion: nothing worse is returned.
+        start: Some(Point::from_elem(0.0, cost.dimension())),
+    };
+    search.run(cost, &bounds, monitor).map(Some)
+}

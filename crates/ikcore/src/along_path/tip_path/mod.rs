@@ -1,0 +1,23 @@
+//! The curve that the tip follows, without its timing.
+//!
+//! | file | what |
+//! |---|---|
+//! | `tip_curve` | [`TipPath`]: straight segments from point to point |
+//! | `path_target`, `leeway` | what the tip has to meet at a point of it, and how far it may be off |
+//! | `sampling` | the curve of a timed path |
+//! | `corners` | where its direction jumps |
+//! | `segment_geometry` | angles and distances of single segments |
+//! | `repetition` | points that must differ |
+
+mod corners;
+mod leeway;
+mod path_target;
+mod repetition;
+mod sampling;
+mod segment_geometry;
+mod tip_curve;
+
+pub(crate) use leeway::{Borders, Displacement};
+pub(crate) use path_target::PathTarget;
+pub(crate) use repetition::refuse_repetition;
+pub use tip_curve::TipPath;

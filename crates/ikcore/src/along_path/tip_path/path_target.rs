@@ -1,0 +1,51 @@
+//! What the tip has to meet at a point of its path.
+
+use super::leeway::{Borders, Displacement, Leeway};
+use crate::math::Frame;
+use crate::math::box_step::ROWS;
+use crate::objective::Linearization;
+use crate::robot::Robot;
+use crate::task::{Target, Tolerance};
+
+/// The target at a point of a path, and how far the tip may be off.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PathTarget {
+    pub target: Target,
+    /// `None`: not at all.
+    pub leeway: Option<Leeway>,
+    /// Where in its leeway the tip is to be; `None`: anywhere.
+    pub place: Option<Displacement>,
+}
+
+impl PathTarget {
+    /// Residual and Jacobian at `q` of what exceeds the leeway; returns the sum of squares.
+    pub fn linearize(&self, robot: &Robot, q: &[f64], borders: &mut Borders, out: &mut Linearization) -> f64 {
+        let criterion = self.leeway.map_or_else(|| Tolerance::default().into(), |_| Leeway::criterion());
+        let value = self.target.linearize(robot, q, &criterion, &mut out.first).score.value;
+        match (&self.leeway, &self.place) {
+            (None, _) => value,
+            (Some(leeway), None) => leeway.reduce(&self.target, borders, q.len(), &mut out.first),
+            (Some(leeway), Some(place)) => leeway.hold(&self.target, place, q.len(), &mut out.first),
+        }
+    }
+
+    /// The same target with the tip off by no more than `most` (m, rad) where it is not free.
+    pub fn at_most(&self, most: f64) -> Self {
+        Self { leeway: self.leeway.map(|leeway| leeway.at_most(most)), ..*self }
+    }
+
+    /// The same target with the tip on the path itself; what is free stays free.
+    pub fn on_path(&self) -> Self {
+        Self { place: Some([0.0; ROWS]), ..*self }
+    }
+
+    /// The same target with the tip where `tip` is; what is free stays free.
+    pub fn held_at(&self, tip: impl FnOnce() -> Frame) -> Self {
+        Self { place: self.leeway.map(|_| Leeway::place_of(&self.target, &tip())), ..*self }
+    }
+
+    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the leeway; `None` without one.
+    pub fn excess(&self, tip: impl FnOnce() -> Frame) -> Option<[f64; 2]> {
+        self.leeway.map(|leeway| leeway.excess(&self.target, &tip()))
+    }
+}

@@ -1,0 +1,186 @@
+//! Configurations of an end of a motion from which the tip moves along a straight line.
+
+use super::piece_space::PieceSpace;
+use super::straight_tip::{Hindrance, StraightTip};
+use crate::error::{Error, Result};
+use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
+use crate::limits::Limits;
+use crate::obstacle::{ClearSpace, Contact, NearestContact, Sweep};
+use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at};
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+/// Configurations of a target that are tried.
+const TRIED: usize = 32;
+/// Values of the parameter of a redundant arm at which its closed form is asked for them.
+const REDUNDANCY: usize = 16;
+
+/// Which end of the motion the line is at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// After the start.
+    Retreat,
+    /// Before the end.
+    Approach,
+}
+
+impl Side {
+    /// The argument.
+    pub(super) fn argument(self) -> &'static str {
+        match self {
+            Self::Retreat => "retreat",
+            Self::Approach => "approach",
+        }
+    }
+
+    /// The place of a point of the line, seen from the end of the motion.
+    fn place(self) -> &'static str {
+        match self {
+            Self::Retreat => "after it",
+            Self::Approach => "before it",
+        }
+    }
+}
+
+/// Finds straight lines at the ends of a motion.
+pub(super) struct LineSearch<'a> {
+    pub options: &'a PointToPointOptions,
+    pub line: &'a StraightLine,
+    pub side: Side,
+    pub tip: StraightTip<'a>,
+    pub position_limits: Limits,
+    /// What the line keeps clear of, and the configurations that do; `None` if nothing can collide.
+    pub along_line: Option<(&'a PieceSpace, ClearSpace<'a>)>,
+    /// Where the line meets the rest of the motion no contact is allowed.
+    pub beyond: Option<ClearSpace<'a>>,
+    /// Configurations of the targets near this one come first (n,).
+    pub near: Option<Vec<f64>>,
+    /// Evaluations so far.
+    pub evaluations: usize,
+}
+
+impl LineSearch<'_> {
+    /// Up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] if there is none: why the best one is none; errors of the surroundings.
+    pub(super) fn lines(
+        &mut self,
+        name: EndName,
+        end: &Endpoint,
+        count: usize,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Vec<Trajectory>> {
+        let mut found = vec![];
+        let mut hindrance: Option<(f64, Hindrance)> = None;
+        for q in self.configurations(name, end, monitor)? {
+            if found.len() == count || !monitor.keep_going() {
+                break;
+            }
+            match self.from(&q)? {
+                Ok(candidate) => found.push(candidate),
+                Err((reached, why)) if hindrance.as_ref().is_none_or(|(most, _)| reached > *most) => {
+                    hindrance = Some((reached, why));
+                }
+                Err(_) => {}
+            }
+        }
+        if found.is_empty() {
+            let Some((_, why)) = hindrance else { return Err(Error::Interrupted) };
+            let (what, argument, distance) = (name.of_target(), self.side.argument(), number(self.line.distance));
+            let problem = format!("no straight line for {argument}={distance}: {why}");
+            return Err(Error::Unreachable { what, problem });
+        }
+        Ok(found)
+    }
+
+    /// The configurations of an end; clear ones, if it is a target.
+    fn configurations(&mut self, name: EndName, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Vec<f64>>> {
+        let target = match end {
+            Endpoint::Configuration(q) => {
+                self.position_limits.require_inside(&name.of_target(), 0.0, q)?;
+                return Ok(vec![q.clone()]);
+            }
+            Endpoint::Targets { targets, .. } => &targets[0],
+        };
+        let space = self.along_line.as_ref().map(|(space, _)| *space);
+        let each = SolveOptions {
+            task: self.options.task,
+            start: self.near.clone(),
+            limits: Some(self.position_limits.clone()),
+            surroundings: space.map(|space| space.surroundings.clone()).unwrap_or_default(),
+            seed: self.options.seed,
+            ..SolveOptions::default()
+        };
+        let all = AllOptions { each, limit: Some(TRIED), redundancy: REDUNDANCY, ..AllOptions::default() };
+        let robot = space.map_or(self.tip.bare_robot(), |space| &space.robot);
+        let set = solve_all(robot, target, &all, monitor)?;
+        self.evaluations += set.evaluations;
+        if set.solutions.is_empty() {
+            return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set) });
+        }
+        Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())
+    }
+
+    /// The motion along the line from or to `q`, or how far it gets (m), and why no farther.
+    fn from(&self, q: &[f64]) -> Result<Result<Trajectory, (f64, Hindrance)>> {
+        let (frame, place) = (self.tip.robot().tip(q), self.side.place());
+        // Always found from the end of the motion away, and reversed for an approach.
+        let away = match self.side {
+            Side::Retreat => self.line.displacement(&frame, -1.0),
+            Side::Approach => self.line.displacement(&frame, 1.0).map(|entry| -entry),
+        };
+        let outward = match self.tip.from(q, away, place)? {
+            Ok(motion) => motion,
+            Err(why) => return Ok(Err((0.0, why))),
+        };
+        let space = self.along_line.as_ref().map(|(_, space)| space);
+        let margin = space.map_or(0.0, |space| space.margin() - RESERVE);
+        let whole = [0.0, outward.duration()];
+        let checked = space.map(|space| Sweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
+        if let Some(Err(near)) = checked {
+            let reached = self.line.distance * near.at / outward.duration();
+            let contact = in_words(&near.contact, margin);
+            let why = if reached > 0.0 { format!("{} m {place} {contact}", number(reached)) } else { contact };
+            return Ok(Err((reached, why)));
+        }
+        let meets = configuration_at(&outward, outward.duration())?;
+        if let Some(beyond) = &self.beyond
+            && let Some(NearestContact { contact, .. }) = beyond.nearest(&meets)
+            && contact.distance < beyond.margin()
+        {
+            let (reached, contact) = (self.line.distance, in_words(&contact, beyond.margin()));
+            let why = format!("at its other end {contact}: give a longer line");
+            return Ok(Err((reached, why)));
+        }
+        Ok(Ok(if self.side == Side::Approach { reversed(&outward)? } else { outward }))
+    }
+}
+
+fn in_words(contact: &Contact, margin: f64) -> String {
+    format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other)
+}
+
+/// Why a target has no clear configuration.
+fn why_none(set: &SolutionSet) -> String {
+    match (&set.obstruction, &set.miss) {
+        (Some(obstruction), _) => obstruction.to_string(),
+        (None, Some(miss)) if miss.status == Status::InCollision => miss.obstruction.clone(),
+        (None, Some(miss)) => format!("the nearest configuration found stays {} away", miss.error),
+        (None, None) => set.message(),
+    }
+}
+
+/// The same motion from its end to its start.
+fn reversed(motion: &Trajectory) -> Result<Trajectory> {
+    let (duration, n) = (motion.duration(), motion.joints().len());
+    let times: Vec<f64> = motion.knots().iter().rev().map(|t| duration - t).collect();
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; times.len() * n]);
+    for (i, t) in motion.knots().iter().rev().enumerate() {
+        let row = i * n..(i + 1) * n;
+        motion.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row])?;
+    }
+    qd.iter_mut().for_each(|speed| *speed = -*speed);
+    Trajectory::from_samples(motion.joints().to_vec(), &times, &q, Some(&qd), Some(&qdd))
+}

@@ -1,0 +1,92 @@
+//! The way out of a contact: from a configuration that is nearer to something than the margin to one that keeps it.
+
+use crate::error::Result;
+use crate::obstacle::{ClearSpace, Edge, RequiredDistance};
+use crate::timing::{MotionLimits, scaled};
+use crate::trajectory::Trajectory;
+
+/// How far beyond the margin the arm moves (m).
+const BEYOND: f64 = 2e-3;
+/// Longest step of a joint (rad, m).
+const LONGEST: f64 = 0.05;
+/// A descent that would need shorter steps than this (rad, m) is stuck.
+const SHORTEST: f64 = 1e-6;
+/// Steps of the descent.
+const STEPS: usize = 400;
+/// By how much two bodies may come nearer on the way out (m), since a motion outwards must be certified too.
+pub(super) const LEEWAY: f64 = 2e-5;
+/// Lines are certified in parts on which no joint moves farther than this (rad, m).
+const PART: f64 = 0.01;
+
+/// The motion out of the contact at `from` (n,): straight lines, each from rest to rest, on which no two bodies come nearer to each
+/// other, by more than [`LEEWAY`], than they are at its beginning or than the margin; `None` if none was found. The shortest way:
+/// down the gradient of the distances.
+pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Result<Option<Trajectory>> {
+    let Some(descent) = descent(space, limits, from) else { return Ok(None) };
+    let mut near = space.near_rows();
+    space.find_rows(from, space.margin(), &mut near);
+    let kept = RequiredDistance { at_rest: near.rows(), leeway: LEEWAY, ..RequiredDistance::constant(space.margin()) };
+    let mut motion: Option<Trajectory> = None;
+    let mut at = 0;
+    // Each line as far along the descent as it is certified to come no nearer.
+    while at + 1 < descent.len() {
+        let Some(next) =
+            (at + 1..descent.len()).rev().find(|next| comes_no_nearer(space, &kept, [&descent[at], &descent[*next]]))
+        else {
+            return Ok(None);
+        };
+        let rest = vec![0.0; 2 * from.len()];
+        let ends = [&descent[at][..], &descent[next]].concat();
+        let line = Trajectory::from_samples(limits.joint_names(), &[0.0, 1.0], &ends, Some(&rest), Some(&rest))?;
+        let line = scaled(&line, limits)?;
+        motion = Some(motion.map_or(Ok(line.clone()), |motion| motion.then(&line, 0.0))?);
+        at = next;
+    }
+    Ok(motion)
+}
+
+/// Whether all bodies keep these distances on the straight line.
+fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
+    let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+    let parts = (longest / PART).ceil().max(1.0) as usize;
+    let mut check = space.chord_check();
+    let at = |i: usize| -> Vec<f64> {
+        from.iter().zip(to).map(|(from, to)| from + (to - from) * i as f64 / parts as f64).collect()
+    };
+    (0..parts).all(|i| space.is_kept_by(&Edge { from: &at(i), to: &at(i + 1) }, 1.0, kept, &mut check))
+}
+
+/// Configurations down the gradient of the shortfall, the last one of which keeps the margin and a little more.
+fn descent(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Option<Vec<Vec<f64>>> {
+    let up_to = space.margin() + BEYOND;
+    let n = from.len();
+    let (mut way, mut q, mut step) = (vec![from.to_vec()], from.to_vec(), LONGEST);
+    let mut gradient = vec![0.0; n];
+    let mut cost = space.nearness(&q, up_to, 1.0, &mut gradient);
+    for _ in 0..STEPS {
+        if space.holds(&q) && cost == 0.0 {
+            return Some(way);
+        }
+        let largest = gradient.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.abs()));
+        let (next, next_cost, next_gradient) = loop {
+            if step < SHORTEST {
+                // Near enough: the margin is kept, if not all that lies beyond it.
+                return space.holds(&q).then_some(way);
+            }
+            let mut next = q.clone();
+            for j in 0..n {
+                next[j] = (q[j] - step * gradient[j] / largest).clamp(limits.lower[j], limits.upper[j]);
+            }
+            let mut there = vec![0.0; n];
+            let lower = space.nearness(&next, up_to, 1.0, &mut there);
+            if lower < cost {
+                break (next, lower, there);
+            }
+            step *= 0.5;
+        };
+        (q, cost, gradient) = (next, next_cost, next_gradient);
+        way.push(q.clone());
+        step = (2.0 * step).min(LONGEST);
+    }
+    space.holds(&q).then_some(way)
+}

@@ -1,0 +1,185 @@
+//! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a
+//! certified timing of that path.
+
+use super::end_pair::EndPair;
+use super::pair_search::PairSearch;
+use super::path_search::{Certified, PathSearch};
+use super::rrt_connect::TreeSearch;
+use super::straight_line_plan::{PAIRS, no_pair, straight};
+use crate::error::{Error, Result};
+use crate::free_path::{no_way, path_search};
+use crate::math::vector::squared_distance;
+use crate::objective::Point;
+use crate::obstacle::{Scene, Sweep, kept_margin};
+use crate::plan::{
+    Cost, EndName, Endpoint, Improvement, Plan, PointToPointOptions, RESERVE, TimedMotion, as_lines, configuration_at,
+    nearest_at, no_usable_end, refuse_collision, scene, too_near,
+};
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+
+/// Total number of configurations that all trees may examine: about half a second.
+const BUDGET: usize = 1_000_000;
+/// With fewer collision-free pairs than this, more are sought ...
+const FEW_PAIRS: usize = 3;
+/// ... from this many random starts.
+const TRIES: usize = 400;
+/// Intervals of a straight line at whose ends its penetration is measured.
+const INTERVALS: usize = 16;
+/// Distances that paths may keep beyond the margin (m).
+const RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
+/// What rounding may take off a distance in the check of a line (m).
+const SINGLE: f64 = 3e-5;
+
+/// Plans for checked ends and options.
+pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
+    let margin = kept_margin(options.margin)?;
+    let lines = as_lines(search.robot, options)?;
+    let scene = scene(search.robot, lines.as_ref(), options)?;
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let first = pairs.first().ok_or_else(no_pair)?;
+    let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
+    let refusal = |name: EndName, end: &Endpoint| match end {
+        Endpoint::Configuration(q) => refuse_collision(&name.of_target(), &scene, q, margin),
+        Endpoint::Targets { .. } => Ok(()),
+    };
+    refusal(EndName::Start, search.start)?;
+    let refused: Vec<Error> =
+        (0..search.ends.len()).filter_map(|i| refusal(search.name(i), &search.ends[i]).err()).collect();
+    if refused.len() == search.ends.len() {
+        return Err(no_usable_end(search.ends.len(), refused));
+    }
+    let is_open = |pair: &EndPair| is_clear(&pair.start) && is_clear(&pair.end);
+    let mut open: Vec<EndPair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
+    let given = [search.start].into_iter().chain(search.ends).all(|end| matches!(end, Endpoint::Configuration(_)));
+    if open.len() < FEW_PAIRS && !given {
+        open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
+    }
+    let limits = search.limits;
+    let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
+    let most = most_kept(&scene, &open, margin);
+    let mut trees = TreeSearch::new(&scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
+    let mut sweep = Sweep::new(&scene);
+    let certified = match open.is_empty() {
+        true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
+        true => Certified::Nothing(Status::Stalled),
+        false => {
+            let starts = sort_by_cost(&mut open, search, options.objective)?;
+            let (improves, objective) = (options.stop.is_some(), options.objective);
+            let search = PathSearch {
+                trees: &mut trees,
+                sweep: &mut sweep,
+                search,
+                objective,
+                margin,
+                most,
+                improves,
+                ends_are_free: open.len() > 1,
+            };
+            search.best(&open, &starts, monitor)?
+        }
+    };
+    search.evaluations += trees.check.examined() + sweep.examined();
+    let mut plan = match certified {
+        Certified::Motion(trajectory, history) => {
+            let plan = Plan { history, clearance: Some(margin), ..bare(search, trajectory, options.objective) };
+            if lines.is_some() { with_least_distance(plan, &mut sweep, &scene, margin)? } else { plan }
+        }
+        Certified::Nothing(status) => {
+            let tried = if open.is_empty() { &pairs } else { &open };
+            let trajectory = straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?;
+            let plan = Plan { status, ..bare(search, trajectory, options.objective) };
+            let plan = with_least_distance(plan, &mut sweep, &scene, margin)?;
+            let obstruction = if open.is_empty() {
+                no_way::blocked_ends(&scene, &pairs, margin + RESERVE)
+            } else {
+                let straight = plan.nearest.as_ref().map(|nearest| &nearest.contact);
+                no_way::gap(trees.gap, trees.check.examined(), straight, margin)
+            };
+            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), ..plan }
+        }
+    };
+    if lines.is_none() {
+        plan.surroundings = Some(options.surroundings());
+    }
+    let last = configuration_at(&plan.trajectory, plan.trajectory.duration())?;
+    let distance = |pair: &&EndPair| squared_distance(&pair.end, &last);
+    let taken = pairs.iter().chain(&open).min_by(|one, other| distance(one).total_cmp(&distance(other)));
+    plan.chosen_end = taken.map(|pair| pair.chosen);
+    Ok(plan)
+}
+
+/// Returns the pair whose straight line penetrates least, at samples.
+fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
+    let distance = |pair: &EndPair| {
+        let at = |i: usize| -> Vec<f64> {
+            let share = i as f64 / INTERVALS as f64;
+            pair.start.iter().zip(&pair.end).map(|(start, end)| start + share * (end - start)).collect()
+        };
+        let nearest = (0..=INTERVALS).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
+        nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
+    };
+    pairs.iter().max_by(|one, other| distance(one).total_cmp(&distance(other)))
+}
+
+/// Sorts pairs by the cost of the straight motion between them. Returns the starts of the pairs that are cheapest for any
+/// objective: paths are searched from these whatever the objective, so that none of them finds the best for another.
+fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -> Result<Vec<Point>> {
+    if let [only] = &open[..] {
+        return Ok(vec![only.start.clone()]);
+    }
+    let motions = open.iter().map(|pair| straight(pair, search.limits)).collect::<Result<Vec<_>>>()?;
+    let costs_by = |objective: Cost| -> Vec<f64> { motions.iter().map(|m| objective.of(search.robot, m)).collect() };
+    let mut starts: Vec<Point> = vec![];
+    for objective in [Cost::Time, Cost::JointTravel, Cost::TipTravel] {
+        let costs = costs_by(objective);
+        let cheapest = open.iter().zip(&costs).min_by(|one, other| one.1.total_cmp(other.1));
+        starts.extend(cheapest.map(|(pair, _)| pair.start.clone()).filter(|start| !starts.contains(start)));
+    }
+    let mut by_cost: Vec<(f64, EndPair)> = costs_by(objective).into_iter().zip(open.drain(..)).collect();
+    by_cost.sort_by(|one, other| one.0.total_cmp(&other.0));
+    open.extend(by_cost.into_iter().map(|(_, pair)| pair));
+    Ok(starts)
+}
+
+/// The most that all ends keep beyond the margin (m), of a few distances.
+fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
+    let keep = |more: f64| {
+        let mut ends = open.iter().flat_map(|pair| [&pair.start, &pair.end]);
+        ends.all(|q| scene.is_clear(q, margin + more))
+    };
+    // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
+    RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
+}
+
+/// A plan of a motion without violations.
+fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
+    let cost = objective.of(search.robot, &trajectory);
+    Plan {
+        history: vec![Improvement { evaluations: search.evaluations, cost }],
+        violations: search.limits.violations(&trajectory),
+        evaluations: search.evaluations,
+        elapsed: search.deadline.elapsed(),
+        ..Plan::of(trajectory, objective, cost)
+    }
+}
+
+/// The plan with its smallest distance, and the violation if that is less than the margin.
+fn with_least_distance(mut plan: Plan, sweep: &mut Sweep, scene: &Scene, margin: f64) -> Result<Plan> {
+    let whole = [0.0, plan.trajectory.duration()];
+    let Some(near) = sweep.smallest(&TimedMotion::new(&plan.trajectory), whole) else { return Ok(plan) };
+    plan.nearest = nearest_at(scene, &plan.trajectory, near.at)?;
+    let distance = near.contact.distance;
+    // What is certified may be more than the search for the smallest distance proves.
+    plan.clearance = Some(if plan.clearance.is_some() { distance.max(margin) } else { distance });
+    if plan.clearance.is_some_and(|clearance| clearance < margin) {
+        plan.violations.push(too_near(&near.contact, margin));
+    }
+    // A straight line that no search could certify may still keep everything.
+    plan.status = match plan.status {
+        _ if plan.violations.is_empty() => Status::Solved,
+        Status::Solved => Status::Stalled,
+        status => status,
+    };
+    Ok(plan)
+}

@@ -1,0 +1,36 @@
+//! Motions between two ends without a path between them, by the min-max planner: searches for the end configurations that are nearest to each other in time, and joins them by a
+//! straight line in joint space or by a path around obstacles.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`minmax_planner`] | the planner |
+//! | [`pair_search`] | pairs of end configurations |
+//! | [`branch_pairs`] | pairs from all inverse kinematics solutions |
+//! | [`least_displacement`] | moves both ends along their self-motion to minimise the largest displacement |
+//! | [`straight_line_plan`] | the best of the straight lines between pairs |
+//! | [`among_obstacles`], [`path_search`] | the best certified motion around obstacles |
+//! | [`certified_timing`] | timings of a path that keep the margin for certain |
+//! | [`no_way`] | why there is no clear motion |
+//! | [`moving_start`] | motions that begin at a velocity |
+//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`shortening`] | shortcuts |
+//! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
+
+mod among_obstacles;
+mod branch_pairs;
+mod certified_timing;
+mod configuration_tree;
+mod end_pair;
+mod improvement;
+mod least_displacement;
+mod minmax_planner;
+mod moving_start;
+mod no_way;
+mod pair_search;
+mod path_search;
+mod refinement;
+mod rrt_connect;
+mod shortening;
+mod straight_line_plan;
+
+pub(crate) use minmax_planner::{point_to_point, require_pace};

@@ -1,0 +1,139 @@
+//! Motions that begin at a velocity: directly to the end, or else to a stop from which a plan from rest continues.
+
+use super::end_pair::EndPair;
+use super::pair_search::PairSearch;
+use super::straight_line_plan::{PAIRS, no_pair};
+use crate::error::{Error, Result, require_finite};
+use crate::limits::Limits;
+use crate::motion::{ArmState, state_to_state, stop};
+use crate::obstacle::{Sweep, kept_margin};
+use crate::plan::{
+    Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines, can_collide, joined, nearest_at, scene,
+};
+use crate::robot::Robot;
+use crate::solver::Monitor;
+use crate::trajectory::Trajectory;
+
+/// Relative excess over a velocity limit that counts as rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// How a motion with an initial velocity goes on.
+pub(super) enum Beginning {
+    /// Directly to the end.
+    Whole(Box<Plan>),
+    /// To a stop, because no direct motion was found to be free.
+    Stop(Trajectory),
+    /// From rest: the velocity is zero, and no direct motion was found to be free.
+    Rest,
+}
+
+/// Plans the quickest motion from the given configuration and `velocity` directly to the end, or to a stop.
+///
+/// # Errors
+/// [`Error::Contradiction`] without a configuration at the start, [`Error::WrongLength`], [`Error::NotFinite`];
+/// [`Error::Infeasible`] if the joints cannot stop inside their limits or before an obstacle.
+pub(super) fn begin(
+    search: &mut PairSearch,
+    velocity: &[f64],
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Beginning> {
+    let Endpoint::Configuration(q) = search.start else {
+        return Err(Error::Contradiction {
+            problem: "start_qd needs the configuration of the start: give start_q".into(),
+        });
+    };
+    check(search, velocity)?;
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
+    let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
+    let margin = kept_margin(options.margin)?;
+    let collides = can_collide(search.robot, options);
+    let lines = if collides { as_lines(search.robot, options)? } else { None };
+    let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
+    let mut sweep = scene.as_ref().map(Sweep::new);
+    let mut is_free = |motion: &Trajectory| {
+        let check =
+            |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
+        sweep.as_mut().is_none_or(check)
+    };
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let last = pairs.first().ok_or_else(no_pair)?;
+    let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
+    let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
+    let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
+    motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
+    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
+        let evaluations = search.evaluations;
+        let cost = options.objective.of(search.robot, &trajectory);
+        let closest =
+            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion::new(&trajectory), [0.0, trajectory.duration()]));
+        let nearest = match (&scene, &closest) {
+            (Some(scene), Some(near)) => nearest_at(scene, &trajectory, near.at)?,
+            _ => None,
+        };
+        return Ok(Beginning::Whole(Box::new(Plan {
+            history: vec![Improvement { evaluations, cost }],
+            clearance: closest.map(|near| near.contact.distance.max(margin)),
+            nearest,
+            chosen_end: Some(chosen),
+            violations: search.limits.violations(&trajectory),
+            evaluations,
+            elapsed: search.deadline.elapsed(),
+            ..Plan::of(trajectory, options.objective, cost)
+        })));
+    }
+    if velocity.iter().all(|v| *v == 0.0) {
+        return Ok(Beginning::Rest);
+    }
+    let braking = stop(&from, &limits)?;
+    if is_free(&braking) {
+        return Ok(Beginning::Stop(braking));
+    }
+    let problem = "at start_qd the arm cannot stop before it comes nearer to an obstacle than the margin".into();
+    Err(Error::Infeasible { problem })
+}
+
+/// Checks that the velocity fits the arm and its limits, and that it cannot simply jump.
+fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
+    let limits = search.limits;
+    if velocity.len() != limits.dof() {
+        let expected = format!("{} joints", limits.dof());
+        return Err(Error::WrongLength { what: "start_qd".into(), expected, got: velocity.len() });
+    }
+    require_finite("start_qd", velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
+    let jumps = |j: &usize| limits.acceleration[*j].is_infinite() && limits.jerk[*j].is_infinite();
+    if let Some(j) = (0..limits.dof()).find(jumps) {
+        return Err(Error::Infeasible {
+            problem: format!(
+                "without an acceleration or jerk limit the velocity of joint '{}' may jump, and start_qd means nothing: \
+                 give limits=Limits(acceleration=...)",
+                limits.joint_name(j)
+            ),
+        });
+    }
+    match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j] * (1.0 + ROUNDING)) {
+        None => Ok(()),
+        Some(j) => {
+            let what = format!("start_qd of joint '{}'", limits.joint_name(j));
+            Err(Error::out_of_range(what, &format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
+        }
+    }
+}
+
+/// The configuration at the end of a motion.
+pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
+    let n = motion.joints().len();
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
+    // The lengths are those of the motion.
+    let _ = motion.at(motion.duration(), &mut q, &mut qd, &mut qdd);
+    q
+}
+
+/// A plan from rest, preceded by the stop that leads to it.
+pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
+    // The stop keeps the margin.
+    let margin = kept_margin(options.margin)?;
+    let clearance = rest.clearance.map(|clearance| clearance.min(margin));
+    let plan = joined(robot, Some(&stop), rest, None)?;
+    Ok(Plan { clearance, nearest: None, ..plan })
+}

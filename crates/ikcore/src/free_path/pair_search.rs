@@ -1,0 +1,254 @@
+//! Search for pairs of end configurations that are near each other in time.
+
+use super::end_pair::EndPair;
+use super::least_displacement::Freedom;
+use crate::error::{Error, Result};
+use crate::free_path::least_displacement;
+use crate::ik::{Solution, SolveOptions, solve};
+use crate::limits::Limits;
+use crate::objective::Point;
+use crate::plan::{Deadline, EndName, Endpoint, PointToPointOptions, no_usable_end};
+use crate::rng::{self, LazyRng};
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::task::{Target, Task};
+use crate::timing::MotionLimits;
+
+/// Robot, limits, ends and random stream shared by the searches for end configurations.
+pub(super) struct PairSearch<'a> {
+    pub robot: &'a Robot,
+    pub limits: &'a MotionLimits,
+    pub start: &'a Endpoint,
+    /// Any of them will do.
+    pub ends: &'a [Endpoint],
+    pub task: Option<Task>,
+    pub rng: LazyRng,
+    pub evaluations: usize,
+    pub deadline: Deadline,
+    pub seed: u64,
+    pub position_limits: Limits,
+    freedom: Freedom<'a>,
+}
+
+/// Evaluations that random starts may cost in all, so that ends without a free configuration take a fraction of a second.
+const RANDOM_EVALUATIONS: usize = 500_000;
+
+impl<'a> PairSearch<'a> {
+    /// # Errors
+    /// [`Error::OutsideLimits`] for a start outside the limits.
+    pub(super) fn new(
+        robot: &'a Robot,
+        limits: &'a MotionLimits,
+        start: &'a Endpoint,
+        ends: &'a [Endpoint],
+        options: &PointToPointOptions,
+        deadline: Deadline,
+    ) -> Result<Self> {
+        let position_limits = limits.position_limits(robot)?;
+        let (task, seed) = (options.task, options.seed);
+        let freedom = Freedom::new(robot, limits, task)?;
+        let search = Self {
+            robot,
+            limits,
+            start,
+            ends,
+            task,
+            rng: rng::stream(seed, 0),
+            evaluations: 0,
+            deadline,
+            seed,
+            position_limits,
+            freedom,
+        };
+        search.require_inside(EndName::Start, start)?;
+        Ok(search)
+    }
+
+    /// The name of an end in messages.
+    pub(super) fn name(&self, chosen: usize) -> EndName {
+        EndName::of(chosen, self.ends.len())
+    }
+
+    /// Returns up to twice `count` pairs, shared between all ends, the quickest first: half from random starts, half from
+    /// the quickest pairs of branches, all improved along the self-motion. One pair for each end if all configurations
+    /// are given. Ends without a configuration are passed over.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] if no configuration was found for the start, [`Error::OutsideLimits`] or
+    /// [`Error::Unreachable`] for a single end, [`Error::NoUsableEnd`] for several.
+    pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
+        let count = count.div_ceil(self.ends.len());
+        let (mut pairs, mut problems) = (vec![], vec![]);
+        for chosen in 0..self.ends.len() {
+            if !pairs.is_empty() && (self.deadline.is_over() || !monitor.keep_going()) {
+                break;
+            }
+            match self.pairs_to(chosen, count, monitor) {
+                Ok(found) => pairs.extend(found),
+                Err(Missing::Start(problem)) => return Err(problem),
+                Err(Missing::End(problem)) => problems.push(problem),
+            }
+        }
+        if pairs.is_empty() {
+            return Err(no_usable_end(self.ends.len(), problems));
+        }
+        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        Ok(pairs)
+    }
+
+    /// The pairs to one end.
+    fn pairs_to(&mut self, chosen: usize, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>, Missing> {
+        let (start, end) = (self.start, &self.ends[chosen]);
+        self.require_inside(self.name(chosen), end).map_err(Missing::End)?;
+        let given = [start, end].iter().all(|end| matches!(end, Endpoint::Configuration(_)));
+        let mut pairs: Vec<EndPair> = vec![];
+        for attempt in 0..if given { 1 } else { count } {
+            if attempt > 0 && (self.deadline.is_over() || !monitor.keep_going()) {
+                break;
+            }
+            let first = self.configuration(EndName::Start, start, None, attempt, monitor);
+            let Some(first) = first.map_err(Missing::Start)? else { continue };
+            // The second end is solved from the first, so that the solution is usually near. If the first is given,
+            // only once: every attempt would find the same.
+            let another = attempt == 0 || matches!(start, Endpoint::Targets { .. });
+            let near = another.then_some(&first[..]);
+            let second = self.configuration(self.name(chosen), end, near, attempt, monitor);
+            let Some(second) = second.map_err(Missing::End)? else { continue };
+            let pair = self.improved(self.pair(first, second, chosen), monitor);
+            if pairs.iter().all(|known| !known.is_same(&pair)) {
+                pairs.push(pair);
+            }
+        }
+        if !given && !self.deadline.is_over() {
+            for pair in self.branches(chosen, count, monitor).map_err(Missing::End)? {
+                if self.deadline.is_over() {
+                    break;
+                }
+                let pair = self.improved(pair, monitor);
+                if pairs.iter().all(|known| !known.is_same(&pair)) {
+                    pairs.push(pair);
+                }
+            }
+        }
+        Ok(pairs)
+    }
+
+    /// Returns up to `count` pairs accepted by `accept`, not improved, from up to `tries` random starts or
+    /// [`RANDOM_EVALUATIONS`], which all ends share; the quickest first.
+    ///
+    /// # Errors
+    /// None if [`pairs`](Self::pairs) has found some.
+    pub(super) fn random_pairs(
+        &mut self,
+        count: usize,
+        tries: usize,
+        accept: impl Fn(&EndPair) -> bool,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Vec<EndPair>> {
+        let mut pairs: Vec<EndPair> = vec![];
+        let last_evaluation = self.evaluations + RANDOM_EVALUATIONS;
+        for attempt in 1..=tries {
+            let is_spent = self.evaluations >= last_evaluation || self.deadline.is_over();
+            if pairs.len() == count || is_spent || !monitor.keep_going() {
+                break;
+            }
+            let chosen = (attempt - 1) % self.ends.len();
+            let (start, end) = (self.start, &self.ends[chosen]);
+            let Some(first) = self.configuration(EndName::Start, start, None, attempt, monitor)? else { continue };
+            let name = self.name(chosen);
+            let Some(second) = self.configuration(name, end, None, attempt, monitor)? else { continue };
+            let pair = self.pair(first, second, chosen);
+            if accept(&pair) && pairs.iter().all(|known| !known.is_same(&pair)) {
+                pairs.push(pair);
+            }
+        }
+        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        Ok(pairs)
+    }
+
+    pub(super) fn pair(&self, start: Point, end: Point, chosen: usize) -> EndPair {
+        let duration = self.limits.quintic_duration(start.iter().zip(&end).map(|(start, end)| end - start));
+        EndPair { start, end, chosen, duration }
+    }
+
+    /// Options of a solve for an end.
+    pub(super) fn solve_options(&self) -> SolveOptions {
+        let limits = Some(self.position_limits.clone());
+        SolveOptions { task: self.task, limits, seed: self.seed, ..SolveOptions::default() }
+    }
+
+    /// Checks that a configuration is inside the limits.
+    fn require_inside(&self, name: EndName, end: &Endpoint) -> Result<()> {
+        match end {
+            Endpoint::Configuration(q) => self.position_limits.require_inside(&name.of_target(), 0.0, q),
+            Endpoint::Targets { .. } => Ok(()),
+        }
+    }
+
+    /// Solves for a configuration of an end, from `near` or a random start. The first attempt must succeed.
+    fn configuration(
+        &mut self,
+        name: EndName,
+        end: &Endpoint,
+        near: Option<&[f64]>,
+        attempt: usize,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<Point>> {
+        let target = match end {
+            Endpoint::Configuration(q) => return Ok(Some(q.as_slice().into())),
+            Endpoint::Targets { targets, .. } => &targets[0],
+        };
+        let start = match near {
+            Some(q) => Some(q.to_vec()),
+            None if attempt == 0 => None,
+            None => Some(self.random()),
+        };
+        let solution = self.solve(target, start, monitor)?;
+        match solution.status {
+            Status::Solved => Ok(Some(solution.q)),
+            _ if attempt == 0 => {
+                let problem = format!("the nearest configuration found stays {} away", solution.error);
+                Err(Error::Unreachable { what: name.of_target(), problem })
+            }
+            _ => Ok(None),
+        }
+    }
+
+    fn solve(&mut self, target: &Target, start: Option<Vec<f64>>, monitor: &mut dyn Monitor) -> Result<Solution> {
+        let options = SolveOptions { start, ..self.solve_options() };
+        let solution = solve(self.robot, target, &options, monitor)?;
+        self.evaluations += solution.evaluations;
+        Ok(solution)
+    }
+
+    fn random(&mut self) -> Vec<f64> {
+        let joints = self.robot.joints().iter().enumerate();
+        let ranges = joints.map(|(j, joint)| joint.sampling_range_within(self.limits.lower[j], self.limits.upper[j]));
+        ranges.map(|(lower, upper)| self.rng.uniform_in(lower, upper)).collect()
+    }
+
+    /// Returns the pair moved along its self-motion, or unchanged if that does not help.
+    fn improved(&mut self, pair: EndPair, monitor: &mut dyn Monitor) -> EndPair {
+        let free = [self.start, &self.ends[pair.chosen]].map(|end| match end {
+            Endpoint::Targets { targets, .. } => targets.first(),
+            Endpoint::Configuration(_) => None,
+        });
+        let mut moved = pair.clone();
+        self.evaluations += least_displacement::shorten(&self.freedom, free, &mut moved);
+        for (target, q) in free.into_iter().zip([&mut moved.start, &mut moved.end]) {
+            let Some(target) = target else { continue };
+            match self.solve(target, Some(q.to_vec()), monitor) {
+                Ok(solution) if solution.status == Status::Solved => *q = solution.q,
+                _ => return pair,
+            }
+        }
+        let moved = self.pair(moved.start, moved.end, pair.chosen);
+        if moved.duration < pair.duration { moved } else { pair }
+    }
+}
+
+/// The error of a search for a configuration, and the end that it concerns.
+enum Missing {
+    Start(Error),
+    End(Error),
+}

@@ -1,0 +1,234 @@
+//! RRT-Connect (Kuffner and LaValle, ICRA 2000): two trees grow towards each other until they form a clear path through joint
+//! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
+
+use super::configuration_tree::ConfigurationTree;
+use crate::obstacle::{LineCheck, Scene};
+use crate::plan::Deadline;
+use crate::rng::LazyRng;
+use crate::solver::Monitor;
+use crate::timing::{JointPolyline, MotionLimits};
+
+/// How the search for a path ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Connection {
+    /// A clear path.
+    Found(JointPolyline),
+    /// The budget was spent before the trees met.
+    NotFound,
+    /// The caller's monitor asked to stop.
+    Interrupted,
+}
+
+/// Length of an edge while a tree grows (rad, m).
+const STRIDE: f64 = 1.0;
+
+/// Comparisons of nodes for each configuration of the budget: about as much work again.
+const COMPARISONS: usize = 100;
+/// What drawing a sample costs, in comparisons.
+const SAMPLE: usize = 10;
+
+/// Draws after which a sample is taken even if it is not promising.
+const DRAWS: usize = 1000;
+
+/// What a path is wanted for.
+pub(super) struct Route<'r> {
+    pub start: &'r [f64],
+    /// Any of them will do.
+    pub ends: &'r [Vec<f64>],
+    /// Whether a path through a configuration can be good enough.
+    pub is_promising: &'r dyn Fn(&[f64]) -> bool,
+}
+
+/// The search: lines, ranges and budgets.
+pub(super) struct TreeSearch<'a> {
+    pub check: LineCheck<'a>,
+    /// Lowest and highest value of each joint.
+    pub ranges: Vec<(f64, f64)>,
+    /// Total number of configurations that may be examined.
+    pub budget: usize,
+    /// Time that the search may take.
+    pub deadline: Deadline,
+    /// The least that ever lay between the trees (rad, m).
+    pub gap: f64,
+    /// Nodes compared with a goal to find the nearest.
+    compared: usize,
+}
+
+impl<'a> TreeSearch<'a> {
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        limits: &MotionLimits,
+        margin: f64,
+        budget: usize,
+        deadline: Deadline,
+    ) -> Self {
+        let joints = scene.robot().joints().iter().enumerate();
+        let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
+        Self { check: LineCheck::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+    }
+
+    /// Whether a budget is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on them.
+    pub(super) fn is_spent(&self) -> bool {
+        let comparisons = self.budget.saturating_mul(COMPARISONS);
+        self.check.examined() >= self.budget || self.compared >= comparisons || self.deadline.is_over()
+    }
+
+    /// A path between ends that are clear.
+    pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
+        let n = route.start.len();
+        let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);
+        let mut other = ConfigurationTree::rooted(&self.ranges, route.ends.iter().map(Vec::as_slice));
+        let mut from_start = true;
+        let (mut sample, mut next) = (vec![0.0; n], vec![0.0; n]);
+        while !self.is_spent() {
+            if !monitor.keep_going() {
+                return Connection::Interrupted;
+            }
+            // The smaller tree grows.
+            if growing.len() > other.len() {
+                std::mem::swap(&mut growing, &mut other);
+                from_start = !from_start;
+            }
+            self.draw(route, rng, &mut sample);
+            self.compared += growing.len();
+            let Some((near, distance)) = growing.nearest(&sample) else { break };
+            if !growing.is_in_domain(near, distance) {
+                continue;
+            }
+            step_towards(growing.node(near), &sample, STRIDE / distance, &mut next);
+            let grew = self.check.is_clear(growing.node(near), &next);
+            growing.note(near, grew);
+            if !grew {
+                continue;
+            }
+            let reached = growing.add(&next, Some(near));
+            if let Some(meeting) = self.reach(&mut other, &next) {
+                let (mut path, mut rest) = (growing.path_from_root(reached), other.path_from_root(meeting));
+                rest.reverse();
+                path.extend(rest);
+                if !from_start {
+                    path.reverse();
+                }
+                path.dedup();
+                return Connection::Found(JointPolyline(path));
+            }
+        }
+        Connection::NotFound
+    }
+
+    /// Draws a configuration that is promising, if possible.
+    fn draw(&mut self, route: &Route, rng: &mut LazyRng, sample: &mut [f64]) {
+        for _ in 0..DRAWS {
+            self.compared += SAMPLE;
+            for (sample, (lower, upper)) in sample.iter_mut().zip(&self.ranges) {
+                *sample = rng.uniform_in(*lower, *upper);
+            }
+            if (route.is_promising)(sample) {
+                break;
+            }
+        }
+    }
+
+    /// Grows `tree` towards `goal` stride by stride; returns the node from which a clear line leads there.
+    fn reach(&mut self, tree: &mut ConfigurationTree, goal: &[f64]) -> Option<usize> {
+        self.compared += tree.len();
+        let (mut at, mut distance) = tree.nearest(goal)?;
+        let mut next = goal.to_vec();
+        while distance > STRIDE {
+            step_towards(tree.node(at), goal, STRIDE / distance, &mut next);
+            if self.is_spent() || !self.check.is_clear(tree.node(at), &next) {
+                self.gap = self.gap.min(distance);
+                return None;
+            }
+            at = tree.add(&next, Some(at));
+            distance -= STRIDE;
+        }
+        let met = self.check.is_clear(tree.node(at), goal);
+        self.gap = self.gap.min(if met { 0.0 } else { distance });
+        met.then_some(at)
+    }
+}
+
+/// Writes the configuration at `share` of the way, or the goal if that is past it.
+fn step_towards(from: &[f64], goal: &[f64], share: f64, next: &mut [f64]) {
+    let share = share.min(1.0);
+    for (next, (from, goal)) in next.iter_mut().zip(from.iter().zip(goal)) {
+        *next = if share < 1.0 { from + share * (goal - from) } else { *goal };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vector::distance;
+    use crate::rng;
+    use crate::robot::Robot;
+    use crate::shape::Shape;
+    use crate::solver::Unattended;
+
+    const MARGIN: f64 = 0.01;
+
+    /// Searches with `budget` from [-0.8, 0] to [0.8, 0]; returns what was found, and how many configurations were examined.
+    fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
+        let obstacles = [obstacle];
+        let limits = MotionLimits::new(&robot, None, "this test").unwrap();
+        let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
+        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
+        let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
+        let mut rng = rng::stream(1, 0);
+        let route = Route { start: &start, ends: &[end.to_vec()], is_promising: &|_| true };
+        let found = search.connect(&route, &mut rng, monitor);
+        if let Connection::Found(path) = &found {
+            let length =
+                |path: &JointPolyline| -> f64 { path.0.windows(2).map(|line| distance(&line[0], &line[1])).sum() };
+            let shorter = search.shorten(path.clone(), (&|_, _| true, 60), &mut rng, &mut Unattended);
+            assert!(length(&shorter) <= length(path) + 1e-12);
+            for path in [path, &shorter] {
+                assert_eq!((&path.0[0][..], &path.0[path.0.len() - 1][..]), (&start[..], &end[..]));
+                for line in path.0.windows(2) {
+                    for i in 0..=200 {
+                        let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
+                        let clearance = scene.clearance(&[at(0), at(1)]).unwrap();
+                        // Between two configurations that were examined a body may come a little nearer.
+                        assert!(clearance >= 0.5 * MARGIN, "{clearance} m");
+                    }
+                }
+            }
+        }
+        (found, search.check.examined())
+    }
+
+    #[test]
+    fn a_path_round_an_obstacle_is_clear_and_shortened() {
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
+        assert!(matches!(found, Connection::Found(_)), "{found:?}");
+    }
+
+    #[test]
+    fn the_budget_ends_a_search_without_a_way() {
+        let wall = Shape::cuboid([0.0, 0.0, 0.0], [4.0, 0.02, 1.0], None).unwrap();
+        let (found, examined) = connect(wall, 2000, &mut Unattended);
+        assert_eq!(found, Connection::NotFound);
+        assert!((2000..2200).contains(&examined), "{examined}"); // a line that was begun is examined to its end
+    }
+
+    #[test]
+    fn a_search_without_a_single_clear_step_ends_too() {
+        let everywhere = Shape::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
+        let (found, examined) = connect(everywhere, 2000, &mut Unattended);
+        assert!(found == Connection::NotFound && examined < 2200, "{examined}");
+    }
+
+    #[test]
+    fn a_monitor_interrupts_the_search() {
+        struct Impatient;
+        impl Monitor for Impatient {
+            fn keep_going(&mut self) -> bool {
+                false
+            }
+        }
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
+        assert_eq!(found, Connection::Interrupted);
+    }
+}

@@ -1,0 +1,271 @@
+//! Shared by planners with obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
+
+use std::ops::RangeInclusive;
+
+use super::planar_arm::PlanarArm;
+use super::planner_options::PointToPointOptions;
+use crate::error::{Error, Result};
+use crate::math::polynomial::evaluate;
+use crate::obstacle::{Contact, JointMotion, NearestContact, Scene};
+use crate::robot::Robot;
+use crate::timing::Violation;
+use crate::trajectory::{Coefficients, POWERS, Trajectory};
+
+/// Distance added to the margin at end configurations (m), so that motions to them can be certified.
+pub(crate) const RESERVE: f64 = 2e-6;
+
+/// Whether `robot` can collide: with an obstacle, or with itself where that is asked for, or by default if its shape is
+/// known.
+pub(crate) fn can_collide(robot: &Robot, options: &PointToPointOptions) -> bool {
+    let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    !options.obstacles.is_empty() || options.self_collision.unwrap_or(shape_known)
+}
+
+/// `robot` with a line for every link if it is a planar arm without a shape, as in Wang et al. (2019); `None` for any
+/// other robot, or if links must not touch each other.
+///
+/// # Errors
+/// As [`Robot::with_capsules_along_links`].
+pub(crate) fn as_lines(robot: &Robot, options: &PointToPointOptions) -> Result<Option<Robot>> {
+    let no_shape = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    let may_cross = options.self_collision != Some(true);
+    let is_planar = || PlanarArm::of(robot).is_some();
+    if no_shape && may_cross && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
+}
+
+/// The scene of `robot`, or of its `lines` if it has no shape, among the obstacles. Lines may cross each other: they have
+/// no thickness.
+///
+/// # Errors
+/// As [`Scene::new`].
+pub(crate) fn scene<'a>(
+    robot: &'a Robot,
+    lines: Option<&'a Robot>,
+    options: &'a PointToPointOptions,
+) -> Result<Scene<'a>> {
+    let scene = Scene::new(lines.unwrap_or(robot), &options.obstacles)?;
+    let may_cross = lines.is_some() || options.self_collision == Some(false);
+    Ok(if may_cross { scene.without_self_collision() } else { scene })
+}
+
+/// Checks that a configuration keeps the margin; `what` names it in the error.
+///
+/// # Errors
+/// [`Error::InCollision`].
+pub(crate) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
+    let kept = margin + RESERVE;
+    match scene.nearest(q)? {
+        Some(contact) if contact.distance < kept => {
+            let (other, depth) = (contact.other.to_string(), contact.depth(kept));
+            let remedy = if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) {
+                format!("; {}", contact.remedy())
+            } else {
+                String::new()
+            };
+            Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The nearest two bodies on a motion at the time `at` (s).
+///
+/// # Errors
+/// None in practice: the joints are those of the robot.
+pub(crate) fn nearest_at(scene: &Scene, motion: &Trajectory, at: f64) -> Result<Option<NearestContact>> {
+    scene.nearest_contact(&configuration_at(motion, at)?)
+}
+
+/// The configuration of a motion at the time `t` (s).
+///
+/// # Errors
+/// [`Error::NotFinite`] for a time that is not finite.
+pub(crate) fn configuration_at(motion: &Trajectory, t: f64) -> Result<Vec<f64>> {
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; motion.joints().len()]);
+    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    Ok(q)
+}
+
+/// Returns the violation for a distance below the margin.
+pub(crate) fn too_near(contact: &Contact, margin: f64) -> Violation {
+    let what = format!("distance of link '{}' from {}", contact.link, contact.other);
+    Violation { what, value: contact.distance, bound: margin, unit: "m".into() }
+}
+
+/// A trajectory as a motion that can be certified; its parameter is time (s).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TimedMotion<'a> {
+    trajectory: &'a Trajectory,
+    /// Whether no velocity jumps.
+    smooth: bool,
+}
+
+/// A velocity that jumps by less (rad/s, m/s) does so by rounding.
+const JUMP: f64 = 1e-9;
+
+impl<'a> TimedMotion<'a> {
+    /// The motion along `trajectory`.
+    pub fn new(trajectory: &'a Trajectory) -> Self {
+        let (knots, polynomials, n) = (trajectory.knots(), trajectory.coefficients(), trajectory.joints().len());
+        let jumps = |i: usize| {
+            let (before, after) = (&polynomials[i], &polynomials[i + n]);
+            let (piece, last) = (i / n, evaluate(before, knots[i / n + 1] - knots[i / n])[1]);
+            piece + 2 < knots.len() && (last - after[1]).abs() > JUMP * (1.0 + last.abs())
+        };
+        let inner = polynomials.len() - n;
+        Self { trajectory, smooth: !(0..inner).any(jumps) }
+    }
+
+    /// The piece in which a time is; the later one at a knot.
+    fn piece_of(&self, t: f64) -> usize {
+        let knots = self.trajectory.knots();
+        knots.partition_point(|knot| *knot <= t).saturating_sub(1).min(knots.len() - 2)
+    }
+
+    /// The pieces of an interval.
+    fn pieces(&self, from: f64, to: f64) -> RangeInclusive<usize> {
+        let (first, last) = (self.piece_of(from), self.piece_of(to));
+        // One that begins where the interval ends does not count.
+        first..=if last > first && self.trajectory.knots()[last] >= to { last - 1 } else { last }
+    }
+}
+
+impl JointMotion for TimedMotion<'_> {
+    fn write(&self, at: f64, q: &mut [f64]) {
+        let (piece, n) = (self.piece_of(at), q.len());
+        let (s, polynomials) = (at - self.trajectory.knots()[piece], self.trajectory.coefficients());
+        for (q, polynomial) in q.iter_mut().zip(&polynomials[piece * n..]) {
+            *q = value(polynomial, s);
+        }
+    }
+
+    fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
+        let (knots, polynomials, n) = (self.trajectory.knots(), self.trajectory.coefficients(), off_line.len());
+        let pieces = self.pieces(from, to);
+        if !self.smooth && pieces.end() > pieces.start() {
+            // Divided at its knots, it is smooth.
+            return off_line.fill(f64::INFINITY);
+        }
+        let share = (to - from).powi(2) / 8.0;
+        for piece in pieces {
+            let (begin, end) = (knots[piece].max(from), knots[piece + 1].min(to));
+            let (middle, half) = (0.5 * (begin + end) - knots[piece], 0.5 * (end - begin).max(0.0));
+            for (off_line, polynomial) in off_line.iter_mut().zip(&polynomials[piece * n..]) {
+                *off_line = off_line.max(share * largest_acceleration(polynomial, middle, half));
+            }
+        }
+    }
+
+    fn middle(&self, from: f64, to: f64) -> Option<f64> {
+        let (knots, pieces) = (self.trajectory.knots(), self.pieces(from, to));
+        let middle = 0.5 * (from + to);
+        let distance = |knot: &f64| (knot - middle).abs();
+        let inner = knots[pieces.start() + 1..=*pieces.end()].iter().copied();
+        let nearest = inner.min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        Some(nearest.unwrap_or(middle)).filter(|middle| from < *middle && *middle < to)
+    }
+}
+
+/// The value of a polynomial at `s`.
+fn value(polynomial: &Coefficients, s: f64) -> f64 {
+    polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+/// A bound on the second derivative of a polynomial within `half` of `middle`.
+fn largest_acceleration(polynomial: &Coefficients, middle: f64, half: f64) -> f64 {
+    if polynomial[2..].iter().all(|c| *c == 0.0) {
+        return 0.0;
+    }
+    // Taylor's series about the middle ends, so that its terms bound it.
+    let local = shifted(polynomial, middle);
+    (2..POWERS).rev().fold(0.0, |sum, power| sum * half + (power * (power - 1)) as f64 * local[power].abs())
+}
+
+/// The same polynomial in powers of s - `by`, by repeated synthetic division.
+fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
+    let mut c = *coefficients;
+    for low in 0..POWERS - 1 {
+        for power in (low..POWERS - 1).rev() {
+            c[power] += by * c[power + 1];
+        }
+    }
+    c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use crate::shape::Shape;
+    use crate::trajectory::polynomial;
+
+    /// Two polynomials that meet at 0.8 s, with a velocity jump there or without.
+    fn motion(jump: f64) -> Trajectory {
+        let mut rng = rng::stream(1, 0);
+        let mut draw = || polynomial([(); 5].map(|()| rng.uniform_in(-1.0, 1.0)));
+        let (first, second) = (draw(), draw());
+        let [q, qd, _] = evaluate(&first, 0.8);
+        let second =
+            Coefficients::from(std::array::from_fn(|k| [q, qd + jump, second[2], second[3], second[4], 0.0, 0.0][k]));
+        Trajectory::new(vec!["a".into()], vec![0.0, 0.8, 2.0], vec![first, second]).unwrap()
+    }
+
+    #[test]
+    fn no_joint_gets_farther_off_the_line_than_the_bound() {
+        let motion = motion(0.0);
+        let timed = TimedMotion::new(&motion);
+        for (from, to) in [(0.0, 2.0), (0.1, 0.5), (0.7, 0.9), (1.2, 1.3), (0.4, 0.8), (0.8, 1.1)] {
+            let (mut ends, mut off_line) = ([[0.0]; 2], [0.0]);
+            timed.write(from, &mut ends[0]);
+            timed.write(to, &mut ends[1]);
+            timed.write_off_line(from, to, &mut off_line);
+            let mut largest: f64 = 0.0;
+            for i in 1..500 {
+                let share = f64::from(i) / 500.0;
+                let mut q = [0.0];
+                timed.write(from + share * (to - from), &mut q);
+                let off = (q[0] - ends[0][0] - share * (ends[1][0] - ends[0][0])).abs();
+                assert!(off <= 4.0 * share * (1.0 - share) * off_line[0] + 1e-12, "[{from}, {to}] at {share}: {off}");
+                largest = largest.max(off);
+            }
+            assert!(to - from > 0.25 || off_line[0] <= 2.0 * largest + 1e-12, "[{from}, {to}]: {off_line:?} is loose");
+        }
+    }
+
+    #[test]
+    fn a_motion_with_a_jump_is_divided_there() {
+        let motion = motion(0.5);
+        let timed = TimedMotion::new(&motion);
+        let off_line = |from: f64, to: f64| {
+            let mut off_line = [0.0];
+            timed.write_off_line(from, to, &mut off_line);
+            off_line[0]
+        };
+        assert_eq!(off_line(0.7, 0.9), f64::INFINITY);
+        assert!(off_line(0.7, 0.8).is_finite() && off_line(0.8, 0.9).is_finite());
+        assert_eq!(
+            (timed.middle(0.0, 2.0), timed.middle(0.8, 1.0), timed.middle(0.8, 0.8)),
+            (Some(0.8), Some(0.9), None)
+        );
+    }
+
+    #[test]
+    fn an_arm_without_obstacles_collides_only_with_a_known_shape() {
+        let bare = Robot::planar(&[1.0, 1.0]).unwrap();
+        let thick = bare.with_capsules_along_links(0.1).unwrap();
+        let ball = Shape::sphere([3.0, 0.0, 0.0], 0.1).unwrap();
+        let with = |obstacles: &[&Shape], self_collision| PointToPointOptions {
+            obstacles: obstacles.iter().map(|shape| (*shape).clone()).collect(),
+            self_collision,
+            ..PointToPointOptions::default()
+        };
+        let (empty, obstructed) = (with(&[], None), with(&[&ball], None));
+        assert!(!can_collide(&bare, &empty) && can_collide(&bare, &obstructed) && can_collide(&thick, &empty));
+        assert!(can_collide(&bare, &with(&[], Some(true))) && !can_collide(&thick, &with(&[], Some(false))));
+        assert!(can_collide(&thick, &with(&[&ball], Some(false))));
+        assert!(
+            as_lines(&bare, &empty).unwrap().is_some() && as_lines(&bare, &with(&[], Some(true))).unwrap().is_none()
+        );
+        assert!(as_lines(&Robot::named("panda").unwrap(), &empty).unwrap().is_none());
+    }
+}

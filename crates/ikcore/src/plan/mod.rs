@@ -1,0 +1,47 @@
+//! What a planner is asked and what it returns: ends, options, the [`Plan`] and its checks.
+//!
+//! | file | what |
+//! |---|---|
+//! | `endpoint` | [`Endpoint`]: a start or an end, by target or configuration |
+//! | `planner_options` | method, objective, limits, budget |
+//! | `straight_line` | [`StraightLine`]: direction, length and allowed contacts of a straight piece |
+//! | `tpbso_options` | [`Tpbso`] |
+//! | `cost` | [`Cost`]: duration, joint travel or tip travel |
+//! | `plan` | [`Plan`]: the result |
+//! | `retime` | [`Plan::retime`]: other limits for a finished plan |
+//! | `joined` | a plan, and motions before and after it |
+//! | `collision_checks` | margins, collision errors and certifiable motions |
+//! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
+//! | `search` | runs a solver on the cost of a plan and records its progress |
+//! | `deadline` | the wall-clock budget of a plan |
+
+pub(crate) mod collision_checks;
+mod cost;
+mod deadline;
+mod endpoint;
+mod joined;
+#[allow(clippy::module_inception)]
+mod plan;
+mod planar_arm;
+mod planner_options;
+mod retime;
+mod search;
+mod straight_line;
+mod tpbso_options;
+
+pub(crate) use collision_checks::{
+    RESERVE, TimedMotion, as_lines, can_collide, configuration_at, nearest_at, refuse_collision, scene, too_near,
+};
+pub use cost::Cost;
+pub(crate) use cost::tip_travel_along;
+pub(crate) use deadline::Deadline;
+pub use endpoint::Endpoint;
+pub(crate) use endpoint::{EndName, no_usable_end};
+pub(crate) use joined::joined;
+pub use plan::{Freed, Improvement, Peak, Plan};
+pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
+pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
+pub use planner_options::{AlongPathMethod, AlongPathOptions, PointToPointMethod, PointToPointOptions};
+pub(crate) use search::{Search, SearchResult};
+pub use straight_line::{LineContact, LineFrame, StraightLine};
+pub use tpbso_options::Tpbso;

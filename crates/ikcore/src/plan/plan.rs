@@ -1,0 +1,244 @@
+//! The result of a planner.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::collision_checks::{TimedMotion, nearest_at};
+use super::cost::Cost;
+use super::planar_arm::Orientations;
+use crate::error::{Error, Result};
+use crate::obstacle::{NearestContact, Surroundings, Sweep};
+use crate::robot::Robot;
+use crate::solver::Status;
+use crate::stored::from_bytes;
+use crate::timing::{JointPath, MotionLimits, Violation};
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+/// A planned motion and the outcome of the search for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The best motion that keeps all limits, or the one that violates them least.
+    pub trajectory: Trajectory,
+    /// Quantity that was minimised.
+    pub objective: Cost,
+    /// Value of the objective on the trajectory (s, rad or m).
+    pub cost: f64,
+    /// Improvements of the search, in the order of evaluations.
+    pub history: Vec<Improvement>,
+    /// A distance (m) that robot and obstacles keep at least on the trajectory, and links from each other; `None` without obstacles.
+    /// [`least_distance`](Self::least_distance) finds the smallest.
+    pub clearance: Option<f64>,
+    /// The nearest two bodies, where on the trajectory they are nearest, if that is known.
+    pub nearest: Option<NearestContact>,
+    /// Why no clear motion was found, if that is so.
+    pub obstruction: Option<String>,
+    /// Index of the end that was taken, of those given; `None` for motions along a path.
+    pub chosen_end: Option<usize>,
+    /// How the motion got out of a contact at its start, if it had to.
+    pub freed: Option<Freed>,
+    /// What the whole motion keeps clear of, if anything.
+    pub surroundings: Option<Surroundings>,
+    /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
+    pub accuracy: Option<f64>,
+    /// Positions of the path (m), joined by straight lines; `None` for point-to-point plans.
+    pub reference: Option<Vec<[f64; 3]>>,
+    /// The orientations chosen for the free links of a planar arm, at every point of the path, from the last link
+    /// inwards; empty for other arms.
+    pub redundancy: Vec<Orientations>,
+    /// The joint paths whose timing was optimised, each from rest to rest; empty if the trajectory is the only record of
+    /// its path.
+    pub path: Vec<JointPath>,
+    /// The largest acceleration of a joint without an acceleration limit; `None` if all joints have one.
+    pub peak: Option<Peak>,
+    /// Bounds that the trajectory violates; empty for a plan that succeeded.
+    pub violations: Vec<Violation>,
+    /// [`Status::Solved`] for a trajectory without violations; else why the search ended.
+    pub status: Status,
+    /// Evaluations of the planner's cost.
+    pub evaluations: usize,
+    /// Time taken.
+    pub elapsed: Duration,
+}
+
+/// The way out of a contact at the start of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Freed {
+    /// The smallest distance at the start (m), below the margin; negative by the depth of an overlap.
+    pub clearance: f64,
+    /// The time from which on the margin is kept (s).
+    pub until: f64,
+}
+
+/// The largest acceleration of a plan that no limit bounds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// Name of the joint.
+    pub joint: String,
+    /// Acceleration (rad/s^2, m/s^2).
+    pub acceleration: f64,
+    /// The unit, "rad/s^2" or "m/s^2".
+    pub unit: String,
+}
+
+/// An improvement during a search.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Improvement {
+    /// Evaluations up to and including this one.
+    pub evaluations: usize,
+    /// The lowest cost from then on; it includes penalties as long as the plan violates limits.
+    pub cost: f64,
+}
+
+/// What to try where a path leads into collision.
+const ADVICE_ALONG_PATH: &str =
+    "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
+
+/// Number of violations that a message lists.
+const NAMED_IN_MESSAGE: usize = 3;
+
+impl Plan {
+    /// A solved plan of a motion of which only the value `cost` of its `objective` is known.
+    pub(crate) fn of(trajectory: Trajectory, objective: Cost, cost: f64) -> Self {
+        Self {
+            trajectory,
+            objective,
+            cost,
+            history: vec![],
+            clearance: None,
+            nearest: None,
+            obstruction: None,
+            chosen_end: None,
+            freed: None,
+            surroundings: None,
+            accuracy: None,
+            reference: None,
+            redundancy: vec![],
+            path: vec![],
+            peak: None,
+            violations: vec![],
+            status: Status::Solved,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+        }
+    }
+
+    /// The plan that [`to_bytes`](crate::stored::to_bytes) stored.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] for bytes of another version, damaged ones, those of something else, or values that no plan has.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let plan: Self = from_bytes("plan", bytes)?;
+        if plan.redundancy.windows(2).any(|points| points[0].len() != points[1].len()) {
+            let problem = "its points have different numbers of redundant links".into();
+            return Err(Error::Corrupt { what: "plan".into(), problem });
+        }
+        Ok(plan)
+    }
+
+    /// Notes the largest acceleration of joints that have no acceleration limit in `limits`.
+    pub(crate) fn name_peak(&mut self, limits: &MotionLimits) {
+        let reached = self.trajectory.max_acceleration();
+        let unlimited = (0..limits.dof()).filter(|j| limits.acceleration[*j].is_infinite());
+        let highest = unlimited.max_by(|i, k| reached[*i].total_cmp(&reached[*k]));
+        self.peak = highest.map(|j| Peak {
+            joint: limits.joint_name(j).into(),
+            acceleration: reached[j],
+            unit: limits.acceleration_unit(j).into(),
+        });
+    }
+
+    /// The smallest distance (m) on the trajectory, and the nearest two bodies where it occurs; `None` without obstacles. `robot` is
+    /// the robot of the plan.
+    ///
+    /// # Errors
+    /// Those of [`Surroundings::clear_space`] for another robot.
+    pub fn least_distance(&self, robot: &Robot) -> Result<Option<(f64, Option<NearestContact>)>> {
+        let Some(clearance) = self.clearance else { return Ok(None) };
+        let known = Ok(Some((clearance, self.nearest.clone())));
+        let (None, Some(surroundings)) = (&self.nearest, &self.surroundings) else { return known };
+        let Some(space) = surroundings.clear_space(robot)? else { return known };
+        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
+        let Some(near) = Sweep::new(space.scene()).smallest(&motion, whole) else { return known };
+        let nearest = nearest_at(space.scene(), &self.trajectory, near.at)?;
+        // What is certified may be more than the search for the smallest distance proves.
+        Ok(Some((near.contact.distance.max(clearance), nearest)))
+    }
+
+    /// Returns a sentence: what happened, and what to try.
+    pub fn message(&self) -> String {
+        if let Some(obstruction) = &self.obstruction {
+            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH } else { self.advice() };
+            return format!("no clear plan for {obstruction}; {advice}");
+        }
+        let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
+        match self.status {
+            Status::Solved => format!(
+                "planned with {cost}{}{}{}",
+                self.clearance_in_words(),
+                self.freed_in_words(),
+                self.peak_in_words()
+            ),
+            Status::Interrupted if self.violations.is_empty() => {
+                format!("stopped with {cost}: {}", self.status.advice())
+            }
+            _ => format!(
+                "no plan keeps everything; the least violating one breaks: {}; {}",
+                self.broken(),
+                self.advice()
+            ),
+        }
+    }
+
+    /// Of a certified motion.
+    fn clearance_in_words(&self) -> String {
+        let Some(surroundings) = &self.surroundings else { return String::new() };
+        let clear = match self.clearance {
+            None => ", with nothing to touch".into(),
+            Some(clearance) => {
+                let at_least = if self.nearest.is_none() { "at least " } else { "" };
+                format!(", {at_least}{} m clear of everything", number(clearance))
+            }
+        };
+        match surroundings.first_open_mesh() {
+            None => clear,
+            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
+        }
+    }
+
+    fn freed_in_words(&self) -> String {
+        self.freed.map_or_else(String::new, |Freed { clearance, until }| {
+            let (clearance, until) = (number(clearance), number(until));
+            format!("; it begins with a clearance of {clearance} m and keeps the margin after {until} s")
+        })
+    }
+
+    fn peak_in_words(&self) -> String {
+        self.peak.as_ref().map_or_else(String::new, |Peak { joint, acceleration, unit }| {
+            let acceleration = number(*acceleration);
+            format!("; without an acceleration limit joint '{joint}' accelerates with up to {acceleration} {unit}")
+        })
+    }
+
+    fn advice(&self) -> &'static str {
+        match (self.accuracy, self.clearance) {
+            (None, None) => "try another seed, a larger budget in stop=Stop(...) or wider limits",
+            (None, Some(_)) => {
+                "try another seed, a larger budget in stop=Stop(...), a smaller margin, ends that are clear or wider limits"
+            }
+            (Some(_), _) => {
+                "try another seed, a larger budget in stop=Stop(...), wider limits, a larger accuracy, or for \
+                 method=\"tpbso\" denser points"
+            }
+        }
+    }
+
+    fn broken(&self) -> String {
+        let mut named: Vec<String> = self.violations.iter().take(NAMED_IN_MESSAGE).map(Violation::to_string).collect();
+        if let Some(more @ 1..) = self.violations.len().checked_sub(NAMED_IN_MESSAGE) {
+            named.push(format!("and {more} more"));
+        }
+        named.join("; ")
+    }
+}

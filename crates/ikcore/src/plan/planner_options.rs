@@ -1,0 +1,157 @@
+//! Options of the planners: method, objective, limits and budget.
+
+use std::str::FromStr;
+
+use super::cost::Cost;
+use super::straight_line::StraightLine;
+use super::tpbso_options::Tpbso;
+use crate::error::{Error, Result};
+use crate::limits::Limits;
+use crate::obstacle::{Obstacles, Surroundings};
+use crate::robot::Robot;
+use crate::solver::{AnySolver, DerivativeFree, Stop};
+use crate::task::Task;
+use crate::timing::MotionLimits;
+
+/// Methods of point-to-point planning.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum PointToPointMethod {
+    /// Configurations of both ends with the smallest maximum displacement, joined as fast as the limits allow.
+    #[default]
+    MinMax,
+    /// Polynomials through a via point, found by a swarm.
+    Tpbso(Tpbso),
+}
+
+impl From<Tpbso> for PointToPointMethod {
+    fn from(options: Tpbso) -> Self {
+        Self::Tpbso(options)
+    }
+}
+
+impl FromStr for PointToPointMethod {
+    type Err = Error;
+
+    /// Reads "minmax" or "tpbso", each with its defaults.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "minmax" => Ok(Self::MinMax),
+            "tpbso" => Ok(Tpbso::default().into()),
+            _ => Err(Error::unknown_option("method", name, &["minmax", "tpbso"])),
+        }
+    }
+}
+
+/// Methods of planning along a path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum AlongPathMethod {
+    /// Redundancy and fastest timing in one search.
+    #[default]
+    Timed,
+    /// Redundancy found by a swarm, uniform time, splines through every second point.
+    Tpbso(Tpbso),
+}
+
+impl From<Tpbso> for AlongPathMethod {
+    fn from(options: Tpbso) -> Self {
+        Self::Tpbso(options)
+    }
+}
+
+impl FromStr for AlongPathMethod {
+    type Err = Error;
+
+    /// Reads "timed" or "tpbso", each with its defaults.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "timed" => Ok(Self::Timed),
+            "tpbso" => Ok(Tpbso::default().into()),
+            _ => Err(Error::unknown_option("method", name, &["timed", "tpbso"])),
+        }
+    }
+}
+
+/// Options of [`plan_point_to_point`](super::plan_point_to_point).
+#[derive(Debug, Clone, Default)]
+pub struct PointToPointOptions {
+    /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
+    pub start_velocity: Option<Vec<f64>>,
+    /// A straight line of the tip before the end.
+    pub approach: Option<StraightLine>,
+    /// A straight line of the tip after the start.
+    pub retreat: Option<StraightLine>,
+    /// Whether a start that is nearer to something than the margin moves out first.
+    pub free_start: bool,
+    /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
+    pub task: Option<Task>,
+    /// The planner.
+    pub method: PointToPointMethod,
+    /// Quantity to minimise.
+    pub objective: Cost,
+    /// Obstacles to avoid.
+    pub obstacles: Obstacles,
+    /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
+    pub margin: Option<f64>,
+    /// Whether links must not touch each other. `None`: where the robot has bodies.
+    pub self_collision: Option<bool>,
+    /// Limits to keep. `None` means the robot's.
+    pub limits: Option<Limits>,
+    /// Budget of the search. `None` means the method's own.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws; the same seed gives the same bits.
+    pub seed: u64,
+}
+
+impl PointToPointOptions {
+    /// What the motion keeps clear of.
+    pub(crate) fn surroundings(&self) -> Surroundings {
+        let obstacles = Some(self.obstacles.clone());
+        Surroundings { obstacles, margin: self.margin, self_collision: self.self_collision }
+    }
+}
+
+/// Options of [`plan_along_path`](super::plan_along_path).
+#[derive(Debug, Clone, Default)]
+pub struct AlongPathOptions {
+    /// The planner.
+    pub method: AlongPathMethod,
+    /// Quantity to minimise.
+    pub objective: Cost,
+    /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
+    pub task: Option<Task>,
+    /// What the motion keeps clear of. By default nothing is checked.
+    pub surroundings: Surroundings,
+    /// Start configuration (n,). `None` leaves it to the planner.
+    pub start: Option<Vec<f64>>,
+    /// Limits to keep. `None` means the robot's.
+    pub limits: Option<Limits>,
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad). `None` means the method's
+    /// own.
+    pub accuracy: Option<f64>,
+    /// The solver of [`AlongPathMethod::Timed`]. `None` means differential evolution. [`Tpbso`] has its own.
+    pub solver: Option<AnySolver<DerivativeFree>>,
+    /// Budget of the search. `None` means the method's own.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws; the same seed gives the same bits.
+    pub seed: u64,
+}
+
+impl PointToPointOptions {
+    /// Whether the motion has pieces besides the way from start to end.
+    pub(crate) fn has_pieces(&self) -> bool {
+        self.approach.is_some() || self.retreat.is_some() || self.free_start
+    }
+}
+
+impl AlongPathOptions {
+    /// Returns the given start, checked against the limits; `None` if the planner chooses it.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
+    pub(crate) fn start_within(&self, robot: &Robot, limits: &MotionLimits) -> Result<Option<&[f64]>> {
+        let Some(q) = &self.start else { return Ok(None) };
+        robot.check("start_q", q)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
+        Ok(Some(q))
+    }
+}

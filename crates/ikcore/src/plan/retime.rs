@@ -1,0 +1,69 @@
+//! Other limits for a finished plan: the same path, passed at other times.
+
+use super::collision_checks::{TimedMotion, too_near};
+use super::plan::{Freed, Plan};
+use crate::error::{Error, Result};
+use crate::limits::Limits;
+use crate::obstacle::Sweep;
+use crate::robot::Robot;
+use crate::solver::Stopwatch;
+use crate::timing::{MotionLimits, TimingLimits, scaled, time_all};
+
+const METHOD: &str = "retime";
+
+impl Plan {
+    /// The same path as fast as these `limits` allow; `None` means those of `robot`, for which the plan was made.
+    ///
+    /// The timing of a plan that has [`path`](Self::path) is optimised again. Any other motion is scaled in time as a
+    /// whole, so that it passes the very same configurations. Either way its clearance and accuracy remain.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for a plan with violations, or for jerk limits on a motion whose acceleration jumps; errors
+    /// of the limits.
+    pub fn retime(&self, robot: &Robot, limits: Option<&Limits>) -> Result<Self> {
+        let stopwatch = Stopwatch::start();
+        let limits_of_all = limits.cloned().unwrap_or_else(|| Limits::of(robot));
+        let limits = MotionLimits::new(robot, Some(&limits_of_all), METHOD)?;
+        if !self.violations.is_empty() {
+            let problem = format!("only a plan without violations can be retimed, and this one: {}", self.message());
+            return Err(Error::Infeasible { problem });
+        }
+        let trajectory = if self.path.is_empty() {
+            scaled(&self.trajectory, &limits)?
+        } else {
+            time_all(&self.path, &TimingLimits::new(&limits_of_all, METHOD)?)?
+        };
+        let violations = limits.violations(&trajectory);
+        if let Some(violation) = violations.first() {
+            let problem = format!("the path of the plan leaves the limits: {violation}");
+            return Err(Error::Infeasible { problem });
+        }
+        let cost = self.objective.of(robot, &trajectory);
+        let slower = trajectory.duration() / self.trajectory.duration();
+        let freed = self.freed.map(|freed| Freed { until: freed.until * slower, ..freed });
+        let mut retimed = Self { trajectory, cost, freed, elapsed: stopwatch.elapsed(), ..self.clone() };
+        retimed.certify(robot, limits.limit_jerk())?;
+        retimed.name_peak(&limits);
+        Ok(retimed)
+    }
+
+    /// Checks that the motion keeps the margin. `smoothed` for jerk limits, it leaves the path a little.
+    fn certify(&mut self, robot: &Robot, smoothed: bool) -> Result<()> {
+        let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
+        let Some(space) = space else { return Ok(()) };
+        let (scene, margin) = (space.scene(), space.margin());
+        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
+        let mut sweep = Sweep::new(scene);
+        if let Err(near) = sweep.check(&motion, whole, margin) {
+            let violation = too_near(&near.contact, margin);
+            let problem =
+                format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
+            return Err(Error::Infeasible { problem });
+        }
+        if smoothed {
+            // Found when it is asked for.
+            (self.clearance, self.nearest) = (Some(margin), None);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,243 @@
+//! Geometric path of the joints: cubics in a path parameter, without timing.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result, require_finite};
+use crate::interrupt::checkpoint_at;
+use crate::math::polynomial::{derivative, roots};
+
+/// Number of coefficients of a cubic.
+pub(super) const POWERS: usize = 4;
+
+/// Largest difference of a derivative on both sides of a break before it counts as a jump (relative to its size there).
+const JUMP_TOLERANCE: f64 = 1e-9;
+
+/// Slope, relative to the largest of the path, below which it counts as zero: rounding error.
+const VANISHING: f64 = 1e-12;
+
+/// A continuous path of all joints: piecewise cubics q(s) in the path parameter s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)")]
+pub struct JointPath {
+    joints: Vec<String>,
+    /// Path parameters of the starts of all pieces, and of the end of the last.
+    breaks: Vec<f64>,
+    /// Length of each piece in the parameter. Differences of `breaks` would lose the digits of a short piece that
+    /// begins far along the path.
+    lengths: Vec<f64>,
+    /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
+    /// point needs one power of all joints.
+    coefficients: Vec<f64>,
+}
+
+/// Stored paths are checked again.
+impl TryFrom<(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)> for JointPath {
+    type Error = Error;
+
+    fn try_from(parts: (Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)) -> Result<Self> {
+        let (joints, breaks, lengths, coefficients) = parts;
+        let pieces = lengths.len();
+        let fits = pieces > 0 && breaks.len() == pieces + 1 && coefficients.len() == pieces * POWERS * joints.len();
+        let increases = breaks.windows(2).all(|ends| ends[0] < ends[1]) && lengths.iter().all(|length| *length > 0.0);
+        if joints.is_empty() || !fits || !increases {
+            return Err(Error::InvalidPath { problem: "its parts contradict each other".into() });
+        }
+        require_finite("joint path", &breaks, |i| format!("break {i}"))?;
+        require_finite("joint path", &coefficients, |i| format!("coefficient {i}"))?;
+        Ok(Self::from_parts(joints, breaks, lengths, coefficients))
+    }
+}
+
+/// One of the two ends of a path.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum PathEnd {
+    Start,
+    End,
+}
+
+impl PathEnd {
+    /// Name in messages and options.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::End => "end",
+        }
+    }
+}
+
+impl JointPath {
+    /// A path of pieces that were already checked.
+    pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, lengths: Vec<f64>, coefficients: Vec<f64>) -> Self {
+        Self { joints, breaks, lengths, coefficients }
+    }
+
+    /// Concatenates paths, each of which starts where the previous one ends; at least one.
+    pub(crate) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
+        paths.into_iter().reduce(|mut all, next| {
+            all.breaks.extend(&next.breaks[1..]);
+            all.lengths.extend(&next.lengths);
+            all.coefficients.extend(&next.coefficients);
+            all
+        })
+    }
+
+    /// Names of the joints.
+    pub fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// Path parameters of the starts of all pieces, and of the end of the last.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// Number of pieces.
+    pub fn pieces(&self) -> usize {
+        self.breaks.len() - 1
+    }
+
+    /// Length of a piece in the path parameter.
+    pub fn length(&self, piece: usize) -> f64 {
+        self.lengths[piece]
+    }
+
+    /// Coefficients of all joints in a piece, for the powers 1, s, s^2 and s^3.
+    #[inline]
+    pub(super) fn powers(&self, piece: usize) -> [&[f64]; POWERS] {
+        let n = self.joints.len();
+        let of_piece = &self.coefficients[piece * POWERS * n..(piece + 1) * POWERS * n];
+        [0, 1, 2, 3].map(|power| &of_piece[power * n..(power + 1) * n])
+    }
+
+    /// Position of one joint and its first and second derivative by the path parameter, at `from` within a piece.
+    pub(super) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
+        let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+        [
+            c0 + from * (c1 + from * (c2 + from * c3)),
+            c1 + from * (2.0 * c2 + from * 3.0 * c3),
+            2.0 * c2 + 6.0 * from * c3,
+        ]
+    }
+
+    /// Writes the position of all joints (rad or m) at the path parameter `s`, clamped to the path.
+    pub fn position(&self, s: f64, q: &mut [f64]) {
+        let (piece, from) = self.locate(s);
+        for (joint, q) in q.iter_mut().enumerate() {
+            *q = self.joint_at(piece, from, joint)[0];
+        }
+    }
+
+    /// The piece that contains the path parameter `s`, clamped to the path, and the parameter within it.
+    pub(super) fn locate(&self, s: f64) -> (usize, f64) {
+        let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
+        (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
+    }
+
+    /// The piece at an end of the path, and the parameter of the end within it.
+    fn place_of(&self, end: PathEnd) -> (usize, f64) {
+        match end {
+            PathEnd::Start => (0, 0.0),
+            PathEnd::End => (self.pieces() - 1, self.length(self.pieces() - 1)),
+        }
+    }
+
+    /// Euclidean norm of dq/ds at an end of the path.
+    pub(super) fn slope(&self, end: PathEnd) -> f64 {
+        let (piece, from) = self.place_of(end);
+        (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Whether dq/ds vanishes at an end of the path, e.g. for a clamped spline.
+    pub(super) fn has_no_direction(&self, end: PathEnd) -> bool {
+        let (piece, _) = self.place_of(end);
+        let chord = (0..self.joints.len())
+            .map(|joint| self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0])
+            .fold(0.0, |sum: f64, d| sum + d * d)
+            .sqrt();
+        self.slope(end) <= VANISHING * chord / self.length(piece)
+    }
+
+    /// Whether the direction jumps between this piece and the next, so that the joints must stop there.
+    pub(super) fn has_corner_after(&self, piece: usize) -> bool {
+        self.jumps_after(piece, 1)
+    }
+
+    /// Whether the second derivative jumps between this piece and the next: the jerk would be infinite.
+    pub(super) fn has_curvature_jump_after(&self, piece: usize) -> bool {
+        self.has_corner_after(piece) || self.jumps_after(piece, 2)
+    }
+
+    fn jumps_after(&self, piece: usize, order: usize) -> bool {
+        let (end, mut jump, mut size) = (self.length(piece), 0.0_f64, 0.0_f64);
+        for joint in 0..self.joints.len() {
+            let [before, after] = [self.joint_at(piece, end, joint), self.joint_at(piece + 1, 0.0, joint)];
+            jump = jump.max((after[order] - before[order]).abs());
+            // The rounding error of the second derivative is proportional to the first.
+            let scale = |at: &[f64; 3]| at[1].abs() / end.powi(order as i32 - 1) + at[order].abs();
+            size = size.max(scale(&before)).max(scale(&after));
+        }
+        jump > JUMP_TOLERANCE * size
+    }
+
+    /// Excess of a joint over this range (rad, m), summed over the pieces, from their Bezier points: these enclose the
+    /// curve and are quicker to compute than its extremes.
+    pub(crate) fn excess(&self, joint: usize, lower: f64, upper: f64) -> f64 {
+        let of_piece = |piece: usize| {
+            let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+            let h = self.length(piece);
+            let (first, second) = (c0 + h * c1 / 3.0, c0 + h * (2.0 * c1 + h * c2) / 3.0);
+            let end = c0 + h * (c1 + h * (c2 + h * c3));
+            let beyond = |q: f64| (lower - q).max(q - upper).max(0.0);
+            beyond(first).max(beyond(second)).max(beyond(end))
+        };
+        (0..self.pieces()).map(of_piece).sum()
+    }
+
+    /// The exact smallest and largest position of a joint (rad or m).
+    pub fn range(&self, joint: usize) -> [f64; 2] {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for piece in 0..self.pieces() {
+            if checkpoint_at(piece).is_err() {
+                break; // the interrupted caller discards the result
+            }
+            let cubic = self.powers(piece).map(|of_power| of_power[joint]);
+            let end = self.length(piece);
+            for s in roots(&derivative(&cubic), 0.0, end).into_iter().chain([0.0, end]) {
+                let q = self.joint_at(piece, s, joint)[0];
+                range = [range[0].min(q), range[1].max(q)];
+            }
+        }
+        range
+    }
+}
+
+/// Checks that these are waypoints of a spline: at least two finite rows, none equal to the previous one. Returns their
+/// number.
+pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
+    let (n, rows) = (joints.len(), waypoint_rows(joints, waypoints)?);
+    match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
+        None => Ok(rows),
+        Some(row) => {
+            let problem = format!("waypoint {row} is the same as waypoint {}: leave one of them out", row - 1);
+            Err(Error::InvalidPath { problem })
+        }
+    }
+}
+
+/// Checks that these are at least two rows with one finite position per joint. Returns their number.
+pub(super) fn waypoint_rows(joints: &[String], waypoints: &[f64]) -> Result<usize> {
+    let n = joints.len();
+    if n == 0 {
+        return Err(Error::InvalidPath { problem: "it needs at least 1 joint".into() });
+    }
+    if !waypoints.len().is_multiple_of(n) {
+        let expected = format!("rows of {n} joints");
+        return Err(Error::WrongLength { what: "waypoints".into(), expected, got: waypoints.len() });
+    }
+    let rows = waypoints.len() / n;
+    if rows < 2 {
+        return Err(Error::WrongLength { what: "waypoints".into(), expected: "at least 2".into(), got: rows });
+    }
+    require_finite("waypoints", waypoints, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
+    Ok(rows)
+}

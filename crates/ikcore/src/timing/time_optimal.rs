@@ -1,0 +1,111 @@
+//! The call `time_optimal`: grid, speed profile, trajectory.
+
+use super::compose::compose;
+use super::grid::{check_gridpoints, cut};
+use super::jerk::smooth;
+use super::joint_path::{JointPath, PathEnd};
+use super::reachability::{Range, SpeedProfile};
+use super::refine::refine;
+use super::timing_limits::TimingLimits;
+use super::within_limits::within_limits;
+use crate::error::{Error, Result};
+use crate::trajectory::Trajectory;
+
+/// Options of [`time_optimal`]. The default is from rest to rest on an adaptively refined grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TimingOptions {
+    /// Points at which the acceleration along the path may change, at least one per piece of the path. `None` refines
+    /// the grid until it makes no difference.
+    pub gridpoints: Option<usize>,
+    /// Euclidean norm of the joint velocity at the start (rad/s, m/s).
+    pub start_speed: f64,
+    /// Euclidean norm of the joint velocity at the end (rad/s, m/s).
+    pub end_speed: f64,
+}
+
+/// Number of segments before refinement.
+const FIRST_SEGMENTS: usize = 100;
+
+/// Number of segments if the result is smoothed: smoothing costs more speed than a coarse grid.
+const SEGMENTS_TO_SMOOTH: usize = 300;
+
+/// Returns the fastest motion along `path` within `limits`.
+///
+/// # Errors
+/// [`Error::Infeasible`] for a path that leaves the position limits, a joint that must move but may not, or speeds at the
+/// ends that are too high; [`Error::OutOfRange`] for the options.
+pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+    limits.require_for(path)?;
+    time(path, limits, options)
+}
+
+/// [`time_optimal`] without the check of position limits.
+///
+/// # Errors
+/// As [`time_optimal`], except for position limits.
+pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+    let ends =
+        [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
+    let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
+    let profile = match options.gridpoints {
+        Some(gridpoints) => {
+            check_gridpoints(gridpoints)?;
+            fastest(cut(path, gridpoints - 1))?
+        }
+        None if limits.jerk.is_some() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
+        None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
+    };
+    match &limits.jerk {
+        None => within_limits(compose(path, &profile)?, [&limits.velocity, &limits.acceleration, &[]]),
+        Some(_) if options.start_speed != 0.0 || options.end_speed != 0.0 => {
+            let problem =
+                "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
+            Err(Error::Infeasible { problem })
+        }
+        Some(jerk) => smooth(path, &profile, limits, jerk),
+    }
+}
+
+/// The fastest motion along `paths`, each from rest to rest, one after the other.
+///
+/// # Errors
+/// As [`time`]; [`Error::InvalidPath`] without a path.
+pub(crate) fn time_all(paths: &[JointPath], limits: &TimingLimits) -> Result<Trajectory> {
+    let none = || Error::InvalidPath { problem: "it has no points".into() };
+    let rest_to_rest = TimingOptions::default();
+    if limits.jerk.is_none() {
+        return time(&JointPath::joined(paths.iter().cloned()).ok_or_else(none)?, limits, &rest_to_rest);
+    }
+    let mut motions = paths.iter().map(|path| time(path, limits, &rest_to_rest));
+    let first = motions.next().ok_or_else(none)??;
+    motions.try_fold(first, |all, next| all.then(&next?, 0.0))
+}
+
+/// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
+/// estimate to compare many paths. Position limits are left to the caller.
+///
+/// # Errors
+/// None in practice: a motion from rest to rest always exists.
+pub(crate) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
+    let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
+    SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
+}
+
+/// Returns the range of squared path speeds for a joint speed at an end. If dq/ds vanishes, the joints are at rest at
+/// any path speed.
+fn end_range(path: &JointPath, speed: f64, end: PathEnd) -> Result<Range> {
+    let name = end.name();
+    if !(speed >= 0.0 && speed.is_finite()) {
+        return Err(Error::out_of_range(format!("{name}_speed"), "zero or more and finite", speed));
+    }
+    if !path.has_no_direction(end) {
+        let squared = (speed / path.slope(end)).powi(2);
+        return Ok([squared; 2]);
+    }
+    if speed == 0.0 {
+        return Ok([0.0, f64::INFINITY]);
+    }
+    let problem =
+        format!("{name}_speed is {speed}, but the path has no direction at its {name}: give the spline other ends");
+    Err(Error::Infeasible { problem })
+}

@@ -1,0 +1,128 @@
+//! Collisions of a motion: tested at samples during the search, certified for the plan.
+
+use crate::error::Result;
+use crate::obstacle::{NearestContact, Scene, Sweep, kept_margin};
+use crate::plan::{
+    PlanarArm, PointToPointOptions, TimedMotion, collision_checks, nearest_at, refuse_collision, too_near,
+};
+use crate::robot::Robot;
+use crate::shape::{Geometry, Shape};
+use crate::timing::Violation;
+use crate::trajectory::Trajectory;
+
+/// Obstacles and links that a motion must stay clear of.
+#[derive(Debug, Clone)]
+pub(super) struct CollisionTest<'a> {
+    scene: Scene<'a>,
+    margin: f64,
+    /// For a planar arm of lines among ellipses: the exact test of section 4, several times faster than distances.
+    flat: Option<(PlanarArm, Vec<UnitDisc>)>,
+}
+
+/// How near a motion comes to anything.
+pub(super) struct Clearance {
+    /// The smallest distance (m).
+    pub distance: f64,
+    /// The two bodies there.
+    pub nearest: Option<NearestContact>,
+    /// The violation, if it is below the margin.
+    pub violation: Option<Violation>,
+}
+
+/// An ellipse, given by the map onto the unit disc.
+#[derive(Debug, Clone, Copy)]
+struct UnitDisc {
+    center: [f64; 2],
+    /// cos and sin of its angle.
+    direction: [f64; 2],
+    semi_axes: [f64; 2],
+}
+
+/// Distance that the search adds to the margin, relative to the length of the arm, because the arm may come closer
+/// between two samples. Without it, 9 to 20 of 20 plans graze an obstacle that their samples miss.
+const ALLOWANCE: f64 = 0.005;
+
+impl<'a> CollisionTest<'a> {
+    /// The constraint of the planner's `options` for `robot`, or for its `lines` if it has no shape.
+    ///
+    /// # Errors
+    /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
+    pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
+        let margin = kept_margin(options.margin)?;
+        let scene = collision_checks::scene(robot, lines, options)?;
+        let flat = lines.and_then(|lines| {
+            let arm = PlanarArm::of(lines)?;
+            let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();
+            let discs: Option<Vec<_>> = options.obstacles.iter().map(|obstacle| UnitDisc::of(obstacle, kept)).collect();
+            Some((arm, discs?))
+        });
+        Ok(Self { scene, margin, flat })
+    }
+
+    /// Checks that a configuration keeps the margin; `what` names it in the error.
+    ///
+    /// # Errors
+    /// [`Error::InCollision`](crate::Error::InCollision).
+    pub(super) fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
+        refuse_collision(what, &self.scene, q, self.margin)
+    }
+
+    /// Number of contacts between links and ellipses at `q`; for other shapes 1 if there is any contact: g_3 of eq.
+    /// (15) at one instant.
+    pub(super) fn touching(&self, q: &[f64]) -> f64 {
+        let Some((arm, discs)) = &self.flat else {
+            return if self.scene.is_clear(q, self.margin) { 0.0 } else { 1.0 };
+        };
+        let mut corners = arm.corners(q);
+        let mut from = corners.next().unwrap_or_default();
+        let mut touching = 0.0;
+        for to in corners {
+            touching += discs.iter().filter(|disc| disc.meets(from, to)).count() as f64;
+            from = to;
+        }
+        touching
+    }
+
+    /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
+    /// `None` if nothing can touch.
+    pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<Clearance> {
+        let near = Sweep::new(&self.scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])?;
+        let distance = near.contact.distance;
+        Some(Clearance {
+            distance,
+            nearest: nearest_at(&self.scene, trajectory, near.at).ok().flatten(),
+            violation: (distance < self.margin).then(|| too_near(&near.contact, self.margin)),
+        })
+    }
+}
+
+impl UnitDisc {
+    /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape, or one that some links may touch.
+    fn of(obstacle: &Shape, kept: f64) -> Option<Self> {
+        match *obstacle.geometry() {
+            Geometry::Ellipse { center, semi_axes, angle } if obstacle.touch().is_empty() => {
+                let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
+                Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })
+            }
+            _ => None,
+        }
+    }
+
+    fn map(&self, point: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [point[0] - self.center[0], point[1] - self.center[1]];
+        let [cosine, sine] = self.direction;
+        [(cosine * x + sine * y) / self.semi_axes[0], (cosine * y - sine * x) / self.semi_axes[1]]
+    }
+
+    /// Whether the segment from `a` to `b` intersects the ellipse; exact, since the map keeps lines straight.
+    fn meets(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        let (a, b) = (self.map(a), self.map(b));
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let squared = along[0] * along[0] + along[1] * along[1];
+        let share = if squared > 0.0 { -(a[0] * along[0] + a[1] * along[1]) / squared } else { 0.0 };
+        let share = share.clamp(0.0, 1.0);
+        let nearest = [a[0] + share * along[0], a[1] + share * along[1]];
+        nearest[0] * nearest[0] + nearest[1] * nearest[1] < 1.0
+    }
+}
