@@ -84,10 +84,10 @@ def test_limits_compare_by_value() -> None:
     assert bik.solve(IIWA, TARGET).limits == IIWA.limits
 
 
-@pytest.mark.parametrize("angles", [0, 6, 14])
-def test_clearance_takes_one_configuration_or_rows_of_them(angles: int) -> None:
+@pytest.mark.parametrize(("angles", "joints"), [(0, ""), (6, ""), (14, r" \(joint_a1 to joint_a7\)")])
+def test_clearance_takes_one_configuration_or_rows_of_them(angles: int, joints: str) -> None:
     with pytest.raises(
-        bik.InvalidInputError, match=rf"^joint angles of robot 'iiwa14': expected 7 joints, got {angles}$"
+        bik.InvalidInputError, match=rf"^joint angles of robot 'iiwa14': expected 7 joints{joints}, got {angles}$"
     ):
         bik.obstacles.clearance(IIWA.with_capsules(radius=0.05), np.zeros(angles))
 

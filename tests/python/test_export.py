@@ -177,8 +177,8 @@ def test_every_damaged_npz_is_refused_or_read(tmp_path: Path) -> None:
 def test_the_unfinished_file_follows_no_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     victim = tmp_path / "victim"
     victim.write_text("precious")
-    monkeypatch.setattr("secrets.token_hex", lambda _: "known")
-    (tmp_path / ".beetle-ik-known.part").symlink_to(victim)
+    monkeypatch.setattr("os.urandom", bytes)
+    (tmp_path / f".beetle-ik-{'00' * 8}.part").symlink_to(victim)
     with pytest.raises(FileExistsError):
         bik.Trajectory.from_samples(TIME, np.zeros((len(TIME), 1))).to_npz(tmp_path / "motion.npz")
     assert victim.read_text() == "precious"

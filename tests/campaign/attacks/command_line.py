@@ -72,7 +72,7 @@ class CommandLine(Attack):
 
     def program(self, case: Case) -> str:
         return (
-            "from typer.testing import CliRunner\n\nfrom beetle_ik.cli import app\n\n"
+            "from typer.testing import CliRunner\n\nfrom beetle_ik.cli.app import app\n\n"
             f"done = CliRunner().invoke(app, {case['words']})"
         )
 
