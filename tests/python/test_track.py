@@ -217,7 +217,8 @@ def digest_of_paper(solver: object) -> str:
 def test_the_same_seed_gives_the_same_bits_in_every_process(solver: object) -> None:
     here = digest_of_paper(solver)
     assert digest_of_paper(solver) == here
-    program = f"from beetle_ik import *; from beetle_ik.papers import *; import test_track; print(test_track.digest_of_paper({solver!r}))"
+    names = "from beetle_ik import *; from beetle_ik.papers import *; import test_track"
+    program = f"{names}; print(test_track.digest_of_paper({solver!r}))"
     folder = Path(__file__).parent
     elsewhere = subprocess.run([sys.executable, "-c", program], cwd=folder, check=True, capture_output=True, text=True)
     assert elsewhere.stdout.strip() == here
