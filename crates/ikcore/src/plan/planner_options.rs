@@ -71,7 +71,7 @@ impl FromStr for AlongPathMethod {
     }
 }
 
-/// Options of [`plan_point_to_point`](super::plan_point_to_point).
+/// Options of [`plan_point_to_point`](crate::planning::plan_point_to_point).
 #[derive(Debug, Clone, Default)]
 pub struct PointToPointOptions {
     /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
@@ -110,7 +110,7 @@ impl PointToPointOptions {
     }
 }
 
-/// Options of [`plan_along_path`](super::plan_along_path).
+/// Options of [`plan_along_path`](crate::planning::plan_along_path).
 #[derive(Debug, Clone, Default)]
 pub struct AlongPathOptions {
     /// The planner.
