@@ -27,6 +27,8 @@ pub struct Bend {
     constant: f64,
     /// 1 - cos of the smallest angle between outer and goal, 1 + cos of the largest.
     margins: [f64; 2],
+    /// The axis is nearly parallel to one of the others: its joint changes next to nothing, and may be at any angle.
+    is_idle: bool,
 }
 
 impl Bend {
@@ -44,6 +46,7 @@ impl Bend {
             b,
             constant,
             margins: [margin(1.0 - (constant + radius)), margin(1.0 + (constant - radius))],
+            is_idle: radius < NEARLY_ALIGNED,
         }
     }
 
@@ -66,7 +69,11 @@ impl Bend {
             (1.0 - cosine, square / (1.0 - cosine))
         };
         let radicand = (below_one - self.margins[0]) * (above_minus_one - self.margins[1]);
-        (with_radicand(self.a, self.b, cosine - self.constant, radicand), square.sqrt())
+        let mut turns = with_radicand(self.a, self.b, cosine - self.constant, radicand);
+        if self.is_idle {
+            turns.doubt = Doubt::Open;
+        }
+        (turns, square.sqrt())
     }
 }
 
