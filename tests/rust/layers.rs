@@ -57,7 +57,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     ("timing", &["robot", "trajectory", "limits"]),
-    ("plan", &["robot", "trajectory", "objective", "limits", "obstacle", "shape", "task", "solver", "timing"]),
+    ("plan", &["robot", "trajectory", "objective", "limits", "obstacle", "shape", "task", "solver", "ik", "timing"]),
     (
         "free_path",
         &["robot", "trajectory", "objective", "limits", "motion", "obstacle", "task", "solver", "ik", "timing", "plan"],
