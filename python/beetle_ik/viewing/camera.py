@@ -19,6 +19,7 @@ _FROM = np.array([1.05, 0.9, 0.45])  # from where it looks, as a fraction of wha
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of what it looks at: the controls cover that side of the page
 _MARGIN, _ASPECT = 1.08, 1.3  # of a recording: distance over the least one, width over height of narrow frames
 _UPRIGHT, _BELOW = 0.75, 0.24  # of an upright window: distance, and how much of its height the arm is above the middle
+_SAME = 1e-3  # m: between two places of a camera that are one
 _NARROWEST = 0.3  # width over height of a window; a camera for a narrower one would be far away
 
 
@@ -35,7 +36,7 @@ class Camera:
         self._middle, self._size = 0.5 * (low + high), size
         look = self._middle + _ASIDE * size
         self._aim(look, look + _FROM * size)
-        server.on_client_connect(self._turn)
+        server.on_client_connect(self._visited)
 
     @contextmanager
     def recording(self, boxes: Array) -> Iterator[None]:
@@ -63,8 +64,16 @@ class Camera:
         first.look_at, first.position, first.fov = look, position, FIELD
         self._set = (first.look_at, first.position)
 
-    def _turn(self, client: viser.ClientHandle) -> None:
-        seen = client.camera
+    def _visited(self, client: viser.ClientHandle) -> None:
+        self._turn(client.camera)
+
+        # A page that is slow to appear takes the first camera after it was sent another.
+        @client.camera.on_update
+        def _(seen: viser.CameraHandle) -> None:
+            if np.allclose(seen.position, self._server.initial_camera.position, atol=_SAME):
+                self._turn(seen)
+
+    def _turn(self, seen: viser.CameraHandle) -> None:
         narrow = max(seen.image_width / max(seen.image_height, 1), _NARROWEST)
         if narrow >= 1.0 or self._chosen:
             return
