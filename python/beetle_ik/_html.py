@@ -15,7 +15,6 @@ from ._text import counted
 
 if TYPE_CHECKING:
     from ._core import Obstacle, Trajectory
-    from .mapping import BasePlacement, InverseReachabilityMap
 
 _MOST_NUMBERS = 12  # of an array that is written out
 _MOST_ROWS = 12  # of a table
@@ -42,11 +41,11 @@ def robot(robot: Robot) -> str:
     """Returns name, chain, a drawing and a table of the joints."""
     ends = f"{robot.link_names[0]} to {robot.link_names[-1]}"
     columns = (robot.joint_names, robot.joint_kinds, robot.lower, robot.upper, robot.velocity_limit)
-    rows = [[_shown(value) for value in row] for row in zip(*columns, strict=True)]
+    rows = [[shown(value) for value in row] for row in zip(*columns, strict=True)]
     head = ("joint", "kind", "lower [rad, m]", "upper [rad, m]", "velocity limit [rad/s, m/s]")
-    held = "; ".join(f"{name} at {_shown(value)}" for name, value in robot.held_joints.items())
+    held = "; ".join(f"{name} at {shown(value)}" for name, value in robot.held_joints.items())
     chain = f"{robot.dof} joints, {ends}" + (f"; held: {held}" if held else "")
-    return f"<b>{escape(robot.name)}</b>: {escape(chain)}<div>{_drawn(robot)}</div>{_table(rows, head)}"
+    return f"<b>{escape(robot.name)}</b>: {escape(chain)}<div>{_drawn(robot)}</div>{table(rows, head)}"
 
 
 def _drawn(robot: Robot) -> str:
@@ -59,14 +58,14 @@ def _drawn(robot: Robot) -> str:
 def result(result: Any) -> str:
     """Returns kind, status, message, a drawing of a motion and the main numbers of a result."""
     rows = [
-        [f"{name} [{unit}]" if unit else name, _shown(getattr(result, name))]
+        [f"{name} [{unit}]" if unit else name, shown(getattr(result, name))]
         for name, unit in _SHOWN.items()
         if _is_known(getattr(result, name, None))
     ]
     kind, message = type(result).__name__, str(result.message)
     # The statuses of a batch are an array, which its message sums up.
     state = f" {result.status.name}" if isinstance(result.status, Status) else ""
-    return f"<b>{kind}{state}</b>: {escape(message)}{_moved(result)}{_table(rows)}"
+    return f"<b>{kind}{state}</b>: {escape(message)}{_moved(result)}{table(rows)}"
 
 
 def _moved(result: Any) -> str:
@@ -91,10 +90,10 @@ def trajectory(motion: Trajectory) -> str:
     time = np.linspace(0.0, motion.duration, _SAMPLES)
     q = motion.at(time)[0]
     reached = (q.min(axis=0), q.max(axis=0), motion.max_velocity(), motion.max_acceleration())
-    rows = [[name, *map(_shown, map(float, row))] for name, *row in zip(motion.joint_names, *reached, strict=True)]
+    rows = [[name, *map(shown, map(float, row))] for name, *row in zip(motion.joint_names, *reached, strict=True)]
     head = ("joint", "least [rad, m]", "largest [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
     text = f"{counted(len(rows), 'joint')}, {motion.duration:.6g} s, {counted(len(motion.time), 'knot')}"
-    return f"<b>Trajectory</b>: {text}<div>{_joints(time, q)}</div>{_table(rows, head)}"
+    return f"<b>Trajectory</b>: {text}<div>{_joints(time, q)}</div>{table(rows, head)}"
 
 
 def scene(obstacles: tuple[Obstacle, ...]) -> str:
@@ -106,7 +105,7 @@ def scene(obstacles: tuple[Obstacle, ...]) -> str:
     if len(obstacles) > _MOST_ROWS:
         rows.append(["…", "", f"{len(obstacles) - _MOST_ROWS} more"])
     views = _sketch.views([], [], obstacles)
-    return f"{title}<div>{views}</div>{_table(rows, ('', 'shape', 'as made'))}"
+    return f"{title}<div>{views}</div>{table(rows, ('', 'shape', 'as made'))}"
 
 
 def reachability_map(map: Any) -> str:  # noqa: A002
@@ -121,23 +120,7 @@ def reachability_map(map: Any) -> str:  # noqa: A002
         ["largest share of them reached", f"{100 * float(map.index.max()):.3g} %"],
         ["share of all poses", f"{100 * float(map.index.mean()):.3g} %"],
     ]
-    return f"<b>ReachabilityMap</b> of {escape(map.robot.name)}<div>{drawn}</div>{_table(rows)}"
-
-
-def inverse_map(inverse: InverseReachabilityMap) -> str:
-    """Returns the map that is turned round."""
-    return f"<b>InverseReachabilityMap</b>: where may the base stand?<div>{reachability_map(inverse.map)}</div>"
-
-
-def base_placement(placement: BasePlacement) -> str:
-    """Returns the message, and the place of the base."""
-    yaw = float(np.arctan2(placement.pose[1, 0], placement.pose[0, 0]))
-    rows = [
-        ["base [m]", _shown(placement.pose[:3, 3])],
-        ["yaw [rad]", _shown(yaw)],
-        ["may be off by [m]", _shown(placement.margin)],
-    ]
-    return f"<b>BasePlacement</b>: {escape(placement.message)}{_table(rows)}"
+    return f"<b>ReachabilityMap</b> of {escape(map.robot.name)}<div>{drawn}</div>{table(rows)}"
 
 
 def _is_known(value: Any) -> bool:
@@ -145,7 +128,8 @@ def _is_known(value: Any) -> bool:
     return value is not None and not (isinstance(value, float) and np.isnan(value))
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Returns a value with six digits, an array with all its entries if they are few."""
     if isinstance(value, np.ndarray):
         if value.size > _MOST_NUMBERS:
             return f"array of shape {value.shape}"
@@ -153,7 +137,8 @@ def _shown(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _table(rows: Iterable[list[str]], head: Iterable[str] = ()) -> str:
+def table(rows: Iterable[list[str]], head: Iterable[str] = ()) -> str:
+    """Returns a table of rows under titles."""
     titles = "".join(f"<th>{escape(title)}</th>" for title in head)
     cells = ("".join(f"<td>{escape(entry)}</td>" for entry in row) for row in rows)
     body = "".join(f"<tr>{row}</tr>" for row in ([titles] if titles else []) + list(cells))

@@ -54,9 +54,17 @@ class BasePlacement:
 
     def _repr_html_(self) -> str:
         """Shows the place in a notebook."""
-        from .._html import base_placement
+        from html import escape
 
-        return base_placement(self)
+        from .._html import shown, table
+
+        yaw = float(np.arctan2(self.pose[1, 0], self.pose[0, 0]))
+        rows = [
+            ["base [m]", shown(self.pose[:3, 3])],
+            ["yaw [rad]", shown(yaw)],
+            ["may be off by [m]", shown(self.margin)],
+        ]
+        return f"<b>BasePlacement</b>: {escape(self.message)}{table(rows)}"
 
     def __repr__(self) -> str:
         """Says how many targets are reached."""

@@ -91,9 +91,9 @@ class InverseReachabilityMap:
 
     def _repr_html_(self) -> str:
         """Shows the map in a notebook."""
-        from .._html import inverse_map
+        from .._html import reachability_map
 
-        return inverse_map(self)
+        return f"<b>InverseReachabilityMap</b>: where may the base stand?<div>{reachability_map(self.map)}</div>"
 
     def __repr__(self) -> str:
         """Names the map."""
