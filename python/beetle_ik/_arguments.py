@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from numbers import Integral
 from typing import Any
 
-from ._calls import example
+from ._calls import example, with_article
 from ._core import InvalidInputError, Robot
 
 
 def require(name: str, value: object, *kinds: type) -> None:
     """Raises `InvalidInputError` unless the value is an instance of one of `kinds`."""
     if not isinstance(value, kinds):
-        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+        wanted = " or ".join(with_article(kind.__name__) for kind in kinds)
         made = example("Robot", value) if kinds == (Robot,) and isinstance(value, str) else ""
         raise InvalidInputError(f"{name} must be {wanted}{made}, got {value!r:.60}")
 

@@ -101,7 +101,7 @@ def misfit(argument: str, value: object, error: Exception) -> str:
     kind = _kind(str(error))
     if kind is None:
         return f"{argument}: {error}, got {shown(value)}"
-    return f"{argument} must be {_with_article(kind)}{example(kind, value)}, got {shown(value)}"
+    return f"{argument} must be {_in_words(kind)}{example(kind, value)}, got {shown(value)}"
 
 
 def example(kind: str, value: object) -> str:
@@ -131,9 +131,13 @@ def _kind(text: str) -> str | None:
     return next((group for group in found.groups() if group), None) if found else None
 
 
-def _with_article(kind: str) -> str:
-    known = _KINDS.get(kind)
-    return known or f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
+def _in_words(kind: str) -> str:
+    return _KINDS.get(kind) or with_article(kind)
+
+
+def with_article(name: str) -> str:
+    """Returns the name of a class after "a" or "an"."""
+    return f"{'an' if name[0] in 'AEIOaeio' else 'a'} {name}"
 
 
 def _robot_from(text: str) -> str:
