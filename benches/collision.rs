@@ -16,8 +16,8 @@ fn of_spheres(robot: &Robot) -> Robot {
     let spheres = rods.capsules().iter().flat_map(|rod| {
         let count = 8;
         (0..count).map(move |i| {
-            let share = f64::from(i) / f64::from(count - 1);
-            let center = std::array::from_fn(|k| rod.a[k] + share * (rod.b[k] - rod.a[k]));
+            let fraction = f64::from(i) / f64::from(count - 1);
+            let center = std::array::from_fn(|k| rod.a[k] + fraction * (rod.b[k] - rod.a[k]));
             LinkCapsule { a: center, b: center, ..rod.clone() }
         })
     });

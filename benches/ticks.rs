@@ -25,7 +25,7 @@ fn main() {
     for (name, limits) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)] {
         for noise in [0.0, 1e-3] {
             let times = times(&arm, &limits, noise);
-            let at = |share: f64| times[((TICKS - 1) as f64 * share) as usize];
+            let at = |fraction: f64| times[((TICKS - 1) as f64 * fraction) as usize];
             println!("{name:>14} {noise:>8} {:>8} {:>8} {:>8}", at(0.5), at(0.9999), at(1.0));
         }
     }

@@ -21,9 +21,9 @@ fn pentagram(u: f64) -> [f64; 3] {
         [1.0 + 0.5 * angle.cos(), 1.0 + 0.5 * angle.sin()]
     };
     let edge = ((5.0 * u) as usize).min(4);
-    let share = 5.0 * u - edge as f64;
+    let fraction = 5.0 * u - edge as f64;
     let (from, to) = (corner(edge), corner(edge + 1));
-    [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]), 0.0]
+    [from[0] + fraction * (to[0] - from[0]), from[1] + fraction * (to[1] - from[1]), 0.0]
 }
 
 /// r = 1 + 0.35 cos 3t about (1, 1), scaled to a largest radius of 0.6.

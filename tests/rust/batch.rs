@@ -302,7 +302,7 @@ fn wrong_rows_are_named() {
 }
 
 #[test]
-fn what_all_rows_share_is_refused_even_where_rows_are_skipped() {
+fn what_all_rows_fraction_is_refused_even_where_rows_are_skipped() {
     let robot = robot("panda");
     let says = |options: BatchOptions<'_>| {
         let options = BatchOptions { on_invalid: OnInvalid::Skip, ..options };

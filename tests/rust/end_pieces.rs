@@ -55,13 +55,13 @@ fn assert_straight(robot: &Robot, plan: &Plan, [from, to]: [f64; 2], displacemen
         let tip = robot.tip(&at(plan, from + (to - from) * f64::from(i) / 300.0)[0]);
         let moved: [f64; 3] = std::array::from_fn(|k| tip.origin[k] - first.origin[k]);
         let length = displacement.iter().map(|x| x * x).sum::<f64>();
-        let share = (0..3).map(|k| moved[k] * displacement[k]).sum::<f64>() / length;
-        assert!((-1e-4..1.0001).contains(&share));
-        let off = (0..3).map(|k| (moved[k] - share * displacement[k]).powi(2)).sum::<f64>().sqrt();
-        assert!(off < 1.1e-4, "{off} at {share}");
+        let fraction = (0..3).map(|k| moved[k] * displacement[k]).sum::<f64>() / length;
+        assert!((-1e-4..1.0001).contains(&fraction));
+        let off = (0..3).map(|k| (moved[k] - fraction * displacement[k]).powi(2)).sum::<f64>().sqrt();
+        assert!(off < 1.1e-4, "{off} at {fraction}");
         let turned: f64 = (0..3).map(|a| (0..3).map(|k| tip.axes[a][k] * first.axes[a][k]).sum::<f64>()).sum();
         assert!(turned > 3.0 - 1e-7, "{turned}");
-        assert!(i < 300 || (share - 1.0).abs() < 1e-4);
+        assert!(i < 300 || (fraction - 1.0).abs() < 1e-4);
     }
 }
 
@@ -132,9 +132,9 @@ fn a_line_keeps_what_the_task_asks_for() {
         let plan = plan_point_to_point(&robot, &start, &ends, &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         let [.., back, end] = rests(&plan)[..] else { panic!("no line") };
-        for (t, share) in [(back, -1.0), (end, 0.0)] {
+        for (t, fraction) in [(back, -1.0), (end, 0.0)] {
             let reached = held.tip(&at(&plan, t)[0]);
-            let off = |k: usize| reached.origin[k] - tip.origin[k] - share * 0.1 * tip.axes[2][k];
+            let off = |k: usize| reached.origin[k] - tip.origin[k] - fraction * 0.1 * tip.axes[2][k];
             assert!((0..3).all(|k| off(k).abs() < 3e-6), "{kind:?}");
         }
     }

@@ -65,11 +65,11 @@ fn the_nearest_branch_to_the_start_is_taken() {
 fn without_a_start_the_most_central_branch_is_taken() {
     for robot in SIX.map(robot) {
         let off_centre = |q: &[f64]| -> f64 {
-            let share = |(q, joint): (&f64, &ikcore::robot::Joint)| {
+            let fraction = |(q, joint): (&f64, &ikcore::robot::Joint)| {
                 let (lower, upper) = joint.sampling_range();
                 ((q - 0.5 * (lower + upper)) / (upper - lower)).powi(2)
             };
-            q.iter().zip(robot.joints()).map(share).sum()
+            q.iter().zip(robot.joints()).map(fraction).sum()
         };
         for q in configurations(&robot, 60) {
             let target = pose_at(&robot, &q);

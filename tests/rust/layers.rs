@@ -172,7 +172,7 @@ fn files_import_one_another_in_no_circle() {
 }
 
 #[test]
-fn no_two_types_share_a_name() {
+fn no_two_types_fraction_a_name() {
     let core = core();
     let mut places: BTreeMap<&str, BTreeSet<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -185,7 +185,7 @@ fn no_two_types_share_a_name() {
 }
 
 #[test]
-fn no_three_files_share_a_name() {
+fn no_three_files_fraction_a_name() {
     let core = core();
     let mut places: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
     for file in core.files() {

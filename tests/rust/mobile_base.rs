@@ -9,7 +9,7 @@ use ikcore::load::UrdfOptions;
 use ikcore::manipulability::Motion;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Rotation3, Vector3};
-use ikcore::obstacle::{Edge, Scene, Sweep};
+use ikcore::obstacle::{ClearanceSweep, Edge, Scene};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
@@ -137,17 +137,19 @@ fn certified_motions_are_clear_and_others_are_found_out() {
     let (mut certified, mut refused) = (0, 0);
     let ends = configurations(&robot, 300);
     for pair in ends.chunks_exact(2) {
-        let at = |share: f64| -> Vec<f64> { pair[0].iter().zip(&pair[1]).map(|(a, b)| a + share * (b - a)).collect() };
+        let at =
+            |fraction: f64| -> Vec<f64> { pair[0].iter().zip(&pair[1]).map(|(a, b)| a + fraction * (b - a)).collect() };
         let least =
             (0..=400).map(|i| scene.clearance(&at(f64::from(i) / 400.0)).unwrap()).fold(f64::INFINITY, f64::min);
-        let smallest = Sweep::new(&scene).smallest(&Edge { from: &pair[0], to: &pair[1] }, [0.0, 1.0]).unwrap();
+        let smallest =
+            ClearanceSweep::new(&scene).smallest(&Edge { from: &pair[0], to: &pair[1] }, [0.0, 1.0]).unwrap();
         assert!(
             smallest.contact.distance <= least + 1e-12,
             "certified {} m, seen {least} m",
             smallest.contact.distance
         );
         assert!(smallest.contact.distance > least - 0.05);
-        match Sweep::new(&scene).check(&Edge { from: &pair[0], to: &pair[1] }, [0.0, 1.0], 0.0) {
+        match ClearanceSweep::new(&scene).check(&Edge { from: &pair[0], to: &pair[1] }, [0.0, 1.0], 0.0) {
             Ok(()) => {
                 certified += 1;
                 assert!(least >= 0.0);

@@ -1,7 +1,7 @@
 //! Distances, capsules and sweeps against brute force.
 
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
-use ikcore::obstacle::{Edge, Neighbor, Scene, Sweep};
+use ikcore::obstacle::{ClearanceSweep, Edge, Neighbor, Scene};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
 use ikcore::shape::{Geometry, Shape};
@@ -57,8 +57,8 @@ fn points_of(obstacle: &Shape, rng: &mut LazyRng, count: usize) -> Vec<Vector3<f
                     (pose * nalgebra_point(u.component_mul(&(0.5 * Vector3::from(*size))) / u.amax())).coords
                 }
                 Geometry::Capsule { a, b, radius } => {
-                    let share = rng.uniform();
-                    Vector3::from(*a) * (1.0 - share) + Vector3::from(*b) * share + *radius * u
+                    let fraction = rng.uniform();
+                    Vector3::from(*a) * (1.0 - fraction) + Vector3::from(*b) * fraction + *radius * u
                 }
                 Geometry::Ellipsoid { pose, semi_axes } => {
                     (pose * nalgebra_point(u.component_mul(&Vector3::from(*semi_axes)))).coords
@@ -85,8 +85,8 @@ fn nalgebra_point(v: Vector3<f64>) -> Point3<f64> {
 
 fn to_segment(a: &Vector3<f64>, b: &Vector3<f64>, p: &Vector3<f64>) -> f64 {
     let along = b - a;
-    let share = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (a + share * along - p).norm()
+    let fraction = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (a + fraction * along - p).norm()
 }
 
 #[test]
@@ -172,13 +172,13 @@ fn what_a_sweep_calls_free_is_free_at_every_sample() {
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let ends = robot.random_configurations(2, &mut rng).unwrap();
         let edge = Edge { from: &ends[..7], to: &ends[7..] };
-        let mut sweep = Sweep::new(&scene);
+        let mut sweep = ClearanceSweep::new(&scene);
         let verdict = sweep.check(&edge, [0.0, 1.0], 0.001);
         let smallest = sweep.smallest(&edge, [0.0, 1.0]).unwrap().contact.distance;
         let sampled = (0..=1000)
             .map(|i| {
-                let share = f64::from(i) / 1000.0;
-                let q: Vec<f64> = (0..7).map(|j| edge.from[j] + share * (edge.to[j] - edge.from[j])).collect();
+                let fraction = f64::from(i) / 1000.0;
+                let q: Vec<f64> = (0..7).map(|j| edge.from[j] + fraction * (edge.to[j] - edge.from[j])).collect();
                 scene.nearest(&q).unwrap().unwrap().distance
             })
             .fold(f64::INFINITY, f64::min);
@@ -231,16 +231,16 @@ fn drawn_surfaces_close_around_the_shape() {
         (Shape::capsule([0.0, 0.0, 0.1], [0.3, 0.4, 0.1], 0.1), ball * 0.001 + rod),
     ];
     for (obstacle, exact) in round {
-        let share = volume(&obstacle.unwrap()) / exact;
-        assert!((0.9..1.0).contains(&share), "{share}"); // corners on the surface, so a little is left out
+        let fraction = volume(&obstacle.unwrap()) / exact;
+        assert!((0.9..1.0).contains(&fraction), "{fraction}"); // corners on the surface, so a little is left out
     }
     let ellipse = Shape::ellipse([0.3, 0.1], [0.2, 0.1], 0.4).unwrap();
     let area = |[a, b, c]: [[f64; 3]; 3]| {
         let (ab, ac) = (Vector3::from(b) - Vector3::from(a), Vector3::from(c) - Vector3::from(a));
         ab.cross(&ac).norm() / 2.0
     };
-    let share = ellipse.triangles().into_iter().map(area).sum::<f64>() / (std::f64::consts::PI * 0.02);
-    assert!((0.95..1.0).contains(&share), "{share}");
+    let fraction = ellipse.triangles().into_iter().map(area).sum::<f64>() / (std::f64::consts::PI * 0.02);
+    assert!((0.95..1.0).contains(&fraction), "{fraction}");
 }
 
 #[test]
@@ -439,7 +439,7 @@ fn motions_of_bodies_of_any_shape_are_certified() {
         let from = robot.random_configurations(1, &mut rng).unwrap();
         let to: Vec<f64> = from.iter().map(|x| x + rng.uniform_in(-0.4, 0.4)).collect();
         let edge = Edge { from: &from, to: &to };
-        let found = Sweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
+        let found = ClearanceSweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
         let at = |i: usize| {
             let q: Vec<f64> = from.iter().zip(&to).map(|(a, b)| a + i as f64 / 400.0 * (b - a)).collect();
             scene.clearance(&q).unwrap()
@@ -498,9 +498,9 @@ fn bodies_that_no_joint_moves_count_against_obstacles() {
         for (margin, clear) in [(distance - 1e-3, true), (distance + 1e-3, false)] {
             assert_eq!(scene.is_clear(&q, margin), clear);
             assert_eq!(scene.which_are_clear(&[q, q].concat(), margin).unwrap(), [clear; 2]);
-            assert_eq!(Sweep::new(&scene).check(&edge, [0.0, 1.0], margin).is_ok(), clear);
+            assert_eq!(ClearanceSweep::new(&scene).check(&edge, [0.0, 1.0], margin).is_ok(), clear);
         }
-        let smallest = Sweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
+        let smallest = ClearanceSweep::new(&scene).smallest(&edge, [0.0, 1.0]).unwrap();
         assert_eq!(smallest.contact, found.contact);
     }
 }

@@ -163,8 +163,8 @@ fn obstacle_is_passed_at_its_margin() {
 /// Whether many points of a link lie in the obstacle of the paper's size: apart from how the planner tests it.
 fn meets_ellipse(a: [f64; 2], b: [f64; 2]) -> bool {
     (0..=50).any(|i| {
-        let share = f64::from(i) / 50.0;
-        let [x, y] = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+        let fraction = f64::from(i) / 50.0;
+        let [x, y] = [a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])];
         ((x - 0.8) / 0.3).powi(2) + ((y - 0.8) / 0.2).powi(2) < 1.0
     })
 }
@@ -227,9 +227,9 @@ fn tpbso_passes_every_second_point_within_the_accuracy() {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).unwrap();
     let tip_path = &paths()[0];
     let plan = follow(tip_path, AlongPathOptions { accuracy: Some(0.04), ..Default::default() });
-    let tip = |share: f64| {
+    let tip = |fraction: f64| {
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; 3]);
-        plan.trajectory.at(plan.trajectory.duration() * share, &mut q, &mut qd, &mut qdd).unwrap();
+        plan.trajectory.at(plan.trajectory.duration() * fraction, &mut q, &mut qd, &mut qdd).unwrap();
         robot.tip_position(&q)
     };
     for i in (0..=50).step_by(2) {

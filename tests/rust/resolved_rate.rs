@@ -295,7 +295,7 @@ fn a_singular_posture_gets_no_step_where_there_is_none() {
 }
 
 #[test]
-fn a_locked_joint_leaves_its_share_to_the_others() {
+fn a_locked_joint_leaves_its_fraction_to_the_others() {
     let arm = robot("hydraulic3");
     let limits = Limits::of(&arm).replace(Field::Velocity, [1.0, 1.0, 0.0].map(Profile::Constant).to_vec()).unwrap();
     let record = run(

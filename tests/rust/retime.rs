@@ -49,10 +49,10 @@ fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limi
     plan_point_to_point(robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
 
-fn at(motion: &Trajectory, share: f64) -> Vec<f64> {
+fn at(motion: &Trajectory, fraction: f64) -> Vec<f64> {
     let n = motion.joints().len();
     let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
-    motion.at(share * motion.duration(), &mut q, &mut qd, &mut qdd).unwrap();
+    motion.at(fraction * motion.duration(), &mut q, &mut qd, &mut qdd).unwrap();
     q
 }
 
@@ -96,8 +96,8 @@ fn retimed_plans_around_a_box_keep_path_and_clearance() {
         assert!(largest(retimed.trajectory.max_jerk()) <= JERK && largest_jump(&retimed.trajectory) < 1e-6);
         assert!(smallest_distance(&scene, &retimed.trajectory) >= 0.001 - 1e-9);
         for i in 0..=100 {
-            let share = f64::from(i) / 100.0;
-            for (one, other) in at(&plan.trajectory, share).iter().zip(at(&retimed.trajectory, share)) {
+            let fraction = f64::from(i) / 100.0;
+            for (one, other) in at(&plan.trajectory, fraction).iter().zip(at(&retimed.trajectory, fraction)) {
                 assert!((one - other).abs() < 1e-12);
             }
         }

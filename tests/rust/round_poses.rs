@@ -15,8 +15,8 @@ use ikcore::task::Target;
 const ARMS: [&str; 9] = ["ur5e", "ur10", "ur3e", "kr210", "panda", "fr3", "iiwa14", "iiwa7", "gen3"];
 const WIDEST: f64 = 6.3;
 
-fn chance(rng: &mut LazyRng, share: f64) -> bool {
-    rng.uniform_in(0.0, 1.0) < share
+fn chance(rng: &mut LazyRng, fraction: f64) -> bool {
+    rng.uniform_in(0.0, 1.0) < fraction
 }
 
 /// A quarter, half or whole turn, or zero; sometimes off by 1e-16 to 1e-2.

@@ -186,8 +186,8 @@ fn joint() -> impl Strategy<Value = OneJoint> {
     let part = -1.0..1.0_f64;
     let logarithms = (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64);
     let size = prop_oneof![Just(0.0), Just(1.0), (-15.0..0.0_f64).prop_map(|e| 10.0_f64.powf(e))];
-    let shares = [part.clone(), part.clone(), part.clone(), part.clone(), part.clone(), part];
-    (logarithms, shares, size.clone(), size).prop_map(|((v, a, j), [q0, v0, a0, q1, v1, a1], small, smaller)| {
+    let fractions = [part.clone(), part.clone(), part.clone(), part.clone(), part.clone(), part];
+    (logarithms, fractions, size.clone(), size).prop_map(|((v, a, j), [q0, v0, a0, q1, v1, a1], small, smaller)| {
         let [v, a, j] = [1.5 * 10.0_f64.powf(v), 5.0 * 10.0_f64.powf(a), 50.0 * 10.0_f64.powf(j)];
         // Velocities that leave room to end the acceleration, after the start and before the end.
         let room = |velocity: f64, acceleration: f64| {
@@ -208,22 +208,23 @@ fn round() -> impl Strategy<Value = f64> {
 /// Limits of a joint (velocity, acceleration, jerk), of half of which two are reached at once.
 fn round_limits() -> impl Strategy<Value = [f64; 3]> {
     let tied = prop::option::of(prop::sample::select(vec![1.0, 1.0, 0.5, 2.0, 0.25, 4.0]));
-    (round(), round(), round(), tied).prop_map(|(v, a, j, tied)| [v, a, tied.map_or(j, |share| share * a * a / v)])
+    (round(), round(), round(), tied)
+        .prop_map(|(v, a, j, tied)| [v, a, tied.map_or(j, |fraction| fraction * a * a / v)])
 }
 
 /// Parts of a limit: none, all, round ones, any; and the numbers beside them.
 fn part() -> impl Strategy<Value = (f64, i32)> {
-    let share = prop_oneof![
+    let fraction = prop_oneof![
         prop::sample::select(vec![0.0, 1.0, -1.0, 0.5, -0.5, 0.2]),
         -1.0..1.0_f64,
         (-16.0..0.0_f64).prop_map(|power| 10.0_f64.powf(power)),
     ];
-    (share, -1..=1)
+    (fraction, -1..=1)
 }
 
 /// This part of a limit.
-fn of(limit: f64, (share, steps): (f64, i32)) -> f64 {
-    let value: f64 = share * limit;
+fn of(limit: f64, (fraction, steps): (f64, i32)) -> f64 {
+    let value: f64 = fraction * limit;
     match steps {
         _ if value == 0.0 => value,
         -1 => value.next_down(),

@@ -138,8 +138,8 @@ fn farthest_from(path: &JointPath, trajectory: &Trajectory) -> f64 {
             let along: Vec<f64> = pair[1].iter().zip(&pair[0]).map(|(b, a)| b - a).collect();
             let from: Vec<f64> = q.iter().zip(&pair[0]).map(|(q, a)| q - a).collect();
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let share = (dot(&from, &along) / dot(&along, &along)).clamp(0.0, 1.0);
-            from.iter().zip(&along).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt()
+            let fraction = (dot(&from, &along) / dot(&along, &along)).clamp(0.0, 1.0);
+            from.iter().zip(&along).map(|(f, a)| (f - fraction * a).powi(2)).sum::<f64>().sqrt()
         };
         rows.windows(2).map(chord).fold(f64::INFINITY, f64::min)
     };
@@ -162,8 +162,8 @@ fn assert_polyline_is_timed(waypoints: &[f64], joints: usize, blend: f64, [veloc
 }
 
 fn line(from: &[f64], to: &[f64], rows: usize) -> Vec<f64> {
-    let share = |row: usize| row as f64 / (rows - 1) as f64;
-    (0..rows).flat_map(|row| from.iter().zip(to).map(move |(a, b)| a + share(row) * (b - a))).collect()
+    let fraction = |row: usize| row as f64 / (rows - 1) as f64;
+    (0..rows).flat_map(|row| from.iter().zip(to).map(move |(a, b)| a + fraction(row) * (b - a))).collect()
 }
 
 #[test]

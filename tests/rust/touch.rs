@@ -2,7 +2,7 @@
 
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::math::Frame;
-use ikcore::obstacle::{Edge, Neighbor, Scene, Surroundings, Sweep};
+use ikcore::obstacle::{ClearanceSweep, Edge, Neighbor, Scene, Surroundings};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
@@ -76,7 +76,7 @@ fn a_link_that_may_touch_an_obstacle_is_not_kept_from_it() {
             assert_eq!(scene.is_clear(&q, margin), clear, "case {case}: {expected} {margin}");
             assert_eq!(scene.which_are_clear(&[&q[..], &q].concat(), margin).unwrap(), [clear; 2]);
             let standing = Edge { from: &q, to: &q };
-            assert_eq!(Sweep::new(&scene).check(&standing, [0.0, 1.0], margin).is_ok(), clear);
+            assert_eq!(ClearanceSweep::new(&scene).check(&standing, [0.0, 1.0], margin).is_ok(), clear);
             seen[usize::from(clear)] += 1;
         }
         let given = |obstacles: &[Shape]| Surroundings {

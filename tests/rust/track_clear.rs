@@ -75,7 +75,7 @@ fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
 
 /// The smallest distance at several configurations from one tick to the next.
 fn least_between(scene: &Scene<'_>, from: &[f64], to: &[f64]) -> f64 {
-    let at = |share: f64| from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect::<Vec<f64>>();
+    let at = |fraction: f64| from.iter().zip(to).map(|(from, to)| from + fraction * (to - from)).collect::<Vec<f64>>();
     (1..=4).map(|i| scene.clearance(&at(0.25 * f64::from(i))).unwrap()).fold(f64::INFINITY, f64::min)
 }
 

@@ -136,8 +136,8 @@ proptest! {
         for ends in trajectory.knots().windows(2) {
             // The last sample lies just inside: at the knot itself the next segment begins.
             for i in 0..=2000 {
-                let share = (f64::from(i) / 2000.0).min(1.0 - 1e-12);
-                let [_, qd, qdd] = state(&trajectory, ends[0] + share * (ends[1] - ends[0]));
+                let fraction = (f64::from(i) / 2000.0).min(1.0 - 1e-12);
+                let [_, qd, qdd] = state(&trajectory, ends[0] + fraction * (ends[1] - ends[0]));
                 for joint in 0..2 {
                     sampled_velocity[joint] = sampled_velocity[joint].max(qd[joint].abs());
                     sampled_acceleration[joint] = sampled_acceleration[joint].max(qdd[joint].abs());
@@ -155,9 +155,9 @@ proptest! {
     }
 
     #[test]
-    fn velocity_and_acceleration_are_derivatives(trajectory in any_trajectory(), share in 0.0..1.0_f64) {
+    fn velocity_and_acceleration_are_derivatives(trajectory in any_trajectory(), fraction in 0.0..1.0_f64) {
         let h = 1e-6;
-        let t = h + share * (trajectory.duration() - 2.0 * h);
+        let t = h + fraction * (trajectory.duration() - 2.0 * h);
         prop_assume!(trajectory.knots().iter().all(|knot| (knot - t).abs() > h));
         let [[q0, qd0, _], [_, qd, qdd], [q1, qd1, _]] = [t - h, t, t + h].map(|t| state(&trajectory, t));
         for joint in 0..2 {

@@ -33,7 +33,7 @@ pub(crate) struct Largest {
     /// The value.
     pub value: f64,
     /// The path parameter.
-    pub share: f64,
+    pub fraction: f64,
 }
 
 impl Largest {
@@ -42,7 +42,7 @@ impl Largest {
     }
 }
 
-/// The largest deviations of the tip from its path, beyond the leeway that it has.
+/// The largest deviations of the tip from its path, beyond the tolerance_band that it has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LargestDeviation {
     /// Distance from the path (m).
@@ -55,8 +55,8 @@ impl LargestDeviation {
     /// Returns the violations for a tip that must stay within `accuracy` (m, rad).
     pub(crate) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
         let of = |quantity: &str, largest: Largest, unit: &'static str| {
-            let leeway = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
-            let what = format!("{quantity} of the tip{leeway} from {}", tip_path.place(largest.share));
+            let tolerance_band = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+            let what = format!("{quantity} of the tip{tolerance_band} from {}", tip_path.place(largest.fraction));
             let broken = largest.value > accuracy;
             broken.then(|| Violation { what, value: largest.value, bound: accuracy, unit: unit.into() })
         };
@@ -67,29 +67,29 @@ impl LargestDeviation {
 impl<C: Configurations> TipDeviation<'_, C> {
     /// The largest deviations between the first and the last of `knots`.
     pub(crate) fn largest(&self, knots: &[f64]) -> LargestDeviation {
-        let distance = |share: f64, from: f64, to: f64| self.distance(share, from, to);
-        let angle = |share: f64, _: f64, _: f64| self.angle(share);
+        let distance = |fraction: f64, from: f64, to: f64| self.distance(fraction, from, to);
+        let angle = |fraction: f64, _: f64, _: f64| self.angle(fraction);
         LargestDeviation { distance: largest_over(knots, distance), angle: largest_over(knots, angle) }
     }
 
     /// The distance (m) and the angle (rad) at a path parameter.
-    pub(crate) fn parts_at(&self, share: f64) -> [f64; 2] {
-        [self.distance(share, share, share), self.angle(share)]
+    pub(crate) fn parts_at(&self, fraction: f64) -> [f64; 2] {
+        [self.distance(fraction, fraction, fraction), self.angle(fraction)]
     }
 
     /// The larger of the two.
-    pub(crate) fn at(&self, share: f64) -> f64 {
-        let [distance, angle] = self.parts_at(share);
+    pub(crate) fn at(&self, fraction: f64) -> f64 {
+        let [distance, angle] = self.parts_at(fraction);
         distance.max(angle)
     }
 
     /// An upper bound of [`at`](Self::at) that is quicker to compute: the distance (m) from the path point at the same
     /// parameter, or the angle (rad) if that is larger.
-    pub(crate) fn bound(&self, share: f64) -> f64 {
+    pub(crate) fn bound(&self, fraction: f64) -> f64 {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        (self.configurations)(share, q);
-        let due = self.tip_path.path_target(share);
+        (self.configurations)(fraction, q);
+        let due = self.tip_path.path_target(fraction);
         if let Some([distance, angle]) = due.excess(|| self.robot.tip(q)) {
             return distance.max(angle);
         }
@@ -101,35 +101,35 @@ impl<C: Configurations> TipDeviation<'_, C> {
     /// The largest [`at`](Self::at) at `samples` parameters between two path parameters.
     pub(crate) fn between(&self, from: f64, to: f64, samples: usize) -> f64 {
         let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
-        let off = |share: f64| self.distance(share, from, to).max(self.angle(share));
+        let off = |fraction: f64| self.distance(fraction, from, to).max(self.angle(fraction));
         (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
     }
 
-    /// The distance from the part of the path around `share` that extends one interval before `from` and after `to`:
-    /// only the position of the tip matters, not its time. With leeway, that from the point at `share`.
-    fn distance(&self, share: f64, from: f64, to: f64) -> f64 {
-        if let Some([distance, _]) = self.tip_path.path_target(share).excess(|| self.tip(share)) {
+    /// The distance from the part of the path around `fraction` that extends one interval before `from` and after `to`:
+    /// only the position of the tip matters, not its time. With tolerance_band, that from the point at `fraction`.
+    fn distance(&self, fraction: f64, from: f64, to: f64) -> f64 {
+        if let Some([distance, _]) = self.tip_path.path_target(fraction).excess(|| self.tip(fraction)) {
             return distance;
         }
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        (self.configurations)(share, q);
+        (self.configurations)(fraction, q);
         let length = to - from;
         self.tip_path.distance(self.robot.tip_position(q), from - length, to + length)
     }
 
-    fn angle(&self, share: f64) -> f64 {
-        let due = self.tip_path.path_target(share);
-        match due.excess(|| self.tip(share)) {
+    fn angle(&self, fraction: f64) -> f64 {
+        let due = self.tip_path.path_target(fraction);
+        match due.excess(|| self.tip(fraction)) {
             Some([_, angle]) => angle,
-            None => angle_between(&due.target, || self.tip(share)),
+            None => angle_between(&due.target, || self.tip(fraction)),
         }
     }
 
-    fn tip(&self, share: f64) -> Frame {
+    fn tip(&self, fraction: f64) -> Frame {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        (self.configurations)(share, q);
+        (self.configurations)(fraction, q);
         self.robot.tip(q)
     }
 }
@@ -147,19 +147,19 @@ fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
 
 /// The largest `value` of (share, from, to) over all intervals \[from, to\] between `knots`.
 fn largest_over(knots: &[f64], value: impl Fn(f64, f64, f64) -> f64) -> Largest {
-    let none = Largest { value: -1.0, share: 0.0 };
+    let none = Largest { value: -1.0, fraction: 0.0 };
     knots.windows(2).fold(none, |largest, ends| {
         let [from, to] = [ends[0], ends[1]];
-        peak(from, to, |share| value(share, from, to)).or_larger(largest)
+        peak(from, to, |fraction| value(fraction, from, to)).or_larger(largest)
     })
 }
 
 /// The largest value between two path parameters.
 fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
     let step = (to - from) / SAMPLES as f64;
-    let at = |share: f64| Largest { value: value(share), share };
+    let at = |fraction: f64| Largest { value: value(fraction), fraction };
     let best = (1..=SAMPLES).map(|i| at(from + step * i as f64)).fold(at(from), Largest::or_larger);
-    let [mut lower, mut upper] = [(best.share - step).max(from), (best.share + step).min(to)];
+    let [mut lower, mut upper] = [(best.fraction - step).max(from), (best.fraction + step).min(to)];
     for _ in 0..STEPS {
         let third = (upper - lower) / 3.0;
         if value(lower + third) > value(upper - third) {
@@ -183,15 +183,15 @@ mod tests {
         let points = Waypoints::new(vec![robot.tip_position(&from), robot.tip_position(&to)], None).unwrap();
         let tip_path = TipPath::through(&points).unwrap();
         let configurations =
-            |share: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + share * (to[j] - from[j]));
+            |fraction: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + fraction * (to[j] - from[j]));
         let deviation = TipDeviation { robot: &robot, tip_path: &tip_path, configurations };
         let mut dense: f64 = 0.0;
         for i in 0..=4000 {
-            let share = f64::from(i) / 4000.0;
+            let fraction = f64::from(i) / 4000.0;
             let mut q = [0.0; 2];
-            configurations(share, &mut q);
+            configurations(fraction, &mut q);
             let distance = tip_path.distance(robot.tip_position(&q), 0.0, 1.0);
-            assert!(distance <= deviation.bound(share) + 1e-12);
+            assert!(distance <= deviation.bound(fraction) + 1e-12);
             dense = dense.max(distance);
         }
         let LargestDeviation { distance, angle } = deviation.largest(&[0.0, 0.3, 1.0]);

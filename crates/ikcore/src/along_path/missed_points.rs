@@ -47,13 +47,13 @@ impl Missed {
 pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Result<Option<Error>> {
     let numbered = tip_path.numbered_points();
     let in_time = if numbered.is_empty() { tip_path.knots(POINTS_IN_TIME) } else { vec![] };
-    let shares = if numbered.is_empty() { &in_time } else { numbered };
+    let fractions = if numbered.is_empty() { &in_time } else { numbered };
     let options = options(tip_path, seed);
     let (mut proven, mut open, mut searches) = (Missed::default(), Missed::default(), 0);
-    let stride = shares.len().div_ceil(MOST_POINTS).max(1);
-    for (point, share) in shares.iter().enumerate().step_by(stride) {
+    let stride = fractions.len().div_ceil(MOST_POINTS).max(1);
+    for (point, fraction) in fractions.iter().enumerate().step_by(stride) {
         checkpoint()?;
-        let solution = solve(robot, &tip_path.pose(*share), &options, &mut Unattended)?;
+        let solution = solve(robot, &tip_path.pose(*fraction), &options, &mut Unattended)?;
         match solution.status {
             Status::Solved => {}
             Status::OutOfReach => proven.add(point, stride, solution.error),
@@ -67,7 +67,7 @@ pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
         }
     }
     let name = |missed: &Missed| match numbered.is_empty() {
-        true => tip_path.place(shares[missed.ranges[0][0]]),
+        true => tip_path.place(fractions[missed.ranges[0][0]]),
         false => format!("{} of the path", words(&missed.ranges)),
     };
     Ok(match (&proven.farthest, &open.farthest) {
@@ -81,9 +81,9 @@ pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
 ///
 /// # Errors
 /// As [`missed_points`].
-pub(crate) fn missed_at(robot: &Robot, tip_path: &TipPath, share: f64, seed: u64) -> Result<Option<Error>> {
-    let solution = solve(robot, &tip_path.pose(share), &options(tip_path, seed), &mut Unattended)?;
-    let (what, error) = (tip_path.place(share), solution.error);
+pub(crate) fn missed_at(robot: &Robot, tip_path: &TipPath, fraction: f64, seed: u64) -> Result<Option<Error>> {
+    let solution = solve(robot, &tip_path.pose(fraction), &options(tip_path, seed), &mut Unattended)?;
+    let (what, error) = (tip_path.place(fraction), solution.error);
     Ok(match solution.status {
         Status::Solved => None,
         Status::OutOfReach => Some(unreachable(what, &error)),

@@ -9,7 +9,7 @@ use super::piece_space::PieceSpace;
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
 use crate::free_path;
-use crate::obstacle::{Sweep, kept_margin};
+use crate::obstacle::{ClearanceSweep, kept_margin};
 use crate::plan::{
     EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at, joined,
     nearest_at, no_usable_end, refuse_collision,
@@ -144,7 +144,7 @@ impl<'a> Pieces<'a> {
         let mut offer = |motion: &Trajectory, space: &PieceSpace, kept: f64| -> Result<()> {
             let Some(clear) = space.clear()? else { return Ok(()) };
             let whole = [0.0, motion.duration()];
-            let Some(near) = Sweep::new(clear.scene()).smallest(&TimedMotion::new(motion), whole) else {
+            let Some(near) = ClearanceSweep::new(clear.scene()).smallest(&TimedMotion::new(motion), whole) else {
                 return Ok(());
             };
             let distance = near.contact.distance.max(kept);

@@ -5,7 +5,7 @@ use super::straight_tip::{Hindrance, StraightTip};
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
-use crate::obstacle::{ClearSpace, Contact, NearestContact, Sweep};
+use crate::obstacle::{ClearSpace, ClearanceSweep, Contact, NearestContact};
 use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
@@ -138,7 +138,8 @@ impl LineSearch<'_> {
         let space = self.along_line.as_ref().map(|(_, space)| space);
         let margin = space.map_or(0.0, |space| space.margin() - RESERVE);
         let whole = [0.0, outward.duration()];
-        let checked = space.map(|space| Sweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
+        let checked =
+            space.map(|space| ClearanceSweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
             let contact = in_words(&near.contact, margin);

@@ -25,7 +25,8 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
     let mut near = space.near_rows();
     space.find_rows(from, space.margin(), &mut near);
-    let kept = RequiredDistance { at_rest: near.rows(), leeway: LEEWAY, ..RequiredDistance::constant(space.margin()) };
+    let kept =
+        RequiredDistance { at_rest: near.rows(), tolerance_band: LEEWAY, ..RequiredDistance::constant(space.margin()) };
     let mut motion: Option<Trajectory> = None;
     let mut at = 0;
     // Each line as far along the descent as it is certified to come no nearer.
@@ -49,7 +50,7 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
 fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
     let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let parts = (longest / PART).ceil().max(1.0) as usize;
-    let mut check = space.chord_check();
+    let mut check = space.motion_certificate();
     let at = |i: usize| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + (to - from) * i as f64 / parts as f64).collect()
     };

@@ -106,11 +106,11 @@ impl<'a> StraightTip<'a> {
         ranges.map(of_joint).fold(0.0, f64::max)
     }
 
-    /// The target at a share of the line.
-    fn target(&self, q: &[f64], along: [f64; 3], share: f64) -> Target {
+    /// The target at a fraction of the line.
+    fn target(&self, q: &[f64], along: [f64; 3], fraction: f64) -> Target {
         let mut frame = self.robot.tip(q);
         for (origin, along) in frame.origin.iter_mut().zip(along) {
-            *origin += share * along;
+            *origin += fraction * along;
         }
         match self.task.map(|task| task.kind) {
             Some(TaskKind::Position) => Target::Position(frame.origin),
@@ -134,8 +134,8 @@ impl<'a> StraightTip<'a> {
         let mut here = q.to_vec();
         let mut linearization = TaskBlock::default();
         for i in 1..=intervals {
-            let share = i as f64 / intervals as f64;
-            let target = self.target(q, along, share);
+            let fraction = i as f64 / intervals as f64;
+            let target = self.target(q, along, fraction);
             let before = here.clone();
             let mut solved = false;
             for _ in 0..STEPS {
@@ -150,7 +150,7 @@ impl<'a> StraightTip<'a> {
             }
             let longest = before.iter().zip(&here).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if !solved || longest > LONGEST {
-                let at = number(share * norm(&along));
+                let at = number(fraction * norm(&along));
                 return Err(format!(
                     "{at} m {place} the arm is singular, at its joint limits or at the edge of its reach"
                 ));
@@ -172,10 +172,10 @@ impl<'a> StraightTip<'a> {
             values.iter_mut().zip(rows.chunks_exact(n)).for_each(|(value, row)| *value = row[j]);
             spline.curvatures(&values, &mut curvatures);
             for (i, t) in breaks.iter().enumerate() {
-                let [share, speed, acceleration] = quintic(*t);
-                let piece = ((share * intervals as f64) as usize).min(intervals - 1);
+                let [fraction, speed, acceleration] = quintic(*t);
+                let piece = ((fraction * intervals as f64) as usize).min(intervals - 1);
                 let [c0, c1, c2, c3] = spline.piece(piece, &values, &curvatures).coefficients();
-                let s = share - breaks[piece];
+                let s = fraction - breaks[piece];
                 let [slope, curvature] = [c1 + s * (2.0 * c2 + 3.0 * s * c3), 2.0 * c2 + 6.0 * s * c3];
                 q[i * n + j] = c0 + s * (c1 + s * (c2 + s * c3));
                 qd[i * n + j] = slope * speed;
@@ -210,7 +210,7 @@ impl<'a> StraightTip<'a> {
     }
 }
 
-/// Share of the way, speed and acceleration of a quintic from rest to rest at the share `t` of its time.
+/// Fraction of the way, speed and acceleration of a quintic from rest to rest at the fraction `t` of its time.
 fn quintic(t: f64) -> [f64; 3] {
     let rest = 1.0 - t;
     [t * t * t * (10.0 + t * (6.0 * t - 15.0)), 30.0 * (t * rest).powi(2), 60.0 * t * rest * (1.0 - 2.0 * t)]

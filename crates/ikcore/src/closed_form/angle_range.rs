@@ -36,8 +36,8 @@ impl AngleRange {
     pub fn deepest_pair(&self, other: &Self, sum: Angle, sense: f64) -> [Angle; 2] {
         let excess = sum.and(self.middle.back()).and(other.middle.signed(sense).back()).angle();
         let halves = self.half + other.half;
-        let share = if halves > 0.0 { self.half / halves } else { 0.5 };
-        let [of_this, of_other] = [share * excess, sense * (1.0 - share) * excess].map(Angle::by);
+        let fraction = if halves > 0.0 { self.half / halves } else { 0.5 };
+        let [of_this, of_other] = [fraction * excess, sense * (1.0 - fraction) * excess].map(Angle::by);
         [self.middle.and(of_this), other.middle.and(of_other)]
     }
 

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
-use crate::obstacle::{Scene, Sweep, kept_margin};
+use crate::obstacle::{ClearanceSweep, Scene, kept_margin};
 use crate::plan::{
     Cost, EndName, Endpoint, Improvement, Plan, PointToPointOptions, RESERVE, TimedMotion, as_lines, configuration_at,
     nearest_at, no_usable_end, refuse_collision, scene, too_near,
@@ -59,7 +59,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let most = most_kept(&scene, &open, margin);
     let mut trees = TreeSearch::new(&scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
-    let mut sweep = Sweep::new(&scene);
+    let mut sweep = ClearanceSweep::new(&scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
         true => Certified::Nothing(Status::Stalled),
@@ -113,8 +113,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
 fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
     let distance = |pair: &EndPair| {
         let at = |i: usize| -> Vec<f64> {
-            let share = i as f64 / INTERVALS as f64;
-            pair.start.iter().zip(&pair.end).map(|(start, end)| start + share * (end - start)).collect()
+            let fraction = i as f64 / INTERVALS as f64;
+            pair.start.iter().zip(&pair.end).map(|(start, end)| start + fraction * (end - start)).collect()
         };
         let nearest = (0..=INTERVALS).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
         nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
@@ -165,7 +165,7 @@ fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
 }
 
 /// The plan with its smallest distance, and the violation if that is less than the margin.
-fn with_least_distance(mut plan: Plan, sweep: &mut Sweep, scene: &Scene, margin: f64) -> Result<Plan> {
+fn with_least_distance(mut plan: Plan, sweep: &mut ClearanceSweep, scene: &Scene, margin: f64) -> Result<Plan> {
     let whole = [0.0, plan.trajectory.duration()];
     let Some(near) = sweep.smallest(&TimedMotion::new(&plan.trajectory), whole) else { return Ok(plan) };
     plan.nearest = nearest_at(scene, &plan.trajectory, near.at)?;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::math::vector::squared_distance;
-use crate::obstacle::{LineCheck, Sweep};
+use crate::obstacle::{ClearanceSweep, SampledLine};
 use crate::plan::{Deadline, TimedMotion, configuration_at};
 use crate::timing::{JointPolyline, MotionLimits};
 use crate::trajectory::Trajectory;
@@ -10,14 +10,14 @@ use crate::trajectory::Trajectory;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
 
-/// Blends that are cut to less than this share stay as they are until they are certified.
+/// Blends that are cut to less than this fraction stay as they are until they are certified.
 const LEAST_SHARE: f64 = 0.02;
 
 /// A path, with blends as wide as seems clear.
 pub(super) struct TimedPath {
     pub path: JointPolyline,
-    /// The share of the shorter adjacent line that each blend takes.
-    shares: Vec<f64>,
+    /// The fraction of the shorter adjacent line that each blend takes.
+    fractions: Vec<f64>,
     /// The quicker of its timings with and without stops, not certified.
     pub motion: Trajectory,
 }
@@ -25,7 +25,7 @@ pub(super) struct TimedPath {
 /// The limits and the margin of a motion.
 pub(super) struct Timing<'s, 'a> {
     pub limits: &'s MotionLimits,
-    pub sweep: &'s mut Sweep<'a>,
+    pub sweep: &'s mut ClearanceSweep<'a>,
     /// Distance to keep (m).
     pub margin: f64,
     pub deadline: Deadline,
@@ -34,39 +34,39 @@ pub(super) struct Timing<'s, 'a> {
 impl TimedPath {
     /// A straight line, timed by `motion`.
     pub(super) fn straight(path: JointPolyline, motion: Trajectory) -> Self {
-        Self { shares: vec![1.0; path.0.len()], path, motion }
+        Self { fractions: vec![1.0; path.0.len()], path, motion }
     }
 
-    /// Times a path. `shares[i]` is the share of the shorter adjacent line that the blend of point i takes.
-    pub(super) fn new(path: JointPolyline, shares: Vec<f64>, limits: &MotionLimits) -> Result<Self> {
+    /// Times a path. `fractions[i]` is the fraction of the shorter adjacent line that the blend of point i takes.
+    pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &MotionLimits) -> Result<Self> {
         let stopping = path.with_stops(limits)?;
-        let motion = match path.with_blends(limits, &shares).transpose()? {
+        let motion = match path.with_blends(limits, &fractions).transpose()? {
             Some(blended) if blended.duration() < stopping.duration() => blended,
             _ => stopping,
         };
-        Ok(Self { path, shares, motion })
+        Ok(Self { path, fractions, motion })
     }
 }
 
-/// The share of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
+/// The fraction of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
 /// between its ends is clear.
-pub(super) fn clear_share(path: &JointPolyline, i: usize, limits: &MotionLimits, check: &mut LineCheck) -> f64 {
-    let mut share = 1.0;
-    while share > LEAST_SHARE {
-        let [from, to] = path.blend_ends(limits, i, share);
+pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &MotionLimits, check: &mut SampledLine) -> f64 {
+    let mut fraction = 1.0;
+    while fraction > LEAST_SHARE {
+        let [from, to] = path.blend_ends(limits, i, fraction);
         if check.is_clear(&from, &to) {
             break;
         }
-        share *= 0.5;
+        fraction *= 0.5;
     }
-    share
+    fraction
 }
 
 impl Timing<'_, '_> {
     /// The motion along a path, certified: with blends, narrower where they come too near, or else with a stop at each corner.
     /// `None` if a line of the path comes too near.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
-        let TimedPath { path, mut shares, motion } = timed;
+        let TimedPath { path, mut fractions, motion } = timed;
         let Some(mut near) = self.too_near(&motion) else { return Ok(Some(motion)) };
         let stopping = path.with_stops(self.limits)?;
         let mut blended = motion;
@@ -74,8 +74,8 @@ impl Timing<'_, '_> {
             if path.0.len() < 3 || self.deadline.is_over() {
                 break;
             }
-            shares[nearest_corner(&path, &blended, near)?] *= 0.5;
-            let Some(narrower) = path.with_blends(self.limits, &shares).transpose()? else { break };
+            fractions[nearest_corner(&path, &blended, near)?] *= 0.5;
+            let Some(narrower) = path.with_blends(self.limits, &fractions).transpose()? else { break };
             blended = narrower;
             if blended.duration() >= stopping.duration() {
                 break;

@@ -140,8 +140,8 @@ fn weighted_step(
 
 fn apply(step: &[f64], limits: &MotionLimits, q: &mut Point) {
     let largest = step.iter().map(|x| x.abs()).fold(0.0, f64::max);
-    let share = if largest > LONGEST_STEP { LONGEST_STEP / largest } else { 1.0 };
+    let fraction = if largest > LONGEST_STEP { LONGEST_STEP / largest } else { 1.0 };
     for (j, (q, step)) in q.iter_mut().zip(step).enumerate() {
-        *q = (*q + share * step).clamp(limits.lower[j], limits.upper[j]);
+        *q = (*q + fraction * step).clamp(limits.lower[j], limits.upper[j]);
     }
 }

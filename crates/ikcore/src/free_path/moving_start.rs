@@ -6,7 +6,7 @@ use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
-use crate::obstacle::{Sweep, kept_margin};
+use crate::obstacle::{ClearanceSweep, kept_margin};
 use crate::plan::{
     Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines, can_collide, joined, nearest_at, scene,
 };
@@ -50,10 +50,11 @@ pub(super) fn begin(
     let collides = can_collide(search.robot, options);
     let lines = if collides { as_lines(search.robot, options)? } else { None };
     let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
-    let mut sweep = scene.as_ref().map(Sweep::new);
+    let mut sweep = scene.as_ref().map(ClearanceSweep::new);
     let mut is_free = |motion: &Trajectory| {
-        let check =
-            |sweep: &mut Sweep| sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok();
+        let check = |sweep: &mut ClearanceSweep| {
+            sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok()
+        };
         sweep.as_mut().is_none_or(check)
     };
     let pairs = search.pairs(PAIRS, monitor)?;

@@ -8,7 +8,7 @@ use super::rrt_connect::{Connection, Route, TreeSearch};
 use super::straight_line_plan::straight;
 use crate::error::Result;
 use crate::objective::Point;
-use crate::obstacle::Sweep;
+use crate::obstacle::ClearanceSweep;
 use crate::plan::{Cost, Improvement, tip_travel_along};
 use crate::rng::{self, LazyRng};
 use crate::solver::{Monitor, Status};
@@ -47,7 +47,7 @@ pub(super) enum Certified {
 /// The search.
 pub(super) struct PathSearch<'s, 'a> {
     pub trees: &'s mut TreeSearch<'a>,
-    pub sweep: &'s mut Sweep<'a>,
+    pub sweep: &'s mut ClearanceSweep<'a>,
     pub search: &'s PairSearch<'a>,
     pub objective: Cost,
     /// Distance to keep (m).
@@ -213,8 +213,8 @@ impl<'a> PathSearch<'_, 'a> {
     }
 
     /// A timed path and its cost.
-    fn timed(&self, BlendedPath { path, shares, .. }: BlendedPath) -> Result<(f64, TimedPath)> {
-        let timed = TimedPath::new(path, shares, self.search.limits)?;
+    fn timed(&self, BlendedPath { path, fractions, .. }: BlendedPath) -> Result<(f64, TimedPath)> {
+        let timed = TimedPath::new(path, fractions, self.search.limits)?;
         Ok((self.objective.of(self.search.robot, &timed.motion), timed))
     }
 

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::certified_timing::clear_share;
+use super::certified_timing::clear_fraction;
 use super::rrt_connect::TreeSearch;
 use super::shortening::along;
 use crate::math::vector::distance;
-use crate::obstacle::LineCheck;
+use crate::obstacle::SampledLine;
 use crate::plan::{Cost, tip_travel_along};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
@@ -41,10 +41,10 @@ pub(super) struct PathMeasure<'a> {
 
 impl PathMeasure<'_> {
     /// The cost of a motion along a path with these blends, but for what they cut off; infinite if there is none.
-    fn of(&self, path: &JointPolyline, shares: &[f64]) -> f64 {
+    fn of(&self, path: &JointPolyline, fractions: &[f64]) -> f64 {
         let by_lines =
             |size: fn(&[f64], &[f64]) -> f64| path.0.windows(2).map(|line| size(&line[0], &line[1])).sum::<f64>();
-        let duration = path.blend_times(self.limits, shares).map_or(f64::INFINITY, |times| times.total());
+        let duration = path.blend_times(self.limits, fractions).map_or(f64::INFINITY, |times| times.total());
         match self.objective {
             Cost::Time => duration + OF_LENGTH * by_lines(distance),
             Cost::JointTravel => by_lines(travel) + OF_DURATION * duration,
@@ -71,8 +71,8 @@ fn travel(from: &[f64], to: &[f64]) -> f64 {
 #[derive(Debug, Clone)]
 pub(super) struct BlendedPath {
     pub path: JointPolyline,
-    /// The share of the shorter adjacent line that each blend takes.
-    pub shares: Vec<f64>,
+    /// The fraction of the shorter adjacent line that each blend takes.
+    pub fractions: Vec<f64>,
     /// By its measure.
     pub cost: f64,
     /// How far its corners are moved at present (rad, m).
@@ -81,13 +81,13 @@ pub(super) struct BlendedPath {
 
 impl BlendedPath {
     /// A clear path with blends as wide as seems clear.
-    pub(super) fn new(path: JointPolyline, measure: &PathMeasure, check: &mut LineCheck) -> Self {
-        let mut shares = vec![1.0; path.0.len()];
-        for (i, share) in shares.iter_mut().enumerate().skip(1).take(path.0.len() - 2) {
-            *share = clear_share(&path, i, measure.limits, check);
+    pub(super) fn new(path: JointPolyline, measure: &PathMeasure, check: &mut SampledLine) -> Self {
+        let mut fractions = vec![1.0; path.0.len()];
+        for (i, fraction) in fractions.iter_mut().enumerate().skip(1).take(path.0.len() - 2) {
+            *fraction = clear_fraction(&path, i, measure.limits, check);
         }
-        let cost = measure.of(&path, &shares);
-        Self { path, shares, cost, step: FIRST }
+        let cost = measure.of(&path, &fractions);
+        Self { path, fractions, cost, step: FIRST }
     }
 
     /// The path with one change, not examined yet.
@@ -132,17 +132,17 @@ impl Variation {
     }
 
     /// Shares of the blends: those of the other path, and all of the shorter line at touched points.
-    fn shares(&self, others: &[f64]) -> Vec<f64> {
+    fn fractions(&self, others: &[f64]) -> Vec<f64> {
         let touched = self.touched();
         let (before, after) = (&others[..touched.start], &others[others.len() - (self.path.0.len() - touched.end)..]);
         [before, &vec![1.0; touched.len()], after].concat()
     }
 
     /// The path with blends as wide as seems clear, if it is clear and better than `best`.
-    fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut LineCheck) -> Option<BlendedPath> {
-        let mut shares = self.shares(&best.shares);
+    fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut SampledLine) -> Option<BlendedPath> {
+        let mut fractions = self.fractions(&best.fractions);
         // Narrower blends only cost more.
-        if measure.of(&self.path, &shares) >= best.cost {
+        if measure.of(&self.path, &fractions) >= best.cost {
             return None;
         }
         let changed = &self.path.0[self.new.start - 1..=self.new.end];
@@ -150,10 +150,10 @@ impl Variation {
             return None;
         }
         for i in self.touched() {
-            shares[i] = clear_share(&self.path, i, measure.limits, check);
+            fractions[i] = clear_fraction(&self.path, i, measure.limits, check);
         }
-        let cost = measure.of(&self.path, &shares);
-        (cost < best.cost).then_some(BlendedPath { path: self.path, shares, cost, step: best.step })
+        let cost = measure.of(&self.path, &fractions);
+        (cost < best.cost).then_some(BlendedPath { path: self.path, fractions, cost, step: best.step })
     }
 }
 
@@ -181,13 +181,13 @@ impl TreeSearch<'_> {
     }
 }
 
-/// The corner, moved by a share of the way towards the line between the points beside it.
-fn pulled(beside: &[Vec<f64>], share: f64) -> Vec<f64> {
+/// The corner, moved by a fraction of the way towards the line between the points beside it.
+fn pulled(beside: &[Vec<f64>], fraction: f64) -> Vec<f64> {
     let (before, corner, after) = (&beside[0], &beside[1], &beside[2]);
     let lengths = [distance(before, corner), distance(corner, after)];
     let place = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
     let on_line = |j: usize| before[j] + place * (after[j] - before[j]);
-    corner.iter().enumerate().map(|(j, q)| q + share * (on_line(j) - q)).collect()
+    corner.iter().enumerate().map(|(j, q)| q + fraction * (on_line(j) - q)).collect()
 }
 
 /// A configuration at most `step` away (rad, m), within the limits.
@@ -247,23 +247,23 @@ mod tests {
             assert!(best.cost < 0.95 * first.cost, "{objective:?}: {} of {}", best.cost, first.cost);
             let points = &best.path.0;
             assert_eq!((&points[0][..], &points[points.len() - 1][..]), (&START[..], &END[..]));
-            assert_eq!(best.shares.len(), points.len());
+            assert_eq!(best.fractions.len(), points.len());
         }
     }
 
     #[test]
-    fn refined_shares_are_those_that_seem_clear() {
+    fn refined_fractions_are_those_that_seem_clear() {
         let robot = Robot::planar(&[1.0, 1.0]).unwrap();
         let limits = limits(&robot);
         let [_, best] = refined(Cost::JointTravel, 500);
         let mut rng = rng::stream(3, 0);
         for _ in 0..200 {
             let variation = best.varied(&limits, &mut rng);
-            let shares = variation.shares(&best.shares);
-            assert_eq!(shares.len(), variation.path.0.len());
-            for (i, share) in shares.iter().enumerate().filter(|(i, _)| !variation.touched().contains(i)) {
+            let fractions = variation.fractions(&best.fractions);
+            assert_eq!(fractions.len(), variation.path.0.len());
+            for (i, fraction) in fractions.iter().enumerate().filter(|(i, _)| !variation.touched().contains(i)) {
                 let same = best.path.0.iter().position(|q| *q == variation.path.0[i]);
-                assert_eq!(same.map(|at| best.shares[at]), Some(*share), "point {i}");
+                assert_eq!(same.map(|at| best.fractions[at]), Some(*fraction), "point {i}");
             }
         }
     }

@@ -2,7 +2,7 @@
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
 
 use super::configuration_tree::ConfigurationTree;
-use crate::obstacle::{LineCheck, Scene};
+use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
@@ -41,7 +41,7 @@ pub(super) struct Route<'r> {
 
 /// The search: lines, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
-    pub check: LineCheck<'a>,
+    pub check: SampledLine<'a>,
     /// Lowest and highest value of each joint.
     pub ranges: Vec<(f64, f64)>,
     /// Total number of configurations that may be examined.
@@ -64,7 +64,7 @@ impl<'a> TreeSearch<'a> {
     ) -> Self {
         let joints = scene.robot().joints().iter().enumerate();
         let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
-        Self { check: LineCheck::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+        Self { check: SampledLine::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
     }
 
     /// Whether a budget is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on them.
@@ -149,11 +149,11 @@ impl<'a> TreeSearch<'a> {
     }
 }
 
-/// Writes the configuration at `share` of the way, or the goal if that is past it.
-fn step_towards(from: &[f64], goal: &[f64], share: f64, next: &mut [f64]) {
-    let share = share.min(1.0);
+/// Writes the configuration at `fraction` of the way, or the goal if that is past it.
+fn step_towards(from: &[f64], goal: &[f64], fraction: f64, next: &mut [f64]) {
+    let fraction = fraction.min(1.0);
     for (next, (from, goal)) in next.iter_mut().zip(from.iter().zip(goal)) {
-        *next = if share < 1.0 { from + share * (goal - from) } else { *goal };
+        *next = if fraction < 1.0 { from + fraction * (goal - from) } else { *goal };
     }
 }
 

@@ -60,6 +60,6 @@ impl TreeSearch<'_> {
 /// The line on which `place` lies (counted in lines), and the point there.
 pub(super) fn along(points: &[Vec<f64>], place: f64) -> (usize, Vec<f64>) {
     let line = (place as usize).min(points.len() - 2);
-    let share = place - line as f64;
-    (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + share * (b - a)).collect())
+    let fraction = place - line as f64;
+    (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + fraction * (b - a)).collect())
 }

@@ -42,8 +42,8 @@ pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> 
         if no_nearer == PATIENCE || attempt.budget.is_spent() {
             break solution;
         }
-        let share = (no_nearer + 1) as f64 / PATIENCE as f64;
-        Spread { robot, bounds, start }.draw(share, attempt.rng, &mut x0);
+        let fraction = (no_nearer + 1) as f64 / PATIENCE as f64;
+        Spread { robot, bounds, start }.draw(fraction, attempt.rng, &mut x0);
     };
     match nearest {
         Some((_, q)) => attempt.solution(Status::Solved, q),
@@ -59,14 +59,14 @@ struct Spread<'a> {
 }
 
 impl Spread<'_> {
-    /// Draws a point whose joints differ from the start by at most `share` of their ranges, or of one turn if that is
+    /// Draws a point whose joints differ from the start by at most `fraction` of their ranges, or of one turn if that is
     /// less and the joint is periodic, since whole turns bring back any point beyond.
-    fn draw(&self, share: f64, rng: &mut LazyRng, x: &mut [f64]) {
+    fn draw(&self, fraction: f64, rng: &mut LazyRng, x: &mut [f64]) {
         let Self { robot, bounds, start } = self;
         for (j, joint) in robot.joints().iter().enumerate() {
             let (lower, upper) = joint.sampling_range_within(bounds.lower()[j], bounds.upper()[j]);
             let range = if robot.repeats_every_turn(j) { (upper - lower).min(TAU) } else { upper - lower };
-            x[j] = start[j] + share * range * rng.uniform_in(-1.0, 1.0);
+            x[j] = start[j] + fraction * range * rng.uniform_in(-1.0, 1.0);
         }
         bounds.clip(x);
     }

@@ -72,8 +72,8 @@ impl Profile {
             Self::Sampled { step, values } => {
                 let last = values.len() - 1;
                 let place = (t / step).clamp(0.0, last as f64);
-                let (below, share) = (place as usize, place.fract());
-                if share == 0.0 { values[below] } else { between(values[below], values[below + 1], share) }
+                let (below, fraction) = (place as usize, place.fract());
+                if fraction == 0.0 { values[below] } else { between(values[below], values[below + 1], fraction) }
             }
         }
     }
@@ -156,11 +156,11 @@ impl Profile {
     }
 }
 
-/// The value at `share` of the way from one sample to the next. Next to a sample without a limit the finite one holds up
+/// The value at `fraction` of the way from one sample to the next. Next to a sample without a limit the finite one holds up
 /// to it, because no straight line leads to infinity.
-fn between(before: f64, after: f64, share: f64) -> f64 {
+fn between(before: f64, after: f64, fraction: f64) -> f64 {
     match (before.is_finite(), after.is_finite()) {
-        (true, true) => before + share * (after - before),
+        (true, true) => before + fraction * (after - before),
         (false, true) => after,
         (_, false) => before,
     }

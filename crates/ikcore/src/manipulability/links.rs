@@ -38,8 +38,8 @@ impl Manipulability {
             let mut columns = Columns::default();
             columns.fit(q.len());
             for screw in &screws[..=i] {
-                let share = screw.column(&link.end);
-                columns[screw.joint].iter_mut().zip(share).for_each(|(sum, entry)| *sum += entry);
+                let fraction = screw.column(&link.end);
+                columns[screw.joint].iter_mut().zip(fraction).for_each(|(sum, entry)| *sum += entry);
             }
             indices.values[i] = self.unit_ball() * self.index_of(&mut columns[..q.len()]);
         }

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 /// Most voxels of a map.
 const MOST: f64 = 4e9;
 
-/// A corner nearer than this share of a voxel to a face of the lattice is on it.
+/// A corner nearer than this fraction of a voxel to a face of the lattice is on it.
 const ON_FACE: f64 = 1e-6;
 
 /// Edge of the chunks of a map whose voxels are computed one by one.

@@ -16,7 +16,7 @@ pub enum SplineEnds {
 /// q''_end = chord_share chord + near q''_1 + far q''_2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct EndRule {
-    chord_share: f64,
+    chord_fraction: f64,
     near: f64,
     far: f64,
 }
@@ -25,7 +25,7 @@ impl SplineEnds {
     /// The rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in total.
     /// `sign` is 1 at the start and -1 at the end.
     fn rule(self, h: f64, next: f64, pieces: usize, sign: f64) -> EndRule {
-        let rule = |chord_share, near, far| EndRule { chord_share, near, far };
+        let rule = |chord_fraction, near, far| EndRule { chord_fraction, near, far };
         match self {
             Self::Clamped if pieces == 1 => rule(sign * 6.0 / h, 0.0, 0.0),
             Self::Clamped => rule(sign * 3.0 / h, -0.5, 0.0),
@@ -114,10 +114,10 @@ impl CubicSpline {
             let (before, after) = (chord(i - 1), chord(i));
             let mut right = 6.0 * (after - before);
             if i == 1 {
-                right -= h(0) * first_rule.chord_share * before;
+                right -= h(0) * first_rule.chord_fraction * before;
             }
             if i == last - 1 {
-                right -= h(i) * last_rule.chord_share * after;
+                right -= h(i) * last_rule.chord_fraction * after;
             }
             curvatures[i] = (right - self.below[i] * curvatures[i - 1]) * self.inverse[i];
         }
@@ -154,7 +154,7 @@ impl CubicSpline {
 
 impl EndRule {
     fn curvature(&self, chord: f64, near: f64, far: f64) -> f64 {
-        self.chord_share * chord + self.near * near + self.far * far
+        self.chord_fraction * chord + self.near * near + self.far * far
     }
 }
 

@@ -15,18 +15,18 @@ impl Cubic {
         Self { coefficients: [from, left, 3.0 * chord - 2.0 * left - right, left + right - 2.0 * chord] }
     }
 
-    /// The value at `share`.
+    /// The value at `fraction`.
     #[inline]
-    pub fn at(&self, share: f64) -> f64 {
+    pub fn at(&self, fraction: f64) -> f64 {
         let [a, b, c, d] = self.coefficients;
-        a + share * (b + share * (c + share * d))
+        a + fraction * (b + fraction * (c + fraction * d))
     }
 
-    /// The derivative at `share`.
+    /// The derivative at `fraction`.
     #[inline]
-    pub fn slope(&self, share: f64) -> f64 {
+    pub fn slope(&self, fraction: f64) -> f64 {
         let [_, b, c, d] = self.coefficients;
-        b + share * (2.0 * c + 3.0 * share * d)
+        b + fraction * (2.0 * c + 3.0 * fraction * d)
     }
 
     /// Bounds of the values between the ends: the smallest and largest Bézier coefficient.
@@ -61,8 +61,8 @@ mod tests {
             ends in prop::array::uniform2(-3.0..3.0), slopes in prop::array::uniform2(-9.0..9.0)
         ) {
             let cubic = Cubic::new(ends, slopes);
-            for (share, end, slope) in [(0.0, ends[0], slopes[0]), (1.0, ends[1], slopes[1])] {
-                prop_assert!((cubic.at(share) - end).abs() < 1e-14 && (cubic.slope(share) - slope).abs() < 1e-13);
+            for (fraction, end, slope) in [(0.0, ends[0], slopes[0]), (1.0, ends[1], slopes[1])] {
+                prop_assert!((cubic.at(fraction) - end).abs() < 1e-14 && (cubic.slope(fraction) - slope).abs() < 1e-13);
             }
             let difference = (cubic.at(0.4 + 1e-5) - cubic.at(0.4 - 1e-5)) / 2e-5;
             prop_assert!((cubic.slope(0.4) - difference).abs() < 1e-8);

@@ -203,18 +203,18 @@ impl RowSolver {
     fn settle(&mut self, step: &RowStep<'_>) {
         while !self.active.is_empty() {
             self.solve_for_multipliers(step);
-            // The first that would become negative, and the share of the way until it does.
+            // The first that would become negative, and the fraction of the way until it does.
             let mut first = (1.0, None);
             for (i, (active, trial)) in self.active.iter().zip(&self.trial).enumerate() {
-                let share = active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE);
+                let fraction = active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE);
                 let leaves = !matches!(active.constraint, Constraint::Held(_));
-                if leaves && *trial <= 0.0 && share < first.0 {
-                    first = (share, Some(i));
+                if leaves && *trial <= 0.0 && fraction < first.0 {
+                    first = (fraction, Some(i));
                 }
             }
-            let (share, first) = first;
+            let (fraction, first) = first;
             for (active, trial) in self.active.iter_mut().zip(&self.trial) {
-                active.multiplier += share * (trial - active.multiplier);
+                active.multiplier += fraction * (trial - active.multiplier);
             }
             match first {
                 Some(i) => self.active.remove(i),

@@ -33,13 +33,13 @@ impl Secant {
     }
 
     /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2,
-    /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `share` of it if r is noisy.
-    pub fn learn<const R: usize>(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], share: f64) {
+    /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `fraction` of it if r is noisy.
+    pub fn learn<const R: usize>(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], fraction: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
             return;
         }
-        let scale = share / squared;
+        let scale = fraction / squared;
         for (column, dx) in self.columns.iter_mut().zip(dx) {
             let weight = scale * dx;
             (0..R).for_each(|k| column[k] += weight * surprise[k]);

@@ -30,9 +30,9 @@ pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Writes q + share * (end - q); rounding cannot take it beyond `end`.
-pub fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
+pub fn between(q: &[f64], end: &[f64], fraction: f64, out: &mut [f64]) {
     for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
-        *out = (q + share * (end - q)).clamp(q.min(*end), q.max(*end));
+        *out = (q + fraction * (end - q)).clamp(q.min(*end), q.max(*end));
     }
 }
 

@@ -85,7 +85,7 @@ mod tests {
         #[test]
         fn admissible_changes_never_run_out(
             jerk in -2.5_f64..0.5, limited in any::<bool>(), speed in -0.5_f64..2.3, width in -1.0_f64..2.0,
-            shares in prop::collection::vec((0_u8..5, 0.0..1.0), 10), falls in any::<bool>(),
+            fractions in prop::collection::vec((0_u8..5, 0.0..1.0), 10), falls in any::<bool>(),
         ) {
             let jerk = if limited { 10.0_f64.powf(jerk) } else { f64::INFINITY };
             let braking = Braking { acceleration: 1.0, jerk };
@@ -100,9 +100,9 @@ mod tests {
                 let room = Room { below: q + half, above: half - q, step: limit(now + 1.0) };
                 let [least, most] = braking.changes([step, change], room, Some(&until));
                 prop_assert!(least <= most);
-                let (kind, share) = shares[tick as usize / 40];
-                let share = match kind { 0 => 0.0, 1 => 1.0, 2 => f64::from(u8::from(tick % 7 < 3)), _ => share };
-                let next = least + share * (most - least);
+                let (kind, fraction) = fractions[tick as usize / 40];
+                let fraction = match kind { 0 => 0.0, 1 => 1.0, 2 => f64::from(u8::from(tick % 7 < 3)), _ => fraction };
+                let next = least + fraction * (most - least);
                 let rounding = 1e-12 * (1.0 + half);
                 prop_assert!((next - change).abs() <= HARDER * jerk + rounding && next.abs() <= HARDER + rounding);
                 (change, step) = (next, step + next);

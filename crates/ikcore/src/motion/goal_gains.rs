@@ -19,11 +19,11 @@ impl GoalGains {
     /// The parabola that remembers this many samples, `interval` ticks apart: three poles at 1 - 1/m for a memory of m.
     pub fn of_parabola(memory: f64, interval: f64) -> Self {
         let (theta, forgotten) = (1.0 - 1.0 / memory, 1.0 / memory);
-        // A change adds this share of itself to the displacement of an interval.
-        let share = 0.5 * (interval + 1.0) / interval;
+        // A change adds this fraction of itself to the displacement of an interval.
+        let fraction = 0.5 * (interval + 1.0) / interval;
         Self {
             position: 1.0 - theta.powi(3),
-            step: forgotten.powi(2) * (2.0 + theta - share * forgotten),
+            step: forgotten.powi(2) * (2.0 + theta - fraction * forgotten),
             change: forgotten.powi(3),
         }
     }

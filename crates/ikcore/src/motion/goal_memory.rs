@@ -43,7 +43,7 @@ pub(super) struct Circumstances {
     pub interval: f64,
     pub age: f64,
     /// Fraction of the largest change that may change in a tick.
-    pub jerk_share: f64,
+    pub jerk_fraction: f64,
     /// Mean square of the inverse of the ticks that a joint takes to full speed.
     pub quickness: f64,
 }
@@ -76,9 +76,9 @@ impl GoalMemory {
             self.samples = self.at_rest;
             return;
         }
-        let share = 2.0 / (self.samples + 1.0);
-        self.drift.iter_mut().zip(surprise).for_each(|(drift, surprise)| *drift += share * (surprise - *drift));
-        let usual = circumstances.noise * (share / (2.0 - share)).sqrt();
+        let fraction = 2.0 / (self.samples + 1.0);
+        self.drift.iter_mut().zip(surprise).for_each(|(drift, surprise)| *drift += fraction * (surprise - *drift));
+        let usual = circumstances.noise * (fraction / (2.0 - fraction)).sqrt();
         let delayed = root_mean_square(self.drift.iter().copied(), scales) > DELAYED * usual;
         let shortest = NOISELESS.max(SHORTEST * self.at_rest);
         self.samples = (self.samples * if delayed { SHRINKS } else { GROWS }).clamp(shortest, self.at_rest);
@@ -94,14 +94,14 @@ impl GoalMemory {
 impl Circumstances {
     /// Samples to remember so that following the noise takes a small share of the limits.
     fn memory_at_rest(&self) -> f64 {
-        let Self { noise, interval, age, jerk_share, quickness } = *self;
+        let Self { noise, interval, age, jerk_fraction, quickness } = *self;
         let allowed = (noise * quickness).cbrt().clamp(ROUNDING, 1.0);
         let seen = AMPLIFIED * noise * (1.0 + age / interval) / interval.powi(2);
         if seen == 0.0 {
             return 1.0;
         }
         let for_acceleration = (seen / (SHAKE * allowed)).powf(0.4);
-        let for_jerk = (seen / (JERK_SHAKE * allowed * jerk_share * interval)).powf(2.0 / 7.0);
+        let for_jerk = (seen / (JERK_SHAKE * allowed * jerk_fraction * interval)).powf(2.0 / 7.0);
         for_acceleration.max(for_jerk).max(1.0)
     }
 }
@@ -113,7 +113,7 @@ mod tests {
     /// The memory after `count` samples with this surprise.
     fn memory(surprise: impl Fn(usize) -> f64, count: usize) -> f64 {
         let circumstances =
-            Circumstances { noise: 10.0, interval: 1.0, age: 0.0, jerk_share: f64::INFINITY, quickness: 4e-5 };
+            Circumstances { noise: 10.0, interval: 1.0, age: 0.0, jerk_fraction: f64::INFINITY, quickness: 4e-5 };
         let mut memory = GoalMemory::new(1);
         for i in 0..count {
             memory.adapt(std::iter::once(surprise(i)), &[1.0], &circumstances);
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn without_noise_one_sample_is_remembered() {
-        let circumstances = Circumstances { noise: 0.0, interval: 1.0, age: 0.0, jerk_share: 0.1, quickness: 0.0 };
+        let circumstances = Circumstances { noise: 0.0, interval: 1.0, age: 0.0, jerk_fraction: 0.1, quickness: 0.0 };
         assert_eq!(circumstances.memory_at_rest(), 1.0);
     }
 }

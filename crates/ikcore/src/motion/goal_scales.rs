@@ -17,7 +17,7 @@ pub(crate) struct Scales {
     /// Largest changes; infinite for joints without limits and for locked ones.
     pub change: Point,
     /// Smallest ratio of jerk to acceleration limit: fraction of the change that may change in a tick.
-    pub jerk_share: f64,
+    pub jerk_fraction: f64,
     /// Mean square of the inverse of the ticks that a joint takes to full speed.
     pub quickness: f64,
 }
@@ -34,10 +34,10 @@ impl Scales {
         };
         let change: Point = braking.iter().zip(&step).map(scale).collect();
         let limited = braking.iter().zip(&change).filter(|(_, change)| change.is_finite());
-        let jerk_share = limited.map(|(braking, change)| braking.jerk / change).fold(f64::INFINITY, f64::min);
+        let jerk_fraction = limited.map(|(braking, change)| braking.jerk / change).fold(f64::INFINITY, f64::min);
         let moving = change.iter().zip(&step).filter(|(change, step)| change.is_finite() && **step > 0.0);
         let ticks = moving.map(|(change, step)| if step.is_finite() { step / change } else { TICKS_TO_FULL_SPEED });
         let (count, sum) = ticks.fold((0.0, 0.0), |(count, sum), ticks| (count + 1.0, sum + ticks.powi(-2)));
-        Self { quickness: if count > 0.0 { sum / count } else { 0.0 }, step, change, jerk_share }
+        Self { quickness: if count > 0.0 { sum / count } else { 0.0 }, step, change, jerk_fraction }
     }
 }

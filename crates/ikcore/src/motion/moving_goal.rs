@@ -190,7 +190,7 @@ impl MovingGoal {
             noise: self.noise(),
             interval: self.interval,
             age: self.now - sample.time,
-            jerk_share: scales.jerk_share,
+            jerk_fraction: scales.jerk_fraction,
             quickness: scales.quickness,
         };
         let surprise = sample.q.iter().zip(expected).map(|(q, expected)| q - expected);

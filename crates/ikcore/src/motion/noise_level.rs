@@ -34,7 +34,7 @@ pub(super) struct NoiseLevel {
     differences: [[f64; WINDOW]; 2],
     level: f64,
     /// Fraction of the squared differences in each entry.
-    shares: Point,
+    fractions: Point,
 }
 
 impl NoiseLevel {
@@ -46,7 +46,7 @@ impl NoiseLevel {
             count: 0,
             differences: [[0.0; WINDOW]; 2],
             level: 0.0,
-            shares: Point::new(),
+            fractions: Point::new(),
         }
     }
 
@@ -57,7 +57,7 @@ impl NoiseLevel {
 
     /// Standard deviation of the noise of entry `j`; 0 before the first sample.
     pub fn level_of(&self, j: usize) -> f64 {
-        self.shares.get(j).map_or(0.0, |share| self.level * (self.shares.len() as f64 * share).sqrt())
+        self.fractions.get(j).map_or(0.0, |fraction| self.level * (self.fractions.len() as f64 * fraction).sqrt())
     }
 
     /// Adds a sample at `time`; entries are measured in units of `scales`.
@@ -73,7 +73,7 @@ impl NoiseLevel {
             self.update();
         }
         if count == 0 {
-            self.shares = Point::from_elem(1.0 / sample.len() as f64, sample.len());
+            self.fractions = Point::from_elem(1.0 / sample.len() as f64, sample.len());
         }
         let oldest = slot(CUBIC);
         self.samples[oldest].clear();
@@ -98,8 +98,8 @@ impl NoiseLevel {
         let squares: Point = (0..sample.len()).map(square).collect();
         let sum: f64 = squares.iter().sum();
         if sum > 0.0 {
-            for (share, square) in self.shares.iter_mut().zip(&squares) {
-                *share += (square / sum - *share) / AVERAGED;
+            for (fraction, square) in self.fractions.iter_mut().zip(&squares) {
+                *fraction += (square / sum - *fraction) / AVERAGED;
             }
         }
         (sum / (sample.len() as f64 * variance)).sqrt()

@@ -6,7 +6,7 @@
 //! within the noise around the goal. Otherwise the change is the one after which the stop ends at the edge of the noise:
 //! that is the time-optimal way. Without noise the edge is the goal, and the joint arrives exactly.
 //!
-//! A goal far away is approached by all joints in proportion: the limits of each are scaled by its share of the way.
+//! A goal far away is approached by all joints in proportion: the limits of each are scaled by its fraction of the way.
 
 use super::bracket::largest_not_positive;
 use super::braking::longest_first;
@@ -62,12 +62,12 @@ struct Relative {
 impl Pursuit<'_> {
     /// Writes the configuration at the end of the tick of an arm that is at `q` in `state`.
     pub fn write(&self, q: &[f64], state: &JointState, out: &mut [f64]) {
-        let shares = self.shares(q);
+        let fractions = self.fractions(q);
         let (slowest, quickest) = self.law_times();
         for j in 0..q.len() {
             let goal_step = self.goal.step()[j];
             // Far from the goal its acceleration does not count, but its noise would.
-            let goal_change = if shares.far { 0.0 } else { self.goal.change()[j] };
+            let goal_change = if fractions.far { 0.0 } else { self.goal.change()[j] };
             let straight = q[j] + state.step[j] + goal_change;
             let relative = Relative {
                 distance: q[j] - (self.goal.q()[j] - goal_step),
@@ -76,8 +76,8 @@ impl Pursuit<'_> {
                 changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
             };
             let Braking { acceleration, jerk } = self.braking[j];
-            let acceleration = (shares.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
-            let braking = Braking { acceleration, jerk: shares.jerk[j] * jerk };
+            let acceleration = (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
+            let braking = Braking { acceleration, jerk: fractions.jerk[j] * jerk };
             let scale = self.scales.change[j];
             let noise = if scale.is_finite() { self.goal.uncertainty_of(j) * scale } else { 0.0 };
             let law = if noise > 0.0 {
@@ -86,7 +86,8 @@ impl Pursuit<'_> {
             } else {
                 slowest
             };
-            out[j] = straight + relative.next_change(&braking, law, EDGE * noise, shares.step[j] * self.scales.step[j]);
+            out[j] =
+                straight + relative.next_change(&braking, law, EDGE * noise, fractions.step[j] * self.scales.step[j]);
         }
         self.reachable.clip(out);
     }
@@ -94,12 +95,12 @@ impl Pursuit<'_> {
     /// Longest and shortest time of the linear law, in ticks.
     fn law_times(&self) -> (f64, f64) {
         let memory = self.goal.memory();
-        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_share)).sqrt().min(memory).max(1.0);
+        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_fraction)).sqrt().min(memory).max(1.0);
         ((SHARPER * memory).max(quickest), quickest)
     }
 
-    /// The share of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
-    fn shares(&self, q: &[f64]) -> Shares {
+    /// The fraction of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
+    fn fractions(&self, q: &[f64]) -> Shares {
         let way = |j: usize| (self.goal.q()[j] - self.goal.step()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
@@ -109,8 +110,8 @@ impl Pursuit<'_> {
         }
         let of = |limit: &dyn Fn(usize) -> f64| -> Point {
             let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
-            let share = |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_SHARE) } else { 1.0 };
-            (0..n).map(share).collect()
+            let fraction = |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_SHARE) } else { 1.0 };
+            (0..n).map(fraction).collect()
         };
         Shares {
             far: true,

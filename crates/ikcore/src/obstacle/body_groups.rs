@@ -27,7 +27,7 @@ pub(super) struct BodyGroups {
 
 /// What the bodies are to keep clear of.
 #[derive(Debug, Clone)]
-pub(super) struct Others {
+pub(super) struct OtherBodies {
     pub obstacles: Obstacles,
     /// Bodies that may touch some of them.
     pub allowed: AllowedContacts,
@@ -172,7 +172,7 @@ impl BodyGroups {
     }
 
     /// The pairs of groups that must keep clear.
-    fn pairs_of(&self, others: &Others) -> &[GroupPair] {
+    fn pairs_of(&self, others: &OtherBodies) -> &[GroupPair] {
         if others.itself { &self.pairs } else { &[] }
     }
 
@@ -185,7 +185,7 @@ impl BodyGroups {
         clear: &F64x4,
         carried: &[Carried],
         frames: &[Frame],
-        (others, margin): (&Others, f64),
+        (others, margin): (&OtherBodies, f64),
     ) -> bool {
         let may_touch = |lane: usize| others.allowed.allow(self.groups[group].body(block, lane), obstacle);
         let near = (0..4).filter(|lane| clear.0[*lane] == 0.0 && !may_touch(*lane));
@@ -330,7 +330,7 @@ pub(super) struct Posed<'a> {
     pub carried: &'a [Carried],
     /// The moving elements.
     pub frames: &'a [Frame],
-    pub others: &'a Others,
+    pub others: &'a OtherBodies,
     /// Zero or more.
     pub margin: f64,
 }
@@ -364,7 +364,7 @@ fn near_obstacles<A: Arithmetic>(
     balls: &Balls,
     moving: bool,
 ) -> SmallVec<[(usize, usize); 32]> {
-    let Posed { others: Others { obstacles, .. }, margin, .. } = *posed;
+    let Posed { others: OtherBodies { obstacles, .. }, margin, .. } = *posed;
     let mut near = SmallVec::new();
     let asked = |group: usize| group < all.groups.len() && all.is_moving(group) == moving;
     if let Some(index) = obstacles.index() {

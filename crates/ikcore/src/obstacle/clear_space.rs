@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::chord_check::ChordCheck;
 use super::coming_rows::{Coming, ComingRows};
 use super::contact::{Contact, NearestContact};
 use super::joint_motion::JointMotion;
+use super::motion_certificate::MotionCertificate;
 use super::near_rows::NearRows;
 use super::required_distance::RequiredDistance;
 use super::scene::Scene;
@@ -95,8 +95,8 @@ impl<'a> ClearSpace<'a> {
     }
 
     /// Scratch of [`is_kept_by`](Self::is_kept_by).
-    pub(crate) fn chord_check(&self) -> ChordCheck {
-        ChordCheck::new(&self.scene)
+    pub(crate) fn motion_certificate(&self) -> MotionCertificate {
+        MotionCertificate::new(&self.scene)
     }
 
     /// Finds the pairs that are nearer than `up_to` (m) at `q`, without bodies that no joint moves.
@@ -110,7 +110,7 @@ impl<'a> ClearSpace<'a> {
         motion: &impl JointMotion,
         end: f64,
         kept: &RequiredDistance<'_>,
-        check: &mut ChordCheck,
+        check: &mut MotionCertificate,
     ) -> bool {
         check.is_clear(&self.scene, motion, end, kept)
     }

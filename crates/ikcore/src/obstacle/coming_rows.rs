@@ -14,7 +14,7 @@ use crate::shape::PlacedBody;
 /// Sections of the search; each leaves 0.62 of the interval.
 const SECTIONS: usize = 12;
 
-/// The share of an interval that a section leaves.
+/// The fraction of an interval that a section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// What falls short by less than this, a negative shortfall (m), is no row.

@@ -2,8 +2,8 @@
 
 use super::body_model::BodyPair;
 use super::eight_bodies::EightPlacement;
-use super::levers::{CarriedBall, Levers, MovingElements};
 use super::scene::Scene;
+use super::travel_bounds::{CarriedBall, MovingElements, TravelBounds};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f32x8::F32x8;
@@ -19,13 +19,13 @@ const ROUNDING: f64 = 2e-6;
 struct GroupPair {
     groups: [usize; 2],
     /// How far joints move them towards each other.
-    levers: Levers,
+    levers: TravelBounds,
     /// Bodies of the first group, and the pairs of each.
     rows: Vec<(usize, Vec<BodyPair>)>,
 }
 
 impl GroupPair {
-    fn new(groups: [usize; 2], levers: Levers, pairs: &[BodyPair]) -> Self {
+    fn new(groups: [usize; 2], levers: TravelBounds, pairs: &[BodyPair]) -> Self {
         let mut rows: Vec<(usize, Vec<BodyPair>)> = vec![];
         for pair in pairs {
             let BodyPair::Bodies { near, .. } = pair else { continue };
@@ -44,7 +44,7 @@ pub(super) struct EightScene<'a> {
     pub scene: &'a Scene<'a>,
     obstacles: Vec<EightShape>,
     /// The groups that a joint moves, and how far.
-    groups: Vec<(usize, Levers)>,
+    groups: Vec<(usize, TravelBounds)>,
     pairs: Vec<GroupPair>,
     /// The joint values for which the levers hold.
     ranges: Vec<(f64, f64)>,
@@ -64,12 +64,12 @@ impl<'a> EightScene<'a> {
             CarriedBall { frame: bodies.groups.frame_of(group), center, radius }
         };
         let levers = |groups: &[usize], below: usize| {
-            let mut levers = Levers::none(robot.dof());
+            let mut levers = TravelBounds::none(robot.dof());
             groups.iter().for_each(|group| elements.add(&ball(*group), below, &mut levers));
             levers
         };
         let moving = (0..bodies.groups.count()).filter(|group| bodies.groups.is_moving(*group));
-        let groups: Vec<(usize, Levers)> = moving.map(|group| (group, levers(&[group], 0))).collect();
+        let groups: Vec<(usize, TravelBounds)> = moving.map(|group| (group, levers(&[group], 0))).collect();
         let pairs = bodies.pairs_of_groups().enumerate().filter(|_| scene.others.itself);
         let pairs = pairs.map(|(number, groups)| {
             let [one, other] = groups.map(|group| bodies.groups.frame_of(group));
@@ -116,9 +116,9 @@ impl<'a> EightScene<'a> {
 
     /// Places everything at these shares of the straight line between two configurations.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], shares: [f32; 8]) {
-        let shares = Eight::<A>::of(F32x8(shares));
-        self.place_at::<A>(|j| shares.mul_add(Eight::splat(to[j] - from[j]), Eight::splat(from[j])).stored());
+    pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], fractions: [f32; 8]) {
+        let fractions = Eight::<A>::of(F32x8(fractions));
+        self.place_at::<A>(|j| fractions.mul_add(Eight::splat(to[j] - from[j]), Eight::splat(from[j])).stored());
     }
 
     /// Places everything at configurations of which `values` returns the values of a joint.

@@ -111,9 +111,9 @@ mod tests {
             // Halfway along the straight line in joint space, and a little beside it.
             let change: Vec<f64> = q.iter().zip(&other).map(|(q, other)| (other - q).abs()).collect();
             let off_line: Vec<f64> = reach.iter().map(|reach| 0.05 * reach).collect();
-            let share = rng.uniform_in(0.0, 1.0);
+            let fraction = rng.uniform_in(0.0, 1.0);
             let halfway: Vec<f64> = (0..q.len())
-                .map(|j| q[j] + share * (other[j] - q[j]) + rng.uniform_in(-off_line[j], off_line[j]))
+                .map(|j| q[j] + fraction * (other[j] - q[j]) + rng.uniform_in(-off_line[j], off_line[j]))
                 .collect();
             let mut between = robot.frame_buffer();
             robot.write_frames(&halfway, &mut between);
@@ -122,7 +122,7 @@ mod tests {
                 let bound = sagitta(&robot, &frames, &body, last, [&change, &off_line]);
                 for point in points {
                     let [from, to] = [&frames, &moved].map(|frames| place(&frames[last], point));
-                    let way = (place(&between[last], point) - (from + share * (to - from))).norm();
+                    let way = (place(&between[last], point) - (from + fraction * (to - from))).norm();
                     assert!(way <= bound, "{way} m off the line, bound {bound} m");
                     tightest = tightest.min(bound / way.max(1e-12));
                 }

@@ -8,9 +8,9 @@
 //! | `body_groups` | bodies by moving element, in the lanes of the registers: is everything clear? |
 //! | `surroundings`, `clear_space` | what a caller wants to keep clear of, and whether a configuration does |
 //! | `body_model` | bodies, groups and pairs of a robot, made once |
-//! | `eight_scene`, `eight_bodies`, `levers` | which pairs are near each other at eight configurations? |
+//! | `eight_scene`, `eight_bodies`, `travel_bounds` | which pairs are near each other at eight configurations? |
 //! | `which_clear` | which of many configurations are clear? |
-//! | `line_check` | is a straight line in joint space clear, for searches? |
+//! | `sampled_line` | is a straight line in joint space clear, for searches? |
 //! | `contact` | what a robot is near to, where and how far |
 //! | `scene` | a robot among obstacles: pairs that can touch, and their distances at one configuration |
 //! | `near_pairs` | the nearest pairs |
@@ -18,43 +18,43 @@
 //! | `near_rows` | near pairs, linearised at a configuration |
 //! | `coming_rows` | obstacles that come too near, linearised at their closest approach |
 //! | `joint_motion` | motions that can be certified |
-//! | `chord_check`, `required_distance` | pairs of bodies, certified to keep their distances during a motion |
-//! | `sweep` | a whole motion, certified, and its smallest clearance |
+//! | `motion_certificate`, `required_distance` | pairs of bodies, certified to keep their distances during a motion |
+//! | `clearance_sweep` | a whole motion, certified, and its smallest clearance |
 
 mod allowed_contacts;
 mod body_groups;
 mod body_model;
-mod chord_check;
 mod clear_space;
+mod clearance_sweep;
 mod coming_rows;
 mod contact;
 mod eight_bodies;
 mod eight_scene;
 mod joint_motion;
-mod levers;
-mod line_check;
 mod link_displacement;
+mod motion_certificate;
 mod near_pairs;
 mod near_rows;
 mod obstacles;
 mod placement;
 mod required_distance;
+mod sampled_line;
 mod scene;
 mod surroundings;
-mod sweep;
+mod travel_bounds;
 mod which_clear;
 
-pub(crate) use chord_check::ChordCheck;
 pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
+pub use clearance_sweep::{ClearanceSweep, TooNear};
 pub(crate) use coming_rows::{Coming, ComingRows, MOST_COMING};
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use joint_motion::{Edge, JointMotion};
-pub use line_check::LineCheck;
+pub(crate) use motion_certificate::MotionCertificate;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::Obstacles;
 pub(crate) use required_distance::RequiredDistance;
+pub use sampled_line::SampledLine;
 pub use scene::Scene;
 pub use surroundings::Surroundings;
 pub(crate) use surroundings::kept_margin;
-pub use sweep::{Sweep, TooNear};

@@ -18,7 +18,7 @@ pub(crate) struct RequiredDistance<'a> {
     /// there need only not come nearer: a motion may end no worse than the stop.
     pub at_rest: &'a [NearRow],
     /// By how much it may (m), since a motion outwards must be certified too.
-    pub leeway: f64,
+    pub tolerance_band: f64,
     /// Bodies that overlap at rest need only end no deeper in each other than the deepest of them are there, whatever is in between.
     pub only_parts: bool,
 }
@@ -26,7 +26,7 @@ pub(crate) struct RequiredDistance<'a> {
 impl RequiredDistance<'static> {
     /// The same distance (m) from everything, all of it at rest.
     pub fn constant(margin: f64) -> Self {
-        Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], leeway: 0.0, only_parts: false }
+        Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], tolerance_band: 0.0, only_parts: false }
     }
 }
 
@@ -50,6 +50,6 @@ impl RequiredDistance<'_> {
         let mut near = self.at_rest.iter().take_while(|row| row.distance < wanted);
         let Some(row) = near.find(|row| row.pair.order() == pair.order()) else { return wanted };
         let counts = if self.only_parts && row.distance < 0.0 { &self.at_rest[0] } else { row };
-        counts.distance - self.leeway
+        counts.distance - self.tolerance_band
     }
 }

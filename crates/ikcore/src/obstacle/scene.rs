@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 
 use super::allowed_contacts::AllowedContacts;
-use super::body_groups::{Others, Posed};
+use super::body_groups::{OtherBodies, Posed};
 use super::body_model::{BodyModel, BodyPair};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
@@ -33,7 +33,7 @@ const AT_REST: f64 = 1e-6;
 pub struct Scene<'a> {
     robot: SceneRobot<'a>,
     pub(super) bodies: Arc<BodyModel>,
-    pub(super) others: Others,
+    pub(super) others: OtherBodies,
     /// What [`Self::fixed`] returns, once it was asked for.
     fixed: OnceLock<Option<(f64, BodyPair)>>,
     /// The margin that [`Self::fixed_are_clear`] was first asked for, and its answer.
@@ -80,7 +80,7 @@ impl<'a> Scene<'a> {
         }
         let bodies = BodyModel::of(robot);
         let allowed = AllowedContacts::new(robot, &bodies.carried, &obstacles)?;
-        let others = Others { obstacles, allowed, itself: true };
+        let others = OtherBodies { obstacles, allowed, itself: true };
         Ok(Self {
             robot: SceneRobot::Borrowed(robot),
             bodies,

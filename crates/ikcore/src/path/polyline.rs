@@ -80,10 +80,10 @@ impl Curve for Polyline {
 
     fn position(&self, t: f64) -> [f64; 3] {
         let (segment, elapsed) = self.knots.locate(t);
-        let share = elapsed / self.knots.span(segment);
+        let fraction = elapsed / self.knots.span(segment);
         let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
         // In this form both ends are exact.
-        std::array::from_fn(|i| (1.0 - share) * from[i] + share * to[i])
+        std::array::from_fn(|i| (1.0 - fraction) * from[i] + fraction * to[i])
     }
 
     fn velocity(&self, t: f64) -> [f64; 3] {

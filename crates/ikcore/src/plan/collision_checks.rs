@@ -146,12 +146,12 @@ impl JointMotion for TimedMotion<'_> {
             // Divided at its knots, it is smooth.
             return off_line.fill(f64::INFINITY);
         }
-        let share = (to - from).powi(2) / 8.0;
+        let fraction = (to - from).powi(2) / 8.0;
         for piece in pieces {
             let (begin, end) = (knots[piece].max(from), knots[piece + 1].min(to));
             let (middle, half) = (0.5 * (begin + end) - knots[piece], 0.5 * (end - begin).max(0.0));
             for (off_line, polynomial) in off_line.iter_mut().zip(&polynomials[piece * n..]) {
-                *off_line = off_line.max(share * largest_acceleration(polynomial, middle, half));
+                *off_line = off_line.max(fraction * largest_acceleration(polynomial, middle, half));
             }
         }
     }
@@ -221,11 +221,14 @@ mod tests {
             timed.write_off_line(from, to, &mut off_line);
             let mut largest: f64 = 0.0;
             for i in 1..500 {
-                let share = f64::from(i) / 500.0;
+                let fraction = f64::from(i) / 500.0;
                 let mut q = [0.0];
-                timed.write(from + share * (to - from), &mut q);
-                let off = (q[0] - ends[0][0] - share * (ends[1][0] - ends[0][0])).abs();
-                assert!(off <= 4.0 * share * (1.0 - share) * off_line[0] + 1e-12, "[{from}, {to}] at {share}: {off}");
+                timed.write(from + fraction * (to - from), &mut q);
+                let off = (q[0] - ends[0][0] - fraction * (ends[1][0] - ends[0][0])).abs();
+                assert!(
+                    off <= 4.0 * fraction * (1.0 - fraction) * off_line[0] + 1e-12,
+                    "[{from}, {to}] at {fraction}: {off}"
+                );
                 largest = largest.max(off);
             }
             assert!(to - from > 0.25 || off_line[0] <= 2.0 * largest + 1e-12, "[{from}, {to}]: {off_line:?} is loose");

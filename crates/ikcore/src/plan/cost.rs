@@ -96,8 +96,8 @@ const CHORDS_A_LINE: usize = 32;
 pub(crate) fn tip_travel_along(robot: &Robot, points: &[Vec<f64>]) -> f64 {
     let of_line = |ends: &[Vec<f64>]| {
         let at = |i: usize| {
-            let share = i as f64 / CHORDS_A_LINE as f64;
-            let q: Vec<f64> = ends[0].iter().zip(&ends[1]).map(|(from, to)| from + share * (to - from)).collect();
+            let fraction = i as f64 / CHORDS_A_LINE as f64;
+            let q: Vec<f64> = ends[0].iter().zip(&ends[1]).map(|(from, to)| from + fraction * (to - from)).collect();
             robot.tip_position(&q)
         };
         (1..=CHORDS_A_LINE).map(|i| distance(&at(i), &at(i - 1))).sum::<f64>()

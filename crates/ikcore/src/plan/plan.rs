@@ -8,7 +8,7 @@ use super::collision_checks::{TimedMotion, nearest_at};
 use super::cost::Cost;
 use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
-use crate::obstacle::{NearestContact, Surroundings, Sweep};
+use crate::obstacle::{ClearanceSweep, NearestContact, Surroundings};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
@@ -160,7 +160,7 @@ impl Plan {
         let (None, Some(surroundings)) = (&self.nearest, &self.surroundings) else { return known };
         let Some(space) = surroundings.clear_space(robot)? else { return known };
         let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let Some(near) = Sweep::new(space.scene()).smallest(&motion, whole) else { return known };
+        let Some(near) = ClearanceSweep::new(space.scene()).smallest(&motion, whole) else { return known };
         let nearest = nearest_at(space.scene(), &self.trajectory, near.at)?;
         // What is certified may be more than the search for the smallest distance proves.
         Ok(Some((near.contact.distance.max(clearance), nearest)))

@@ -4,7 +4,7 @@ use super::collision_checks::{TimedMotion, too_near};
 use super::plan::{Freed, Plan};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::Sweep;
+use crate::obstacle::ClearanceSweep;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::timing::{MotionLimits, TimingLimits, scaled, time_all};
@@ -53,7 +53,7 @@ impl Plan {
         let Some(space) = space else { return Ok(()) };
         let (scene, margin) = (space.scene(), space.margin());
         let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let mut sweep = Sweep::new(scene);
+        let mut sweep = ClearanceSweep::new(scene);
         if let Err(near) = sweep.check(&motion, whole, margin) {
             let violation = too_near(&near.contact, margin);
             let problem =

@@ -19,7 +19,7 @@ const SEED: u64 = 0;
 const FEW: usize = 1_000;
 /// Random configurations for links that never touch.
 const MANY: usize = 10_000;
-/// Links that touch in this share of all configurations count as always touching.
+/// Links that touch in this fraction of all configurations count as always touching.
 const ALWAYS: f64 = 0.95;
 /// Links never nearer than this (m) count as never touching: rare contacts between samples remain out of reach.
 const NEAR: f64 = 0.02;

@@ -21,13 +21,13 @@ pub(super) struct SegmentDistance {
     /// Signed distance (m).
     pub distance: f64,
     /// Fraction of the way along the segment.
-    pub share: f64,
+    pub fraction: f64,
 }
 
-/// One tangent of the signed distance along the segment: value and slope at `share` of its length.
+/// One tangent of the signed distance along the segment: value and slope at `fraction` of its length.
 #[derive(Clone, Copy)]
 struct Touch {
-    share: f64,
+    fraction: f64,
     value: f64,
     slope: f64,
 }
@@ -40,11 +40,11 @@ pub(super) fn by_tangents(
     enough: f64,
 ) -> SegmentDistance {
     let along = b - a;
-    let touch = |share: f64| {
-        let tangent = tangent(&(a + share * along));
-        Touch { share, value: tangent.value, slope: tangent.normal.dot(&along) }
+    let touch = |fraction: f64| {
+        let tangent = tangent(&(a + fraction * along));
+        Touch { fraction, value: tangent.value, slope: tangent.normal.dot(&along) }
     };
-    let at = |touch: Touch| SegmentDistance { distance: touch.value, share: touch.share };
+    let at = |touch: Touch| SegmentDistance { distance: touch.value, fraction: touch.fraction };
     let (mut left, mut right) = (touch(0.0), touch(1.0));
     if left.slope >= 0.0 {
         return at(left);
@@ -55,14 +55,14 @@ pub(super) fn by_tangents(
     let mut lowest_seen = left.value.min(right.value);
     for _ in 0..MOST_STEPS {
         // Where the two tangents meet is the lowest that the distance can be.
-        let meeting = (right.value - left.value + left.slope * left.share - right.slope * right.share)
+        let meeting = (right.value - left.value + left.slope * left.fraction - right.slope * right.fraction)
             / (left.slope - right.slope);
-        let bound = left.value + left.slope * (meeting - left.share);
+        let bound = left.value + left.slope * (meeting - left.fraction);
         if bound >= enough || lowest_seen - bound <= ACCURACY {
-            return SegmentDistance { distance: bound, share: meeting.clamp(left.share, right.share) };
+            return SegmentDistance { distance: bound, fraction: meeting.clamp(left.fraction, right.fraction) };
         }
-        let inside = meeting > left.share && meeting < right.share;
-        let next = touch(if inside { meeting } else { 0.5 * (left.share + right.share) });
+        let inside = meeting > left.fraction && meeting < right.fraction;
+        let next = touch(if inside { meeting } else { 0.5 * (left.fraction + right.fraction) });
         lowest_seen = lowest_seen.min(next.value);
         if next.slope < 0.0 {
             left = next;
@@ -72,5 +72,5 @@ pub(super) fn by_tangents(
             return at(next);
         }
     }
-    SegmentDistance { distance: left.value + left.slope * (right.share - left.share), share: left.share }
+    SegmentDistance { distance: left.value + left.slope * (right.fraction - left.fraction), fraction: left.fraction }
 }

@@ -44,9 +44,9 @@ pub(super) struct Enclosure {
     pub certain: bool,
 }
 
-/// Layers nearer to each other than this coincide, as a share of the size of their mesh: they may have been rounded to single precision.
+/// Layers nearer to each other than this coincide, as a fraction of the size of their mesh: they may have been rounded to single precision.
 const COINCIDENT: f64 = 1e-6;
-/// Samples of a triangle lie off it by this share of its height, ...
+/// Samples of a triangle lie off it by this fraction of its height, ...
 const OFF_TRIANGLE: f64 = 1e-3;
 /// ... but off by more than coordinates are rounded, as a multiple of that.
 const ROUNDINGS: f64 = 32.0;
@@ -106,7 +106,7 @@ fn encloses_for_certain(
     sampled: usize,
 ) -> bool {
     let sides = |face: u32| {
-        let samples = SAMPLES.iter().filter_map(move |shares| both_sides(mesh, face, shares));
+        let samples = SAMPLES.iter().filter_map(move |fractions| both_sides(mesh, face, fractions));
         samples.map(|points| points.map(|point| mesh.winding_number(&point, &own)))
     };
     let step = piece.faces.len().div_ceil(sampled);
@@ -115,9 +115,9 @@ fn encloses_for_certain(
 }
 
 /// Points on both sides of a triangle near the one with these barycentric coordinates; `None` if it has no area.
-fn both_sides(mesh: &impl TriangleSurface, face: u32, shares: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
+fn both_sides(mesh: &impl TriangleSurface, face: u32, fractions: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
     let [a, b, c] = mesh.triangle(face as usize);
-    let at = shares[0] * a + shares[1] * b + shares[2] * c;
+    let at = fractions[0] * a + fractions[1] * b + fractions[2] * c;
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     let cross = (b - a).cross(&(c - a));
     let height = cross.norm() / longest;

@@ -41,7 +41,7 @@ pub(super) struct NearestBlock {
     /// Squared distance (m^2).
     pub squared: f64,
     /// Fraction of the way along the segment.
-    pub share: f64,
+    pub fraction: f64,
     /// Index of the block; `None` if none is within the bound.
     pub block: Option<usize>,
 }
@@ -140,7 +140,7 @@ impl Grid {
                 deepest = Some(inside);
             }
         });
-        deepest.unwrap_or(SegmentDistance { distance: nearest.squared.sqrt(), share: nearest.share })
+        deepest.unwrap_or(SegmentDistance { distance: nearest.squared.sqrt(), fraction: nearest.fraction })
     }
 }
 
@@ -166,7 +166,7 @@ by_instructions! {
         let start = Vec3::<Four<A>>::splat(&segment[0].into());
         let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
         let query = SegmentQuery::new(segment);
-        let mut best = NearestBlock { squared: bound, share: 0.0, block: None };
+        let mut best = NearestBlock { squared: bound, fraction: 0.0, block: None };
         grid.tree.search::<A>(&query, bound, |leaf, bound| {
             let leaf = &grid.leaves[leaf];
             let nearest = to_box(start - Vec3::of(&leaf.center), along, Vec3::of(&leaf.half));
@@ -180,7 +180,7 @@ by_instructions! {
                     overlapping(block);
                 }
                 if squared[lane] < best.squared || (squared[lane] <= bound && best.block.is_none()) {
-                    best = NearestBlock { squared: squared[lane], share: nearest.share.lane(lane), block: Some(block) };
+                    best = NearestBlock { squared: squared[lane], fraction: nearest.fraction.lane(lane), block: Some(block) };
                 }
             }
             best.squared
@@ -224,16 +224,16 @@ mod tests {
     use super::*;
     use crate::rng::{self, LazyRng};
 
-    fn random_occupancy(rng: &mut LazyRng, counts: [usize; 3], share: f64) -> Vec<bool> {
-        (0..counts.iter().product()).map(|_| rng.uniform() < share).collect()
+    fn random_occupancy(rng: &mut LazyRng, counts: [usize; 3], fraction: f64) -> Vec<bool> {
+        (0..counts.iter().product()).map(|_| rng.uniform() < fraction).collect()
     }
 
     #[test]
     fn blocks_hold_the_occupied_voxels_once() {
         let mut rng = rng::stream(1, 0);
-        for share in [0.05, 0.5, 0.9, 1.0] {
+        for fraction in [0.05, 0.5, 0.9, 1.0] {
             let counts = [7, 5, 6];
-            let occupied = random_occupancy(&mut rng, counts, share);
+            let occupied = random_occupancy(&mut rng, counts, fraction);
             let mut seen = vec![0; occupied.len()];
             for [x, y, z] in joined(counts, &occupied) {
                 for i in x[0]..x[1] {
@@ -243,7 +243,7 @@ mod tests {
                 }
             }
             assert!(seen.iter().zip(&occupied).all(|(count, occupied)| *count == i32::from(*occupied)));
-            assert!(share < 1.0 || joined(counts, &occupied).len() == 1);
+            assert!(fraction < 1.0 || joined(counts, &occupied).len() == 1);
         }
     }
 

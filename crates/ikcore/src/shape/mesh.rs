@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
 use super::enclosure::{Enclosure, TriangleSurface};
-use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
+use super::segment_lanes::{NearestFraction, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
 use super::winding::winding;
@@ -40,7 +40,7 @@ pub(super) struct NearestFace {
     /// Squared distance (m^2).
     pub squared: f64,
     /// Fraction of the way along the segment.
-    pub share: f64,
+    pub fraction: f64,
     /// Index of the triangle; `None` if none is within the bound.
     pub face: Option<usize>,
 }
@@ -155,14 +155,14 @@ impl Mesh {
         if (touches && !self.enclosure.turns.is_empty()) || self.encloses(&segment[0]) {
             return self.depth(segment);
         }
-        SegmentDistance { distance: surface.squared.sqrt(), share: surface.share }
+        SegmentDistance { distance: surface.squared.sqrt(), fraction: surface.fraction }
     }
 
     /// A lower bound of the signed distance of the points of a segment. The signed distance changes along it no faster than
     /// its length: between two points it lies above a wedge.
     fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> SegmentDistance {
         let length = (b - a).norm();
-        let at = |share: f64| SegmentDistance { distance: self.tangent(&(a + share * (b - a))).value, share };
+        let at = |fraction: f64| SegmentDistance { distance: self.tangent(&(a + fraction * (b - a))).value, fraction };
         let [first, last] = [at(0.0), at(1.0)];
         let deeper =
             |one: SegmentDistance, other: SegmentDistance| if other.distance < one.distance { other } else { one };
@@ -174,7 +174,8 @@ impl Mesh {
             match (0..wedges.len()).min_by(by_bound) {
                 Some(lowest) if seen.distance - wedges[lowest].bound > accuracy => {
                     let Wedge { left, right, .. } = wedges[lowest];
-                    let middle = at(0.5 * (left.share + right.share) + 0.5 * (left.distance - right.distance) / length);
+                    let middle =
+                        at(0.5 * (left.fraction + right.fraction) + 0.5 * (left.distance - right.distance) / length);
                     seen = deeper(seen, middle);
                     wedges[lowest] = Wedge::between(left, middle, length);
                     wedges.push(Wedge::between(middle, right, length));
@@ -234,7 +235,7 @@ struct Wedge {
 
 impl Wedge {
     fn between(left: SegmentDistance, right: SegmentDistance, length: f64) -> Self {
-        let bound = 0.5 * (left.distance + right.distance - length * (right.share - left.share));
+        let bound = 0.5 * (left.distance + right.distance - length * (right.fraction - left.fraction));
         Self { left, right, bound }
     }
 }
@@ -256,12 +257,12 @@ impl Leaf {
     }
 
     #[inline(always)]
-    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestShare<Four<A>> {
+    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestFraction<Four<A>> {
         let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
         let start = Vec3::splat(start);
         if is_point {
             let squared = point_to_triangle(start, &triangle);
-            return NearestShare { squared, share: Four::splat(0.0) };
+            return NearestFraction { squared, fraction: Four::splat(0.0) };
         }
         to_triangle(start, Vec3::splat(along), &triangle)
     }
@@ -272,7 +273,7 @@ by_instructions! {
         let [start, along] = [segment[0].into(), (segment[1] - segment[0]).into()];
         let query = SegmentQuery::new(segment);
         let is_point = along == [0.0; 3];
-        let mut best = NearestFace { squared: bound, share: 0.0, face: None };
+        let mut best = NearestFace { squared: bound, fraction: 0.0, face: None };
         mesh.tree.search::<A>(&query, bound, |leaf, bound| {
             let leaf = &mesh.leaves[leaf];
             let nearest = leaf.nearest::<A>(&start, &along, is_point);
@@ -282,7 +283,7 @@ by_instructions! {
                     let face = if leaf.faces[lane] == NONE { leaf.faces[0] } else { leaf.faces[lane] };
                     best = NearestFace {
                         squared: squared[lane],
-                        share: nearest.share.lane(lane),
+                        fraction: nearest.fraction.lane(lane),
                         face: Some(face as usize),
                     };
                 }

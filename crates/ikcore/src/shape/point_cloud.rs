@@ -28,7 +28,7 @@ pub(super) struct NearestPoint {
     /// Squared distance (m^2).
     pub squared: f64,
     /// Fraction of the way along the segment.
-    pub share: f64,
+    pub fraction: f64,
     /// Index of the point; `None` if none is within the bound.
     pub index: Option<usize>,
 }
@@ -91,7 +91,7 @@ impl PointCloud {
     /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth in the ball it enters deepest.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let nearest = self.nearest_point(segment, squared_bound(enough + self.radius));
-        SegmentDistance { distance: nearest.squared.sqrt() - self.radius, share: nearest.share }
+        SegmentDistance { distance: nearest.squared.sqrt() - self.radius, fraction: nearest.fraction }
     }
 }
 
@@ -100,7 +100,7 @@ by_instructions! {
         let start = Vec3::<Four<A>>::splat(&segment[0].into());
         let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
         let query = SegmentQuery::new(segment);
-        let mut best = NearestPoint { squared: bound, share: 0.0, index: None };
+        let mut best = NearestPoint { squared: bound, fraction: 0.0, index: None };
         cloud.tree.search::<A>(&query, bound, |leaf, bound| {
             let (points, indices) = &cloud.leaves[leaf];
             let nearest = to_point(start, along, Vec3::of(points));
@@ -108,7 +108,7 @@ by_instructions! {
             for lane in 0..4 {
                 if squared[lane] < best.squared || (squared[lane] <= bound && best.index.is_none()) {
                     let index = indices[if indices[lane] == NONE { 0 } else { lane }] as usize;
-                    best = NearestPoint { squared: squared[lane], share: nearest.share.lane(lane), index: Some(index) };
+                    best = NearestPoint { squared: squared[lane], fraction: nearest.fraction.lane(lane), index: Some(index) };
                 }
             }
             best.squared

@@ -6,7 +6,7 @@ use super::along_segment::{LineSegment, SegmentDistance, by_tangents};
 use super::checked_shape::{LARGEST, ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{TOUCHING, to_box};
-use super::tangent::{nearest_on_segment, nearest_share};
+use super::tangent::{nearest_fraction, nearest_on_segment};
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
@@ -43,8 +43,11 @@ impl Geometry {
         let [a, b] = segment;
         match self {
             Self::Sphere { center, radius } => {
-                let share = nearest_share(a, b, &Vector3::from(*center));
-                SegmentDistance { distance: (a + share * (b - a) - Vector3::from(*center)).norm() - radius, share }
+                let fraction = nearest_fraction(a, b, &Vector3::from(*center));
+                SegmentDistance {
+                    distance: (a + fraction * (b - a) - Vector3::from(*center)).norm() - radius,
+                    fraction,
+                }
             }
             Self::Capsule { a: start, b: end, radius } => {
                 let nearest = between(segment, &[(*start).into(), (*end).into()]);
@@ -53,9 +56,9 @@ impl Geometry {
             Self::HalfSpace { normal, offset } => {
                 let [first, last] = [a, b].map(|end| Vector3::from(*normal).dot(end) - offset);
                 if first <= last {
-                    SegmentDistance { distance: first, share: 0.0 }
+                    SegmentDistance { distance: first, fraction: 0.0 }
                 } else {
-                    SegmentDistance { distance: last, share: 1.0 }
+                    SegmentDistance { distance: last, fraction: 1.0 }
                 }
             }
             Self::Box { pose, size } => {
@@ -64,7 +67,7 @@ impl Geometry {
                 let nearest = to_box(vector(local[0]), vector(local[1] - local[0]), vector(0.5 * Vector3::from(*size)));
                 match nearest.squared.stored() {
                     squared if squared <= TOUCHING => by_tangents(segment, |point| self.tangent(point), enough),
-                    squared => SegmentDistance { distance: squared.sqrt(), share: nearest.share.stored() },
+                    squared => SegmentDistance { distance: squared.sqrt(), fraction: nearest.fraction.stored() },
                 }
             }
             Self::Mesh(mesh) => mesh.approach(segment, enough),
@@ -91,23 +94,23 @@ pub(super) fn between(one: &LineSegment, other: &LineSegment) -> SegmentDistance
     let ([p, p_end], [q, q_end]) = (one, other);
     let (u, v, w) = (p_end - p, q_end - q, p - q);
     let (uu, uv, vv, uw, vw) = (u.dot(&u), u.dot(&v), v.dot(&v), u.dot(&w), v.dot(&w));
-    let share_of = |numerator: f64, denominator: f64| {
+    let fraction_of = |numerator: f64, denominator: f64| {
         if denominator > 0.0 { (numerator / denominator).clamp(0.0, 1.0) } else { 0.0 }
     };
     // The best point of one for the best point of the other, clamped; the second pass settles the clamps.
-    let mut s = share_of(uv * vw - vv * uw, uu * vv - uv * uv);
-    let mut t = share_of(uv * s + vw, vv);
-    s = share_of(uv * t - uw, uu);
-    t = share_of(uv * s + vw, vv);
-    let crossing = SegmentDistance { distance: (w + s * u - t * v).norm(), share: s };
+    let mut s = fraction_of(uv * vw - vv * uw, uu * vv - uv * uv);
+    let mut t = fraction_of(uv * s + vw, vv);
+    s = fraction_of(uv * t - uw, uu);
+    t = fraction_of(uv * s + vw, vv);
+    let crossing = SegmentDistance { distance: (w + s * u - t * v).norm(), fraction: s };
     // Nearly parallel segments are nearest at an end, where the division above says little.
     let to_one = |end: &Vector3<f64>| {
-        let share = nearest_share(p, p_end, end);
-        SegmentDistance { distance: (p + share * u - end).norm(), share }
+        let fraction = nearest_fraction(p, p_end, end);
+        SegmentDistance { distance: (p + fraction * u - end).norm(), fraction }
     };
-    let of_one = |end: &Vector3<f64>, share: f64| SegmentDistance {
+    let of_one = |end: &Vector3<f64>, fraction: f64| SegmentDistance {
         distance: (nearest_on_segment(q, q_end, end) - end).norm(),
-        share,
+        fraction,
     };
     let ends = [of_one(p, 0.0), of_one(p_end, 1.0), to_one(q), to_one(q_end)];
     ends.into_iter().fold(crossing, |best, next| if next.distance < best.distance { next } else { best })

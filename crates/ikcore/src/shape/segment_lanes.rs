@@ -8,61 +8,61 @@ pub(super) const TOUCHING: f64 = 1e-24;
 
 /// A segment and where on it something is nearest.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct NearestShare<R> {
+pub(super) struct NearestFraction<R> {
     /// Squared distance (m^2).
     pub squared: R,
     /// Fraction of the way along the segment.
-    pub share: R,
+    pub fraction: R,
 }
 
-impl<R: Real> NearestShare<R> {
+impl<R: Real> NearestFraction<R> {
     /// The nearer of the two.
     #[inline(always)]
     pub fn or(self, other: Self) -> Self {
         Self {
             squared: other.squared.choose_below(self.squared, other.squared, self.squared),
-            share: other.squared.choose_below(self.squared, other.share, self.share),
+            fraction: other.squared.choose_below(self.squared, other.fraction, self.fraction),
         }
     }
 }
 
 #[inline(always)]
-pub(super) fn clamp_share<R: Real>(share: R) -> R {
-    share.larger(R::splat(0.0)).smaller(R::splat(1.0))
+pub(super) fn clamp_fraction<R: Real>(fraction: R) -> R {
+    fraction.larger(R::splat(0.0)).smaller(R::splat(1.0))
 }
 
 /// numerator / denominator, or 0 where the denominator is not positive.
 #[inline(always)]
-fn share_of<R: Real>(numerator: R, denominator: R) -> R {
+fn fraction_of<R: Real>(numerator: R, denominator: R) -> R {
     let zero = R::splat(0.0);
     let safe = zero.choose_below(denominator, denominator, R::splat(1.0));
-    clamp_share(zero.choose_below(denominator, numerator / safe, zero))
+    clamp_fraction(zero.choose_below(denominator, numerator / safe, zero))
 }
 
 /// Of the segment from `a` along `u` and a point.
 #[inline(always)]
-pub(super) fn to_point<R: Real>(a: Vec3<R>, u: Vec3<R>, point: Vec3<R>) -> NearestShare<R> {
+pub(super) fn to_point<R: Real>(a: Vec3<R>, u: Vec3<R>, point: Vec3<R>) -> NearestFraction<R> {
     let w = point - a;
-    let share = share_of(w.dot(u), u.dot(u));
-    let apart = u.mul_add(-share, w);
-    NearestShare { squared: apart.dot(apart), share }
+    let fraction = fraction_of(w.dot(u), u.dot(u));
+    let apart = u.mul_add(-fraction, w);
+    NearestFraction { squared: apart.dot(apart), fraction }
 }
 
-/// Of the segments from `p` along `u` and from `q` along `v`; the share is of the first.
+/// Of the segments from `p` along `u` and from `q` along `v`; the fraction is of the first.
 #[inline(always)]
-pub(super) fn to_segment<R: Real>(p: Vec3<R>, u: Vec3<R>, q: Vec3<R>, v: Vec3<R>) -> NearestShare<R> {
+pub(super) fn to_segment<R: Real>(p: Vec3<R>, u: Vec3<R>, q: Vec3<R>, v: Vec3<R>) -> NearestFraction<R> {
     let w = p - q;
     let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
     // The best point of one for the best point of the other, clamped; the second pass settles the clamps.
-    let s = share_of(uv * vw - vv * uw, uu * vv - uv * uv);
-    let t = share_of(uv * s + vw, vv);
-    let s = share_of(uv * t - uw, uu);
-    let t = share_of(uv * s + vw, vv);
+    let s = fraction_of(uv * vw - vv * uw, uu * vv - uv * uv);
+    let t = fraction_of(uv * s + vw, vv);
+    let s = fraction_of(uv * t - uw, uu);
+    let t = fraction_of(uv * s + vw, vv);
     let apart = v.mul_add(-t, u.mul_add(s, w));
-    let crossing = NearestShare { squared: apart.dot(apart), share: s };
+    let crossing = NearestFraction { squared: apart.dot(apart), fraction: s };
     // Nearly parallel segments are nearest at an end, where the division above says little.
-    let start = NearestShare { squared: to_point(q, v, p).squared, share: R::splat(0.0) };
-    let end = NearestShare { squared: to_point(q, v, p + u).squared, share: R::splat(1.0) };
+    let start = NearestFraction { squared: to_point(q, v, p).squared, fraction: R::splat(0.0) };
+    let end = NearestFraction { squared: to_point(q, v, p + u).squared, fraction: R::splat(1.0) };
     crossing.or(start).or(end).or(to_point(p, u, q)).or(to_point(p, u, q + v))
 }
 
@@ -72,10 +72,10 @@ pub(super) fn excess<R: Real>(x: R, h: R) -> R {
     (x - h).larger(R::splat(0.0)) + (x + h).smaller(R::splat(0.0))
 }
 
-/// The vector from the nearest point of the box to the point at `share` of the segment.
+/// The vector from the nearest point of the box to the point at `fraction` of the segment.
 #[inline(always)]
-fn beyond_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>, share: R) -> Vec3<R> {
-    let at = u.mul_add(share, a);
+fn beyond_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>, fraction: R) -> Vec3<R> {
+    let at = u.mul_add(fraction, a);
     Vec3 { x: excess(at.x, half.x), y: excess(at.y, half.y), z: excess(at.z, half.z) }
 }
 
@@ -89,13 +89,13 @@ struct Bracket<R> {
 }
 
 impl<R: Real> Bracket<R> {
-    /// The bracket narrowed by the slope at `share`.
+    /// The bracket narrowed by the slope at `fraction`.
     #[inline(always)]
-    fn narrowed(self, share: R, slope: R) -> Self {
+    fn narrowed(self, fraction: R, slope: R) -> Self {
         let zero = R::splat(0.0);
-        // Larger than any share, or below all: no change.
-        let falls = slope.choose_below(zero, share, R::splat(-1.0));
-        let rises = slope.choose_below(zero, R::splat(2.0), share);
+        // Larger than any fraction, or below all: no change.
+        let falls = slope.choose_below(zero, fraction, R::splat(-1.0));
+        let rises = slope.choose_below(zero, R::splat(2.0), fraction);
         Self {
             left: self.left.larger(falls),
             left_slope: self.left.choose_below(falls, slope, self.left_slope),
@@ -108,7 +108,7 @@ impl<R: Real> Bracket<R> {
 /// Of the segment from `a` along `u` and a box about the origin, along the axes, with these half edges: exact, since the
 /// squared distance is a parabola between the places where the segment crosses a plane of the box.
 #[inline(always)]
-pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestShare<R> {
+pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestFraction<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let [first, last] = [u.dot(beyond_box(a, u, half, zero)), u.dot(beyond_box(a, u, half, one))];
     let mut bracket = Bracket { left: zero, left_slope: first, right: one, right_slope: last };
@@ -116,8 +116,8 @@ pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestS
         ($axis:ident) => {
             let safe = u.$axis.choose_equal(zero, one, u.$axis);
             for plane in [half.$axis, -half.$axis] {
-                let share = clamp_share((plane - a.$axis) / safe);
-                bracket = bracket.narrowed(share, u.dot(beyond_box(a, u, half, share)));
+                let fraction = clamp_fraction((plane - a.$axis) / safe);
+                bracket = bracket.narrowed(fraction, u.dot(beyond_box(a, u, half, fraction)));
             }
         };
     }
@@ -126,11 +126,11 @@ pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestS
     cross_planes!(z);
     let rise = bracket.right_slope - bracket.left_slope;
     let width = bracket.right - bracket.left;
-    let share = bracket.left - bracket.left_slope * width / zero.choose_below(rise, rise, one);
-    let share = zero.choose_below(bracket.right_slope, share, bracket.right);
-    let share = clamp_share(bracket.left_slope.choose_below(zero, share, bracket.left));
-    let beyond = beyond_box(a, u, half, share);
-    NearestShare { squared: beyond.dot(beyond), share }
+    let fraction = bracket.left - bracket.left_slope * width / zero.choose_below(rise, rise, one);
+    let fraction = zero.choose_below(bracket.right_slope, fraction, bracket.right);
+    let fraction = clamp_fraction(bracket.left_slope.choose_below(zero, fraction, bracket.left));
+    let beyond = beyond_box(a, u, half, fraction);
+    NearestFraction { squared: beyond.dot(beyond), fraction }
 }
 
 /// A triangle, ready for distances.
@@ -153,10 +153,10 @@ impl<R: Real> TriangleLanes<R> {
 
     /// Squared distance of the point p + share u from the plane if it projects into the triangle, else `otherwise`.
     #[inline(always)]
-    fn faced(&self, p: Vec3<R>, u: Vec3<R>, share: R, otherwise: R) -> R {
+    fn faced(&self, p: Vec3<R>, u: Vec3<R>, fraction: R, otherwise: R) -> R {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let [ab, ac] = self.edges;
-        let w = u.mul_add(share, p) - self.corner;
+        let w = u.mul_add(fraction, p) - self.corner;
         let height = w.dot(self.normal);
         // Barycentric coordinates, times the square of twice the area.
         let (beta, gamma) = (self.normal.dot(w.cross(ac)), self.normal.dot(ab.cross(w)));
@@ -170,18 +170,18 @@ impl<R: Real> TriangleLanes<R> {
 /// Of the segment from `p` along `u` and a triangle: at an end of the segment, at an edge of the triangle, or zero where
 /// they cross.
 #[inline(always)]
-pub(super) fn to_triangle<R: Real>(p: Vec3<R>, u: Vec3<R>, triangle: &TriangleLanes<R>) -> NearestShare<R> {
+pub(super) fn to_triangle<R: Real>(p: Vec3<R>, u: Vec3<R>, triangle: &TriangleLanes<R>) -> NearestFraction<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let (a, [ab, ac]) = (triangle.corner, triangle.edges);
     let edges = to_segment(p, u, a, ab).or(to_segment(p, u, a, ac)).or(to_segment(p, u, a + ab, ac - ab));
     // Where the segment passes through the plane.
     let (start, end) = ((p - a).dot(triangle.normal), (p + u - a).dot(triangle.normal));
     let fall = start - end;
-    let through = clamp_share(start / fall.choose_equal(zero, one, fall));
+    let through = clamp_fraction(start / fall.choose_equal(zero, one, fall));
     let crossing = (start * end).choose_below(zero, through, zero);
     let mut nearest = edges;
-    for share in [zero, one, crossing] {
-        nearest = nearest.or(NearestShare { squared: triangle.faced(p, u, share, nearest.squared), share });
+    for fraction in [zero, one, crossing] {
+        nearest = nearest.or(NearestFraction { squared: triangle.faced(p, u, fraction, nearest.squared), fraction });
     }
     nearest
 }

@@ -7,7 +7,7 @@ use super::checked_shape::Shape;
 use super::segment_distance::between;
 use super::tangent::{Tangent, nearest_on_segment};
 
-/// So far from the deepest point of an axis (as a share of its length) other faces are looked for.
+/// So far from the deepest point of an axis (as a fraction of its length) other faces are looked for.
 const BESIDE: f64 = 1e-6;
 
 /// Normals with less than this in common are of opposite faces: either leads out.
@@ -19,14 +19,14 @@ impl Shape {
     /// normals have in common, and shorter.
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [a, b] = segment;
-        let share = self.geometry().approach(segment, f64::INFINITY).share;
-        let on_axis = a + share * (b - a);
+        let fraction = self.geometry().approach(segment, f64::INFINITY).fraction;
+        let on_axis = a + fraction * (b - a);
         let Tangent { value, normal } = self.geometry().tangent(&on_axis);
-        if value >= 0.0 || share <= 0.0 || share >= 1.0 {
+        if value >= 0.0 || fraction <= 0.0 || fraction >= 1.0 {
             return (on_axis - radius * normal, normal);
         }
-        let beside = |share: f64| self.geometry().tangent(&(a + share * (b - a))).normal;
-        let [before, after] = [share - BESIDE, share + BESIDE].map(beside);
+        let beside = |fraction: f64| self.geometry().tangent(&(a + fraction * (b - a))).normal;
+        let [before, after] = [fraction - BESIDE, fraction + BESIDE].map(beside);
         let [falls, rises] = [before, after].map(|normal| normal.dot(&(b - a)));
         let common = before + (after - before) * (falls / (falls - rises));
         let is_corner = falls < 0.0 && rises > 0.0 && common.norm() > LEAST_IN_COMMON;
@@ -41,7 +41,7 @@ pub(crate) fn capsules_nearest(
     (other, _): (&LineSegment, f64),
 ) -> (Vector3<f64>, Vector3<f64>) {
     let [a, b] = own;
-    let on_axis = a + between(own, other).share * (b - a);
+    let on_axis = a + between(own, other).fraction * (b - a);
     let away = on_axis - nearest_on_segment(&other[0], &other[1], &on_axis);
     // Axes that meet have no direction: at right angles to both.
     let across = (b - a).cross(&(other[1] - other[0]));

@@ -140,8 +140,8 @@ impl<R: Real> SolidLanes<R> for CylinderLanes<R> {
         let outward = self.axis.mul_add(-along, point);
         let from_axis = outward.dot(outward).sqrt();
         let safe = zero.choose_below(from_axis, from_axis, one);
-        let share = (from_axis - self.radius).larger(zero) / safe;
-        self.axis.mul_add(excess(along, self.half_length), outward * share)
+        let fraction = (from_axis - self.radius).larger(zero) / safe;
+        self.axis.mul_add(excess(along, self.half_length), outward * fraction)
     }
 }
 
@@ -161,9 +161,9 @@ pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>
     for _ in 0..STEPS {
         let steepness = left.slope - right.slope;
         let safe = steepness.choose_below(zero, steepness, -one);
-        let rest = right.value - left.value + left.slope * left.share - right.slope * right.share;
-        let meeting = (rest / safe).larger(left.share).smaller(right.share);
-        bound = left.value + left.slope * (meeting - left.share);
+        let rest = right.value - left.value + left.slope * left.fraction - right.slope * right.fraction;
+        let meeting = (rest / safe).larger(left.fraction).smaller(right.fraction);
+        bound = left.value + left.slope * (meeting - left.fraction);
         // At an end where the distance rises inward, that end is the nearest.
         bound = left.slope.choose_below(zero, bound, left.value);
         bound = zero.choose_below(right.slope, bound, right.value.choose_below(left.value, right.value, bound));
@@ -183,29 +183,29 @@ pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>
     bound
 }
 
-/// Distance and its slope at `share` of a segment.
+/// Distance and its slope at `fraction` of a segment.
 #[derive(Clone, Copy)]
 struct Touch<R> {
-    share: R,
+    fraction: R,
     value: R,
     slope: R,
 }
 
 impl<R: Real> Touch<R> {
     #[inline(always)]
-    fn at<S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, share: R) -> Self {
+    fn at<S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, fraction: R) -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let beyond = solid.beyond(along.mul_add(share, start));
+        let beyond = solid.beyond(along.mul_add(fraction, start));
         let value = beyond.dot(beyond).sqrt();
         let slope = beyond.dot(along) / zero.choose_below(value, value, one);
-        Self { share, value, slope }
+        Self { fraction, value, slope }
     }
 
     /// `then` in lanes with value < limit, else `otherwise`.
     #[inline(always)]
     fn where_below(self, value: R, limit: R, then: Self, otherwise: Self) -> Self {
         Self {
-            share: value.choose_below(limit, then.share, otherwise.share),
+            fraction: value.choose_below(limit, then.fraction, otherwise.fraction),
             value: value.choose_below(limit, then.value, otherwise.value),
             slope: value.choose_below(limit, then.slope, otherwise.slope),
         }

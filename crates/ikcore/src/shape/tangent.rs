@@ -16,7 +16,7 @@ pub(super) struct Tangent {
 }
 
 /// The fraction of the way from `a` to `b` at which the segment is nearest to `point`.
-pub(super) fn nearest_share(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<f64>) -> f64 {
+pub(super) fn nearest_fraction(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<f64>) -> f64 {
     let along = b - a;
     let squared = along.norm_squared();
     if squared > 0.0 { ((point - a).dot(&along) / squared).clamp(0.0, 1.0) } else { 0.0 }
@@ -24,5 +24,5 @@ pub(super) fn nearest_share(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<
 
 /// The point of the segment from `a` to `b` that is nearest to `point`.
 pub(super) fn nearest_on_segment(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<f64>) -> Vector3<f64> {
-    a + nearest_share(a, b, point) * (b - a)
+    a + nearest_fraction(a, b, point) * (b - a)
 }

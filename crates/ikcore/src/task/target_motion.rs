@@ -29,19 +29,19 @@ pub struct Twist {
 }
 
 impl TargetMotion {
-    /// The target and its twist at `share` of the tick, from 0 to 1.
-    pub fn at(&self, share: f64) -> (Target, Twist) {
+    /// The target and its twist at `fraction` of the tick, from 0 to 1.
+    pub fn at(&self, fraction: f64) -> (Target, Twist) {
         let (from, to) = (self.begin.position().unwrap_or_default(), self.end.position().unwrap_or_default());
         let straight: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]) / self.dt);
         let [v0, v1] = self.velocities.unwrap_or([straight; 2]);
         let entry = |k: usize| Cubic::new([from[k], to[k]], [self.dt * v0[k], self.dt * v1[k]]);
-        let position = std::array::from_fn(|k| entry(k).at(share));
-        let linear = std::array::from_fn(|k| entry(k).slope(share) / self.dt);
+        let position = std::array::from_fn(|k| entry(k).at(fraction));
+        let linear = std::array::from_fn(|k| entry(k).slope(fraction) / self.dt);
         let turn = match (self.begin.frame(), self.end.frame()) {
             (Some(begin), Some(end)) => rotation_between(begin, end),
             _ => [0.0; 3],
         };
-        let target = self.begin.placed(position, turn.map(|entry| share * entry));
+        let target = self.begin.placed(position, turn.map(|entry| fraction * entry));
         (target, Twist { linear, angular: turn.map(|entry| entry / self.dt) })
     }
 }
@@ -80,8 +80,8 @@ mod tests {
             velocities: Some(velocities),
             dt: 0.25,
         };
-        for (share, position, velocity) in [(0.0, from, velocities[0]), (1.0, to, velocities[1])] {
-            let (Target::Position(found), twist) = motion.at(share) else { panic!("a position stays a position") };
+        for (fraction, position, velocity) in [(0.0, from, velocities[0]), (1.0, to, velocities[1])] {
+            let (Target::Position(found), twist) = motion.at(fraction) else { panic!("a position stays a position") };
             assert!((0..3).all(|k| (found[k] - position[k]).abs() < 1e-15));
             assert!((0..3).all(|k| (twist.linear[k] - velocity[k]).abs() < 1e-14));
         }

@@ -60,10 +60,10 @@ pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
 fn cut_piece(piece: usize, length: f64, count: usize, [before, after]: [usize; 2], segments: &mut Vec<Segment>) {
     let even = count - before - after;
     let step = length / even as f64;
-    let share = |halvings: usize| step * 0.5_f64.powi(halvings as i32);
-    let near_begin = (1..=before).rev().map(share);
+    let fraction = |halvings: usize| step * 0.5_f64.powi(halvings as i32);
+    let near_begin = (1..=before).rev().map(fraction);
     let between = (0..=even).map(|i| i as f64 * step);
-    let near_end = (1..=after).map(|halvings| length - share(halvings));
+    let near_end = (1..=after).map(|halvings| length - fraction(halvings));
     let mut from = 0.0;
     let ends = near_begin.chain(between.skip(1).take(even - 1)).chain(near_end).chain([length]);
     for to in ends {

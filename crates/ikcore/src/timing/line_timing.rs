@@ -90,14 +90,14 @@ impl JointPolyline {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         for line in self.0.windows(2) {
             let begin = knots[knots.len() - 1];
-            let shares = line_profile(line, limits);
-            let starts = shares.segments.iter().skip(1).map(|segment| begin + segment.time);
-            knots.extend(starts.chain([begin + shares.duration]));
-            for segment in &shares.segments {
+            let fractions = line_profile(line, limits);
+            let starts = fractions.segments.iter().skip(1).map(|segment| begin + segment.time);
+            knots.extend(starts.chain([begin + fractions.duration]));
+            for segment in &fractions.segments {
                 let MotionState { q, v, a } = segment.state;
-                let share = [q, v, 0.5 * a, segment.jerk / 6.0];
+                let fraction = [q, v, 0.5 * a, segment.jerk / 6.0];
                 coefficients.extend(line[0].iter().zip(&line[1]).map(|(from, to)| {
-                    let [c0, c1, c2, c3] = share.map(|c| c * (to - from));
+                    let [c0, c1, c2, c3] = fraction.map(|c| c * (to - from));
                     polynomial([from + c0, c1, c2, c3])
                 }));
             }
@@ -112,8 +112,8 @@ impl JointPolyline {
     ///
     /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
-    pub(crate) fn with_blends(&self, limits: &MotionLimits, shares: &[f64]) -> Option<Result<Trajectory>> {
-        let times = self.blend_times(limits, shares)?;
+    pub(crate) fn with_blends(&self, limits: &MotionLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
+        let times = self.blend_times(limits, fractions)?;
         let motion = self.blended(limits, &times);
         // A blend that is just too short exceeds a jerk limit by twice as much.
         let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
@@ -121,7 +121,7 @@ impl JointPolyline {
     }
 
     /// The times of the motion with blends.
-    pub(crate) fn blend_times(&self, limits: &MotionLimits, shares: &[f64]) -> Option<BlendTimes> {
+    pub(crate) fn blend_times(&self, limits: &MotionLimits, fractions: &[f64]) -> Option<BlendTimes> {
         let mut lines: Vec<f64> = self.0.windows(2).map(|line| line_duration(line, limits)).collect();
         if lines.iter().any(|duration| !duration.is_finite() || *duration <= 0.0) {
             return None;
@@ -132,7 +132,7 @@ impl JointPolyline {
             for (i, blend) in blends.iter_mut().enumerate() {
                 let (before, after) = (i.checked_sub(1), (i < lines.len()).then_some(i));
                 let beside = before.into_iter().chain(after);
-                let room = shares[i] * beside.clone().map(|line| lines[line]).fold(f64::INFINITY, f64::min);
+                let room = fractions[i] * beside.clone().map(|line| lines[line]).fold(f64::INFINITY, f64::min);
                 let needed = (0..limits.dof()).map(|j| {
                     let change = self.velocity(after, j, &lines) - self.velocity(before, j, &lines);
                     let by_acceleration = BLEND_ACCELERATION * change.abs() / limits.acceleration[j];
@@ -156,11 +156,11 @@ impl JointPolyline {
         None
     }
 
-    /// Where the blend of inner point `i` begins and ends, if it takes this share of the shorter adjacent line.
-    pub(crate) fn blend_ends(&self, limits: &MotionLimits, i: usize, share: f64) -> [Vec<f64>; 2] {
+    /// Where the blend of inner point `i` begins and ends, if it takes this fraction of the shorter adjacent line.
+    pub(crate) fn blend_ends(&self, limits: &MotionLimits, i: usize, fraction: f64) -> [Vec<f64>; 2] {
         let lines = [[i, i - 1], [i, i + 1]].map(|[corner, other]| [&self.0[corner], &self.0[other]]);
         let durations = [line_duration(&self.0[i - 1..=i], limits), line_duration(&self.0[i..=i + 1], limits)];
-        let blend = share * durations[0].min(durations[1]);
+        let blend = fraction * durations[0].min(durations[1]);
         std::array::from_fn(|side| {
             let ([corner, other], part) = (lines[side], 0.5 * blend / durations[side]);
             corner.iter().zip(other).map(|(corner, other)| corner + part * (other - corner)).collect()
@@ -217,7 +217,7 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
 
 /// The fastest motion from 0 to 1 along a line, as a fraction of it.
 fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
-    let share = |all: &[f64]| {
+    let fraction = |all: &[f64]| {
         let of_joint = |j: usize| {
             let size = (line[1][j] - line[0][j]).abs();
             if size == 0.0 { f64::INFINITY } else { all[j] / size }
@@ -225,9 +225,9 @@ fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
         (0..limits.dof()).map(of_joint).fold(f64::INFINITY, f64::min) / CAUTION
     };
     let rates = Rates {
-        velocity: share(&limits.velocity),
-        acceleration: share(&limits.acceleration),
-        jerk: share(&limits.jerk),
+        velocity: fraction(&limits.velocity),
+        acceleration: fraction(&limits.acceleration),
+        jerk: fraction(&limits.jerk),
     };
     let transfer = Transfer::new(MotionState::rest(0.0), MotionState::rest(1.0), &rates);
     transfer.motion(transfer.duration(0.0))
@@ -341,9 +341,9 @@ mod tests {
     }
 
     #[test]
-    fn a_smaller_share_keeps_a_blend_nearer_to_its_corner() {
-        let miss = |share: f64| {
-            let motion = corner().with_blends(&limits(1.0, 50.0), &[1.0, share, 1.0, 1.0]).unwrap().unwrap();
+    fn a_smaller_fraction_keeps_a_blend_nearer_to_its_corner() {
+        let miss = |fraction: f64| {
+            let motion = corner().with_blends(&limits(1.0, 50.0), &[1.0, fraction, 1.0, 1.0]).unwrap().unwrap();
             let away = |i: usize| {
                 let [q, ..] = state(&motion, motion.duration() * i as f64 / 2000.0);
                 (q[0] - 1.0).hypot(q[1] - 0.2)

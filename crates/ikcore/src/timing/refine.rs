@@ -8,7 +8,7 @@ use crate::error::Result;
 /// proportional to their length, so about as much remains.
 const CONVERGED: f64 = 5e-4;
 
-/// A segment is halved again if halving it saved more than this fraction of its share of the allowed error.
+/// A segment is halved again if halving it saved more than this fraction of its part of the allowed error.
 const WORTHWHILE: f64 = 0.2;
 
 /// Returns the fastest profile on a grid that starts with `segments` and is halved wherever that saves time.

@@ -1,7 +1,7 @@
 //! Collisions of a motion: tested at samples during the search, certified for the plan.
 
 use crate::error::Result;
-use crate::obstacle::{NearestContact, Scene, Sweep, kept_margin};
+use crate::obstacle::{ClearanceSweep, NearestContact, Scene, kept_margin};
 use crate::plan::{
     PlanarArm, PointToPointOptions, TimedMotion, collision_checks, nearest_at, refuse_collision, too_near,
 };
@@ -87,7 +87,8 @@ impl<'a> CollisionTest<'a> {
     /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
     /// `None` if nothing can touch.
     pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<Clearance> {
-        let near = Sweep::new(&self.scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])?;
+        let near =
+            ClearanceSweep::new(&self.scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
         Some(Clearance {
             distance,
@@ -120,9 +121,9 @@ impl UnitDisc {
         let (a, b) = (self.map(a), self.map(b));
         let along = [b[0] - a[0], b[1] - a[1]];
         let squared = along[0] * along[0] + along[1] * along[1];
-        let share = if squared > 0.0 { -(a[0] * along[0] + a[1] * along[1]) / squared } else { 0.0 };
-        let share = share.clamp(0.0, 1.0);
-        let nearest = [a[0] + share * along[0], a[1] + share * along[1]];
+        let fraction = if squared > 0.0 { -(a[0] * along[0] + a[1] * along[1]) / squared } else { 0.0 };
+        let fraction = fraction.clamp(0.0, 1.0);
+        let nearest = [a[0] + fraction * along[0], a[1] + fraction * along[1]];
         nearest[0] * nearest[0] + nearest[1] * nearest[1] < 1.0
     }
 }

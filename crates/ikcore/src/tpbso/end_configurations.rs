@@ -103,8 +103,8 @@ impl EndConfigurations {
                 }
             },
             Self::OneOf(solutions) => {
-                let share = parameters.first().copied().unwrap_or_default();
-                let index = ((share * solutions.len() as f64) as usize).min(solutions.len() - 1);
+                let fraction = parameters.first().copied().unwrap_or_default();
+                let index = ((fraction * solutions.len() as f64) as usize).min(solutions.len() - 1);
                 q.copy_from_slice(&solutions[index]);
             }
         }

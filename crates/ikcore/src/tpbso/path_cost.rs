@@ -84,8 +84,8 @@ impl<'a> PathCost<'a> {
         let whole_range = self.limits.whole_range_time();
         let mut ranges = vec![(0.0, 1.0); NODES * self.redundancy.links()];
         if let Some(q) = self.start {
-            for (nodes, share) in ranges.chunks_exact_mut(NODES).zip(self.redundancy.shares_of(q)?) {
-                nodes[0] = (share, share);
+            for (nodes, fraction) in ranges.chunks_exact_mut(NODES).zip(self.redundancy.fractions_of(q)?) {
+                nodes[0] = (fraction, fraction);
             }
         }
         let middle: Vec<f64> = ranges.iter().map(|(lowest, highest)| 0.5 * (lowest + highest)).collect();
@@ -136,14 +136,14 @@ impl<'a> PathCost<'a> {
     /// between them.
     pub(super) fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
         // Points at equal times are not necessarily at equal distances.
-        let shares = tip_path.point_shares();
-        let last = shares.len() - 1;
-        let configurations = |share: f64, q: &mut [f64]| {
-            let i = shares.partition_point(|start| *start <= share).clamp(1, last) - 1;
-            let part = (share - shares[i]) / (shares[i + 1] - shares[i]);
+        let fractions = tip_path.point_fractions();
+        let last = fractions.len() - 1;
+        let configurations = |fraction: f64, q: &mut [f64]| {
+            let i = fractions.partition_point(|start| *start <= fraction).clamp(1, last) - 1;
+            let part = (fraction - fractions[i]) / (fractions[i + 1] - fractions[i]);
             self.place((i as f64 + part) / last as f64, q);
         };
-        let knots: Vec<f64> = (0..last).step_by(STRIDE).chain([last]).map(|i| shares[i]).collect();
+        let knots: Vec<f64> = (0..last).step_by(STRIDE).chain([last]).map(|i| fractions[i]).collect();
         TipDeviation { robot: self.robot, tip_path, configurations }.largest(&knots)
     }
 
@@ -207,12 +207,12 @@ impl<'a> PathCost<'a> {
         for j in 0..self.robot.dof() {
             let (way, speed, acceleration, outside) = self.joint_extremes(j);
             travel += way;
-            let share = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
-            broken += share(speed / duration, self.limits.velocity[j])
-                + share(acceleration / (duration * duration), self.limits.acceleration[j])
+            let fraction = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
+            broken += fraction(speed / duration, self.limits.velocity[j])
+                + fraction(acceleration / (duration * duration), self.limits.acceleration[j])
                 + if outside > 0.0 { 1.0 + outside } else { 0.0 };
         }
-        let missed: f64 = self.distances().map(|(_, d)| d / self.accuracy).filter(|share| *share > 1.0).sum();
+        let missed: f64 = self.distances().map(|(_, d)| d / self.accuracy).filter(|fraction| *fraction > 1.0).sum();
         let cost = if self.cost == Cost::Time { duration } else { travel };
         cost + BROKEN_LIMIT * self.scale * (broken + missed)
     }

@@ -74,9 +74,9 @@ impl Redundancy {
         let u = i as f64 / (self.places.len() - 1) as f64;
         for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact(NODES)) {
             // Clamped: between its nodes the spline may leave [0, 1].
-            let share = self.nodes.at(u, values, curvatures).clamp(0.0, 1.0);
+            let fraction = self.nodes.at(u, values, curvatures).clamp(0.0, 1.0);
             let (middle, half) = self.arm.orientation_range(position, link).ok_or(OUT_OF_REACH)?;
-            let value = middle - half + 2.0 * half * share; // eq. (7)
+            let value = middle - half + 2.0 * half * fraction; // eq. (7)
             position = self.arm.start_of(link, position, value);
             free.push(Orientation { value, lowest: middle - half, highest: middle + half });
             absolute.push(value);
@@ -92,7 +92,7 @@ impl Redundancy {
     ///
     /// # Errors
     /// [`Error::InvalidPath`] if the tip is elsewhere at `q`.
-    pub(super) fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn fractions_of(&self, q: &[f64]) -> Result<Vec<f64>> {
         let PlanarTarget { mut position, orientation } = self.places[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
         let absolute = self.arm.orientations(q);
@@ -111,14 +111,15 @@ impl Redundancy {
             position = self.arm.start_of(link, position, given);
             link -= 1;
         }
-        let mut shares = vec![];
+        let mut fractions = vec![];
         for _ in 0..self.links() {
             let (middle, half) = self.arm.orientation_range(position, link).unwrap_or((absolute[link], PI));
-            shares.push((0.5 + wrapped(absolute[link] - middle) / (2.0 * half.max(f64::MIN_POSITIVE))).clamp(0.0, 1.0));
+            fractions
+                .push((0.5 + wrapped(absolute[link] - middle) / (2.0 * half.max(f64::MIN_POSITIVE))).clamp(0.0, 1.0));
             position = self.arm.start_of(link, position, absolute[link]);
             link -= 1;
         }
-        Ok(shares)
+        Ok(fractions)
     }
 
     /// Writes the second derivatives of the splines through the nodes `x`.
@@ -164,7 +165,7 @@ mod tests {
     use crate::robot::Robot;
 
     #[test]
-    fn shares_of_a_configuration_lead_back_to_it() {
+    fn fractions_of_a_configuration_lead_back_to_it() {
         let robot = Robot::planar(&[1.0, 0.8, 0.6, 0.4]).unwrap();
         let arm = PlanarArm::of(&robot).unwrap();
         let q = [0.3, 0.7, -0.4, 0.5];
@@ -172,7 +173,8 @@ mod tests {
         let points = Waypoints::new(vec![tip, [tip[0] - 0.1, tip[1], tip[2]]], None).unwrap();
         let elbow = arm.elbow(&q);
         let redundancy = Redundancy::new(arm, &points, elbow).unwrap();
-        let nodes: Vec<f64> = redundancy.shares_of(&q).unwrap().into_iter().flat_map(|share| [share; NODES]).collect();
+        let nodes: Vec<f64> =
+            redundancy.fractions_of(&q).unwrap().into_iter().flat_map(|fraction| [fraction; NODES]).collect();
         let mut curvatures = vec![1.0; nodes.len()];
         redundancy.curvatures(&nodes, &mut curvatures);
         let mut found = [0.0; 4];
@@ -180,7 +182,7 @@ mod tests {
         assert!(q.iter().zip(found).all(|(q, found)| (q - found).abs() < 1e-9), "{found:?}");
         assert_eq!(free.len(), redundancy.links());
         assert!(free.iter().all(|free| free.lowest <= free.value && free.value <= free.highest), "{free:?}");
-        let error = redundancy.shares_of(&[0.0; 4]).unwrap_err().to_string();
+        let error = redundancy.fractions_of(&[0.0; 4]).unwrap_err().to_string();
         assert!(error.contains("start_q puts the tip"), "{error}");
     }
 }

@@ -144,12 +144,12 @@ impl<'a> ViaPointCost<'a> {
     /// counts in full, not only its excess, which a search would trade for cost. Position limits, which the paper does
     /// not have, count likewise.
     fn broken(&self, j: usize, extremes: &Extremes) -> f64 {
-        let share = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
+        let fraction = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
         let (lower, upper) = (self.limits.lower[j], self.limits.upper[j]);
         let beyond = (lower - extremes.lowest).max(extremes.highest - upper);
         let outside = if beyond > 0.0 { 1.0 + beyond } else { 0.0 };
-        share(extremes.speed, self.limits.velocity[j])
-            + share(extremes.acceleration, self.limits.acceleration[j])
+        fraction(extremes.speed, self.limits.velocity[j])
+            + fraction(extremes.acceleration, self.limits.acceleration[j])
             + outside
     }
 

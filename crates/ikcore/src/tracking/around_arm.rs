@@ -14,7 +14,9 @@ use crate::math::MAX_DOF;
 use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, norm};
 use crate::objective::Point;
-use crate::obstacle::{ChordCheck, ClearSpace, Coming, ComingRows, JointMotion, NearRow, NearRows, RequiredDistance};
+use crate::obstacle::{
+    ClearSpace, Coming, ComingRows, JointMotion, MotionCertificate, NearRow, NearRows, RequiredDistance,
+};
 
 /// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
 const ROOM: f64 = 2e-4;
@@ -62,7 +64,7 @@ pub(super) struct Around {
     after: NearRows,
     /// Bodies that will come too near to the place of rest.
     coming: ComingRows,
-    check: ChordCheck,
+    check: MotionCertificate,
 }
 
 impl ObstacleMotion {
@@ -103,7 +105,7 @@ impl Around {
             near: space.near_rows(),
             after: space.near_rows(),
             coming: space.coming_rows(),
-            check: space.chord_check(),
+            check: space.motion_certificate(),
             space: Arc::new(space),
             obstacles,
             since: 0.0,
@@ -159,7 +161,7 @@ impl Around {
             since: self.since,
             dt,
             at_rest: self.near.rows(),
-            leeway: ROOM,
+            tolerance_band: ROOM,
             only_parts: true,
         };
         self.space.is_kept_by(motion, end, &kept, &mut self.check)

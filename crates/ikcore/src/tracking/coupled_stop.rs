@@ -101,17 +101,17 @@ fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
     })
 }
 
-/// The next place of a stop: all joints slow down by the same share, by which the first of them may.
+/// The next place of a stop: all joints slow down by the same fraction, by which the first of them may.
 fn braked(context: &StepContext<'_>, state: &JointState, q: &Point) -> Point {
     let mut step = Point::from_elem(0.0, q.len());
     let Some(limited) = context.limited else { return q.clone() };
     state.brake(limited.braking(), &mut step);
-    // By how much each would slow down, as a share: weighed by its speed, so that slow joints do not count.
+    // By how much each would slow down, as a fraction: weighed by its speed, so that slow joints do not count.
     let squared = dot(&state.step, &state.step);
-    let share = step.iter().zip(&state.step).filter(|(_, now)| now.powi(2) > 1e-6 * squared);
-    let share = share.map(|(next, now)| next / now).fold(0.0, f64::max);
-    if share < 1.0 {
-        step.iter_mut().zip(&state.step).for_each(|(step, now)| *step = share * now);
+    let fraction = step.iter().zip(&state.step).filter(|(_, now)| now.powi(2) > 1e-6 * squared);
+    let fraction = fraction.map(|(next, now)| next / now).fold(0.0, f64::max);
+    if fraction < 1.0 {
+        step.iter_mut().zip(&state.step).for_each(|(step, now)| *step = fraction * now);
     }
     q.iter().zip(&step).map(|(q, step)| q + step).collect()
 }

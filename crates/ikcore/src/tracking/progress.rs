@@ -1,7 +1,7 @@
 //! Progress of an arm held by obstacles towards its target.
 //!
 //! Commands beside obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles hold and
-//! that has come no nearer for a while therefore takes only commands after which its place of rest is nearer to the target, by a share of
+//! that has come no nearer for a while therefore takes only commands after which its place of rest is nearer to the target, by a fraction of
 //! how far that place moves: the error at rest falls with each of them. Where even that leads nowhere soon, the arm comes to rest.
 //! The target counts as a new one where its motion, not that of the arm, has changed the error.
 
@@ -149,7 +149,7 @@ fn time_of_turn(limits: &Limits) -> f64 {
     times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether an arm comes nearer to its target by resting at `to` instead of `from`, by a share of the way between them.
+/// Whether an arm comes nearer to its target by resting at `to` instead of `from`, by a fraction of the way between them.
 pub(super) fn is_nearer(context: &StepContext<'_>, from: &[f64], to: &[f64]) -> bool {
     let [before, after] = [from, to].map(|q| context.aims.assess(context.robot, q).score);
     let falls = before.value.sqrt() - after.value.sqrt();

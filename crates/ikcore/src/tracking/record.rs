@@ -15,7 +15,7 @@ use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
-/// Rounding of differences between positions, as a share of an acceleration or jerk limit.
+/// Rounding of differences between positions, as a fraction of an acceleration or jerk limit.
 const ROUNDED: f64 = 1e-9;
 
 /// Excess over a limit that counts as rounding, in units in the last place of q.

@@ -368,10 +368,10 @@ impl Session {
         let (mut kept, mut past) = (0.0, 1.0);
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
-            let share = 0.5 * (kept + past);
-            between(&self.arm.q, &end, share, &mut found.q);
+            let fraction = 0.5 * (kept + past);
+            between(&self.arm.q, &end, fraction, &mut found.q);
             let inside = region.contains(&self.arm.robot.tip_position(&found.q));
-            (kept, past) = if inside { (share, past) } else { (kept, share) };
+            (kept, past) = if inside { (fraction, past) } else { (kept, fraction) };
         }
         between(&self.arm.q, &end, kept, &mut found.q);
         found.assess(&self.arm.robot, &self.arm.aims());

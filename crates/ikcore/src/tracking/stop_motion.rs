@@ -72,11 +72,12 @@ impl JointMotion for StopMotion<'_> {
             }
             return;
         }
-        let (before, share) = (tick.floor() - 1.0, tick.fract());
+        let (before, fraction) = (tick.floor() - 1.0, tick.fract());
         for (j, q) in q.iter_mut().enumerate() {
             let stop = &self.stops[j].0;
             let here = stop.at(before);
-            *q = self.command[j] + if share == 0.0 { here } else { here + share * (stop.at(before + 1.0) - here) };
+            *q =
+                self.command[j] + if fraction == 0.0 { here } else { here + fraction * (stop.at(before + 1.0) - here) };
         }
     }
 

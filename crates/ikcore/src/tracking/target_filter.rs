@@ -56,19 +56,19 @@ impl TargetFilter {
         }
     }
 
-    /// The shares of the way to a target that the filter covers in `interval` (s), for position and orientation, at these
+    /// The fractions of the way to a target that the filter covers in `interval` (s), for position and orientation, at these
     /// speeds (m/s, rad/s).
-    fn shares(&self, speeds: [f64; 2], interval: f64) -> [f64; 2] {
+    fn fractions(&self, speeds: [f64; 2], interval: f64) -> [f64; 2] {
         let cutoffs = match *self {
             Self::LowPass(LowPass { cutoff }) => [cutoff; 2],
             Self::OneEuro(OneEuro { min_cutoff, beta }) => speeds.map(|speed| min_cutoff + beta * speed),
         };
-        cutoffs.map(|cutoff| share(cutoff, interval))
+        cutoffs.map(|cutoff| fraction(cutoff, interval))
     }
 }
 
-/// The share of a step that a low-pass covers in `interval` (s).
-fn share(cutoff: f64, interval: f64) -> f64 {
+/// The fraction of a step that a low-pass covers in `interval` (s).
+fn fraction(cutoff: f64, interval: f64) -> f64 {
     1.0 - (-TAU * cutoff * interval).exp()
 }
 
@@ -95,13 +95,13 @@ impl RunningFilter {
         };
         let motion = |begin: Target| TargetMotion { begin, end: *target, velocities: None, dt: interval };
         let (_, measured) = motion(raw).at(1.0);
-        let speed_share = share(SPEED_CUTOFF, interval);
+        let speed_fraction = fraction(SPEED_CUTOFF, interval);
         let Twist { linear, angular } = &mut self.twist;
         for (smooth, measured) in linear.iter_mut().zip(measured.linear).chain(angular.iter_mut().zip(measured.angular))
         {
-            *smooth += speed_share * (measured - *smooth);
+            *smooth += speed_fraction * (measured - *smooth);
         }
-        let [position, rotation] = self.settings.shares([norm(linear), norm(angular)], interval);
+        let [position, rotation] = self.settings.fractions([norm(linear), norm(angular)], interval);
         let placed = motion(filtered).at(position).0.position();
         let turned = motion(filtered).at(rotation).0;
         let result = turned.with_position(|own| placed.unwrap_or(*own));

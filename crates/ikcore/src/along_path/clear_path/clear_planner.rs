@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, Sweep, TooNear};
+use crate::obstacle::{ClearSpace, ClearanceSweep, TooNear};
 use crate::plan::{Plan, SearchResult, TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
 use crate::solver::{Monitor, Status, Stop};
 
@@ -71,7 +71,7 @@ pub(crate) fn along_path(
         space,
         price: Price::new(problem),
         passage: Passage::new(problem, space),
-        shares: problem.tip_path.knots(intervals(problem.tip_path)),
+        fractions: problem.tip_path.knots(intervals(problem.tip_path)),
         postures: vec![],
         accuracy: problem.accuracy,
     };
@@ -96,7 +96,7 @@ struct ClearPlanner<'p> {
     price: Price,
     passage: Passage<'p>,
     /// Path parameters of the layers, and the postures there, clear or not.
-    shares: Vec<f64>,
+    fractions: Vec<f64>,
     postures: Vec<Vec<Point>>,
     /// Allowed deviation of the tip from the path (m, rad); smaller where that keeps it clear.
     accuracy: f64,
@@ -114,7 +114,7 @@ impl ClearPlanner<'_> {
     fn first_sequence(&mut self) -> Result<FoundSequence> {
         let mut dead_end = Unreached(0);
         for density in DENSITIES {
-            let sampling = LayerSampling { shares: &self.shares, density };
+            let sampling = LayerSampling { fractions: &self.fractions, density };
             self.postures = postures(&mut self.passage, &self.price, &sampling)?;
             match self.clear_sequence()? {
                 Ok(sequence) => return Ok(Ok(sequence)),
@@ -125,13 +125,13 @@ impl ClearPlanner<'_> {
     }
 
     fn clear_sequence(&mut self) -> Result<FoundSequence> {
-        let clear = |(share, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
+        let clear = |(fraction, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
-            let clear = postures.iter().filter(|q| self.passage.is_clear(*share, q));
+            let clear = postures.iter().filter(|q| self.passage.is_clear(*fraction, q));
             Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
         };
-        let layers = self.shares.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
-        cheapest(&layers, &self.shares, &self.price, &mut self.passage)
+        let layers = self.fractions.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
+        cheapest(&layers, &self.fractions, &self.price, &mut self.passage)
     }
 
     /// The plan of the first motion without a fault; of the last one tried, where none is.
@@ -140,9 +140,9 @@ impl ClearPlanner<'_> {
         let mut found = None;
         let mut round = 0;
         loop {
-            let Self { shares, price, passage, .. } = &mut self;
-            Smoothing { shares, price, passage, starts_as_given }.smooth(&mut sequence)?;
-            let nominal = JointWaypoints { knots: self.shares.clone(), rows: sequence.concat() };
+            let Self { fractions, price, passage, .. } = &mut self;
+            Smoothing { fractions, price, passage, starts_as_given }.smooth(&mut sequence)?;
+            let nominal = JointWaypoints { knots: self.fractions.clone(), rows: sequence.concat() };
             let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
             let smooth = self.problem.motion(&interpolation, waypoints.clone(), self.accuracy)?;
             let fault = self.fault(&smooth);
@@ -204,7 +204,7 @@ impl ClearPlanner<'_> {
         let trajectory = &motion.trajectory;
         let too_near = self.space.and_then(|space| {
             let (whole, kept) = ([0.0, trajectory.duration()], space.margin() + SPARE);
-            Sweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
+            ClearanceSweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
         });
         if let Some(near) = too_near {
             return Some(Fault::TooNear(near));
@@ -223,15 +223,16 @@ impl ClearPlanner<'_> {
         let nearest = (0..rows.len())
             .min_by(|i, k| squared_distance(rows[*i], &q).total_cmp(&squared_distance(rows[*k], &q)))
             .unwrap_or(0);
-        let share = motion.waypoints.knots[nearest];
-        let kept = self.passage.kept_beyond_margin(share);
+        let fraction = motion.waypoints.knots[nearest];
+        let kept = self.passage.kept_beyond_margin(fraction);
         let missing = (space.margin() - near.contact.distance).max(0.0);
         let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
         let leaves_some = |i: &usize| self.postures[*i].iter().any(|q| space.keeps(q, extra));
-        let reach = AROUND / self.shares.len() as f64;
-        let around: Vec<usize> = (0..self.shares.len()).filter(|i| (self.shares[*i] - share).abs() <= reach).collect();
+        let reach = AROUND / self.fractions.len() as f64;
+        let around: Vec<usize> =
+            (0..self.fractions.len()).filter(|i| (self.fractions[*i] - fraction).abs() <= reach).collect();
         if around.iter().all(leaves_some) {
-            self.passage.keep_more(share, reach, extra);
+            self.passage.keep_more(fraction, reach, extra);
         }
         self.accuracy *= 0.5;
         Ok(())
@@ -239,7 +240,7 @@ impl ClearPlanner<'_> {
 
     /// The plan that comes least deep into collision, where there is no clear one.
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
-        let layers = Layers { shares: &self.shares, postures: &self.postures };
+        let layers = Layers { fractions: &self.fractions, postures: &self.postures };
         let obstruction = layers.obstruction(&self.passage, space, dead_end);
         let missing = |q: &Point| {
             let distance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
@@ -251,7 +252,7 @@ impl ClearPlanner<'_> {
         };
         let layers = self.postures.iter().map(candidates).collect::<Result<Vec<_>>>()?;
         let mut anywhere = Passage::new(self.problem, None);
-        let sequence = match cheapest(&layers, &self.shares, &self.price, &mut anywhere)? {
+        let sequence = match cheapest(&layers, &self.fractions, &self.price, &mut anywhere)? {
             Ok(sequence) => sequence,
             Err(dead_end) => {
                 let PathProblem { robot, tip_path, options, .. } = self.problem;
@@ -259,7 +260,7 @@ impl ClearPlanner<'_> {
                 return Err(missed.map_or_else(|| self.not_found(dead_end), Ok)?);
             }
         };
-        let nominal = JointWaypoints { knots: std::mem::take(&mut self.shares), rows: sequence.concat() };
+        let nominal = JointWaypoints { knots: std::mem::take(&mut self.fractions), rows: sequence.concat() };
         let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
         let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
         let plan = self.finished(motion, None, Some(Status::InCollision))?;
@@ -270,11 +271,11 @@ impl ClearPlanner<'_> {
     fn not_found(&self, Unreached(layer): Unreached) -> Result<Error> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         if self.postures[layer].is_empty()
-            && let Some(error) = missed_at(robot, tip_path, self.shares[layer], options.seed)?
+            && let Some(error) = missed_at(robot, tip_path, self.fractions[layer], options.seed)?
         {
             return Ok(error);
         }
-        let place = tip_path.place(self.shares[layer]);
+        let place = tip_path.place(self.fractions[layer]);
         let problem = match self.postures[layer].len() {
             0 => "none of the motions tried reached it".into(),
             1 => "the one configuration tried there is on another branch than those before".into(),
@@ -290,7 +291,9 @@ impl ClearPlanner<'_> {
         let (scene, margin) = (space.scene(), space.margin());
         plan.surroundings = Some(self.problem.options.surroundings.clone());
         let trajectory = &plan.trajectory;
-        let Some(near) = Sweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()]) else {
+        let Some(near) =
+            ClearanceSweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])
+        else {
             return Ok(plan);
         };
         let distance = near.contact.distance;

@@ -8,18 +8,18 @@ use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact};
 
 /// Postures at the points of a path, clear or not.
 pub(super) struct Layers<'a> {
-    pub shares: &'a [f64],
+    pub fractions: &'a [f64],
     pub postures: &'a [Vec<Point>],
 }
 
 impl Layers<'_> {
     /// Says why no clear motion was found: the first point without a clear posture, or else the one that none leads to.
     pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: Unreached) -> String {
-        let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.shares[*i], q));
-        match (0..self.shares.len()).find(is_blocked) {
+        let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.fractions[*i], q));
+        match (0..self.fractions.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
             None => {
-                let place = passage.problem.tip_path.place(self.shares[dead_end.0]);
+                let place = passage.problem.tip_path.place(self.fractions[dead_end.0]);
                 let count = self.clear(passage, dead_end.0);
                 format!(
                     "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
@@ -30,13 +30,13 @@ impl Layers<'_> {
     }
 
     fn clear(&self, passage: &Passage<'_>, layer: usize) -> usize {
-        self.postures[layer].iter().filter(|q| passage.is_clear(self.shares[layer], q)).count()
+        self.postures[layer].iter().filter(|q| passage.is_clear(self.fractions[layer], q)).count()
     }
 
     /// What is in the way at a point without a clear posture.
     fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> String {
         let tip_path = passage.problem.tip_path;
-        let (share, postures) = (self.shares[layer], &self.postures[layer]);
+        let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
         let said = |contact: &Contact| {
             format!("link '{}' is {} {}", contact.link, contact.depth(space.margin()), contact.other)
         };
@@ -52,7 +52,7 @@ impl Layers<'_> {
             None => match least_deep(space, postures) {
                 Some(nearest) => {
                     let (said, count) = (said(&nearest.contact), postures.len());
-                    match (are_all(passage, share), count) {
+                    match (are_all(passage, fraction), count) {
                         (true, 1) => format!("{said} in the only posture inside the limits"),
                         (true, _) => format!("{said} in the best of {count} postures, and there are no others"),
                         _ => format!("{said} in the best of {count} postures tried, and others may exist"),
@@ -61,7 +61,7 @@ impl Layers<'_> {
                 None => "no posture was found".into(),
             },
         };
-        format!("{}: {what}", tip_path.place(share))
+        format!("{}: {what}", tip_path.place(fraction))
     }
 }
 

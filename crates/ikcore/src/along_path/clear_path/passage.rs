@@ -23,7 +23,7 @@ pub(super) type Place<'q> = (f64, &'q [f64]);
 /// More clearance around a place on the path.
 #[derive(Debug, Clone, Copy)]
 struct Extra {
-    share: f64,
+    fraction: f64,
     reach: f64,
     distance: f64,
 }
@@ -47,8 +47,8 @@ impl<'a> Passage<'a> {
     }
 
     /// Keeps this much more than the margin (m) around a place.
-    pub fn keep_more(&mut self, share: f64, reach: f64, distance: f64) {
-        self.extras.push(Extra { share, reach, distance });
+    pub fn keep_more(&mut self, fraction: f64, reach: f64, distance: f64) {
+        self.extras.push(Extra { fraction, reach, distance });
     }
 
     /// Keeps away from the limits a little: splines swing out between the postures.
@@ -95,39 +95,39 @@ impl<'a> Passage<'a> {
     }
 
     /// What is kept beyond the margin at a place (m).
-    pub fn kept_beyond_margin(&self, share: f64) -> f64 {
-        let near = self.extras.iter().filter(|extra| (extra.share - share).abs() <= extra.reach);
+    pub fn kept_beyond_margin(&self, fraction: f64) -> f64 {
+        let near = self.extras.iter().filter(|extra| (extra.fraction - fraction).abs() <= extra.reach);
         near.map(|extra| extra.distance).fold(RESERVE, f64::max)
     }
 
     /// Whether the posture `q` keeps clear there.
-    pub fn is_clear(&self, share: f64, q: &[f64]) -> bool {
-        self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(share)))
+    pub fn is_clear(&self, fraction: f64, q: &[f64]) -> bool {
+        self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(fraction)))
     }
 
     /// The posture on the path nearest to `guess`, if there is one inside the limits.
-    pub fn on_path(&mut self, share: f64, guess: &[f64]) -> Option<Point> {
+    pub fn on_path(&mut self, fraction: f64, guess: &[f64]) -> Option<Point> {
         let mut q = Point::from_slice(guess);
         self.bounds.clip(&mut q);
         let PathProblem { robot, tip_path, .. } = self.problem;
-        let missed = project(robot, &tip_path.path_target(share), &self.bounds, &mut q, &mut self.scratch);
+        let missed = project(robot, &tip_path.path_target(fraction), &self.bounds, &mut q, &mut self.scratch);
         (missed == 0.0).then_some(q)
     }
 
     /// The same, if it is clear.
-    pub fn clear_on_path(&mut self, share: f64, guess: &[f64]) -> Option<Point> {
-        self.on_path(share, guess).filter(|q| self.is_clear(share, q))
+    pub fn clear_on_path(&mut self, fraction: f64, guess: &[f64]) -> Option<Point> {
+        self.on_path(fraction, guess).filter(|q| self.is_clear(fraction, q))
     }
 
     /// The clear posture nearest to `guess` that has the tip near the path, by a part of the accuracy: one on the path may be far where
     /// the arm is singular.
-    pub fn clear_near_path(&mut self, share: f64, guess: &[f64]) -> Option<Point> {
+    pub fn clear_near_path(&mut self, fraction: f64, guess: &[f64]) -> Option<Point> {
         let mut q = Point::from_slice(guess);
         self.bounds.clip(&mut q);
         let PathProblem { robot, tip_path, accuracy, .. } = self.problem;
-        let (target, within) = (tip_path.path_target(share), NEAR_ENOUGH * accuracy);
+        let (target, within) = (tip_path.path_target(fraction), NEAR_ENOUGH * accuracy);
         let is_near = approach(robot, &target, &self.bounds, &mut q, &mut self.scratch, within);
-        (is_near && self.is_clear(share, &q)).then_some(q)
+        (is_near && self.is_clear(fraction, &q)).then_some(q)
     }
 
     /// Whether `q` is inside the limits.
@@ -141,13 +141,13 @@ impl<'a> Passage<'a> {
     }
 
     fn leads_by(&mut self, from: Place<'_>, to: Place<'_>, halvings: usize) -> bool {
-        let share = 0.5 * (from.0 + to.0);
+        let fraction = 0.5 * (from.0 + to.0);
         let middle: Point = from.1.iter().zip(to.1).map(|(from, to)| 0.5 * (from + to)).collect();
         let apart = largest_difference(from.1, to.1);
-        let between = self.clear_on_path(share, &middle).filter(|q| !strays(q, &middle, apart));
-        let near_path = || self.clear_near_path(share, &middle).filter(|q| !strays(q, &middle, apart));
+        let between = self.clear_on_path(fraction, &middle).filter(|q| !strays(q, &middle, apart));
+        let near_path = || self.clear_near_path(fraction, &middle).filter(|q| !strays(q, &middle, apart));
         let Some(between) = between.or_else(near_path) else { return false };
-        let between = (share, &between[..]);
+        let between = (fraction, &between[..]);
         apart <= FINE
             || halvings == 0
             || (self.leads_by(from, between, halvings - 1) && self.leads_by(between, to, halvings - 1))

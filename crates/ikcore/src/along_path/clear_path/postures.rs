@@ -18,7 +18,7 @@ const TRIES: usize = 4;
 #[derive(Debug)]
 pub(super) struct LayerSampling<'a> {
     /// Path parameters of the layers.
-    pub shares: &'a [f64],
+    pub fractions: &'a [f64],
     /// Values of the parameter of a redundant arm with a closed form, or a quarter of the motions from random starts.
     pub density: usize,
 }
@@ -32,7 +32,7 @@ pub(super) fn postures(
     price: &Price,
     sampling: &LayerSampling<'_>,
 ) -> Result<Vec<Vec<Point>>> {
-    let mut layers = vec![vec![]; sampling.shares.len()];
+    let mut layers = vec![vec![]; sampling.fractions.len()];
     if has_closed_form(passage) {
         layers = by_branches(passage, sampling)?;
     }
@@ -46,9 +46,9 @@ pub(super) fn postures(
 }
 
 /// Whether the postures at this place are all that exist, whole turns aside.
-pub(super) fn are_all(passage: &Passage<'_>, share: f64) -> bool {
+pub(super) fn are_all(passage: &Passage<'_>, fraction: f64) -> bool {
     let PathProblem { robot, tip_path, .. } = passage.problem;
-    let found = || solve_all(robot, &tip_path.target(share), &AllOptions::default(), &mut Unattended);
+    let found = || solve_all(robot, &tip_path.target(fraction), &AllOptions::default(), &mut Unattended);
     tip_path.fixes_pose() && has_closed_form(passage) && found().is_ok_and(|found| found.complete)
 }
 
@@ -62,12 +62,12 @@ fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Ve
     let (robot, tip_path) = (&passage.problem.robot, passage.problem.tip_path);
     let each = SolveOptions { seed: passage.problem.options.seed, ..SolveOptions::default() };
     let options = AllOptions { each, redundancy: sampling.density, ..AllOptions::default() };
-    let at = |share: &f64| {
+    let at = |fraction: &f64| {
         checkpoint()?;
-        let found = solve_all(robot, &tip_path.target(*share), &options, &mut Unattended)?;
+        let found = solve_all(robot, &tip_path.target(*fraction), &options, &mut Unattended)?;
         Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect())
     };
-    sampling.shares.iter().map(at).collect()
+    sampling.fractions.iter().map(at).collect()
 }
 
 /// Motions along the path from random starts, to both sides of random places, as far as they lead.
@@ -77,18 +77,20 @@ fn by_following(
     sampling: &LayerSampling<'_>,
     layers: &mut [Vec<Point>],
 ) -> Result<()> {
-    let shares = sampling.shares;
+    let fractions = sampling.fractions;
     let motions = 4 * sampling.density;
     for motion in 0..motions {
         checkpoint()?;
         let mut rng = rng::stream(passage.problem.options.seed, motion as u64 + 1);
-        let begin = motion * shares.len() / motions;
+        let begin = motion * fractions.len() / motions;
         let starts = passage.problem.robot.random_configurations(TRIES, &mut rng)?;
         let starts = starts.chunks_exact(passage.problem.robot.dof());
-        let Some(first) = starts.into_iter().find_map(|start| passage.on_path(shares[begin], start)) else { continue };
+        let Some(first) = starts.into_iter().find_map(|start| passage.on_path(fractions[begin], start)) else {
+            continue;
+        };
         layers[begin].push(first.clone());
-        follow(passage, price, shares, (begin + 1..shares.len()).zip(begin..), &first, layers);
-        follow(passage, price, shares, (0..begin).rev().zip((0..=begin).rev()), &first, layers);
+        follow(passage, price, fractions, (begin + 1..fractions.len()).zip(begin..), &first, layers);
+        follow(passage, price, fractions, (0..begin).rev().zip((0..=begin).rev()), &first, layers);
     }
     Ok(())
 }
@@ -97,15 +99,15 @@ fn by_following(
 fn follow(
     passage: &mut Passage<'_>,
     price: &Price,
-    shares: &[f64],
+    fractions: &[f64],
     steps: impl Iterator<Item = (usize, usize)>,
     q: &Point,
     layers: &mut [Vec<Point>],
 ) {
     let mut here = q.clone();
     for (layer, before) in steps {
-        let Some(next) = passage.on_path(shares[layer], &here) else { return };
-        if price.of_step(&here, &next, (shares[layer] - shares[before]).abs()).is_infinite() {
+        let Some(next) = passage.on_path(fractions[layer], &here) else { return };
+        if price.of_step(&here, &next, (fractions[layer] - fractions[before]).abs()).is_infinite() {
             return;
         }
         layers[layer].push(next.clone());

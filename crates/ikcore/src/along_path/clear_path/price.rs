@@ -31,14 +31,14 @@ impl Price {
         }
     }
 
-    /// The cost of a step over `share` of the path; infinite for a jump.
-    pub fn of_step(&self, from: &[f64], to: &[f64], share: f64) -> f64 {
-        self.of_differences((0..from.len()).map(|j| to[j] - from[j]), share)
+    /// The cost of a step over `fraction` of the path; infinite for a jump.
+    pub fn of_step(&self, from: &[f64], to: &[f64], fraction: f64) -> f64 {
+        self.of_differences((0..from.len()).map(|j| to[j] - from[j]), fraction)
     }
 
     /// The same, whole turns aside.
-    pub fn of_turned_step(&self, from: &[f64], to: &[f64], share: f64) -> f64 {
-        self.of_differences((0..from.len()).map(|j| self.turned(j, to[j] - from[j])), share)
+    pub fn of_turned_step(&self, from: &[f64], to: &[f64], fraction: f64) -> f64 {
+        self.of_differences((0..from.len()).map(|j| self.turned(j, to[j] - from[j])), fraction)
     }
 
     /// `to`, shifted by whole turns to be near `from`.
@@ -47,8 +47,8 @@ impl Price {
     }
 
     /// The cost of the steps through `postures`.
-    pub fn of_all(&self, postures: &[Point], shares: &[f64]) -> f64 {
-        let step = |i: usize| self.of_step(&postures[i - 1], &postures[i], shares[i] - shares[i - 1]);
+    pub fn of_all(&self, postures: &[Point], fractions: &[f64]) -> f64 {
+        let step = |i: usize| self.of_step(&postures[i - 1], &postures[i], fractions[i] - fractions[i - 1]);
         (1..postures.len()).map(step).sum()
     }
 
@@ -61,7 +61,7 @@ impl Price {
     }
 
     #[inline]
-    fn of_differences(&self, differences: impl Iterator<Item = f64>, share: f64) -> f64 {
+    fn of_differences(&self, differences: impl Iterator<Item = f64>, fraction: f64) -> f64 {
         let (mut travel, mut energy) = (0.0, 0.0);
         for (difference, pace) in differences.zip(&self.pace) {
             let moved = difference.abs();
@@ -72,8 +72,8 @@ impl Price {
             energy += (moved / pace) * (moved / pace);
         }
         match self.objective {
-            Cost::JointTravel => travel + ENERGY * energy / share,
-            _ => energy / share,
+            Cost::JointTravel => travel + ENERGY * energy / fraction,
+            _ => energy / fraction,
         }
     }
 }

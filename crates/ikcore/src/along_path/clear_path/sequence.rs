@@ -35,20 +35,20 @@ pub(super) struct Unreached(pub usize);
 /// A sequence, or where it would break off.
 pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
 
-/// The cheapest sequence through `layers` at `shares` of the path, each step of which leads along the path. Where the start is
+/// The cheapest sequence through `layers` at `fractions` of the path, each step of which leads along the path. Where the start is
 /// free, the joints begin at whatever whole turns keep them inside their limits.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
 pub(super) fn cheapest(
     layers: &[Vec<LayerPosture>],
-    shares: &[f64],
+    fractions: &[f64],
     price: &Price,
     passage: &mut Passage<'_>,
 ) -> Result<FoundSequence> {
     if passage.problem.options.start.is_none() {
         passage.open_turns();
-        let reached = reached(layers, shares, price, passage);
+        let reached = reached(layers, fractions, price, passage);
         passage.close_turns();
         let reached = match reached? {
             Ok(reached) => reached,
@@ -59,14 +59,14 @@ pub(super) fn cheapest(
             return Ok(Ok(sequence));
         }
     }
-    let reached = reached(layers, shares, price, passage)?;
+    let reached = reached(layers, fractions, price, passage)?;
     Ok(reached.map(|reached| ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
 }
 
 /// The postures that sequences reach, layer by layer.
 fn reached(
     layers: &[Vec<LayerPosture>],
-    shares: &[f64],
+    fractions: &[f64],
     price: &Price,
     passage: &mut Passage<'_>,
 ) -> Result<std::result::Result<Vec<Vec<Reached>>, Unreached>> {
@@ -75,7 +75,8 @@ fn reached(
     for i in 1..layers.len() {
         checkpoint()?;
         let before = &reached[i - 1];
-        let mut step = Step { shares: [shares[i - 1], shares[i]], price, passage: &mut *passage, costs: vec![] };
+        let mut step =
+            Step { fractions: [fractions[i - 1], fractions[i]], price, passage: &mut *passage, costs: vec![] };
         let mut next: Vec<Reached> = layers[i].iter().filter_map(|candidate| step.to(candidate, before)).collect();
         if next.len() < FEW {
             step.beside_candidates(before, &mut next);
@@ -90,7 +91,7 @@ fn reached(
 
 /// Steps from one layer to the next.
 struct Step<'s, 'a> {
-    shares: [f64; 2],
+    fractions: [f64; 2],
     price: &'s Price,
     passage: &'s mut Passage<'a>,
     costs: Vec<f64>,
@@ -99,7 +100,7 @@ struct Step<'s, 'a> {
 impl Step<'_, '_> {
     /// The cheapest way to a candidate.
     fn to(&mut self, candidate: &LayerPosture, before: &[Reached]) -> Option<Reached> {
-        let [from, to] = self.shares;
+        let [from, to] = self.fractions;
         let cost = |reached: &Reached| reached.cost + self.price.of_turned_step(&reached.q, &candidate.q, to - from);
         self.costs.clear();
         self.costs.extend(before.iter().map(cost));
@@ -126,7 +127,7 @@ impl Step<'_, '_> {
         let mut goes_on = vec![false; before.len()];
         next.iter().for_each(|reached| goes_on[reached.before] = true);
         for (number, reached) in before.iter().enumerate().filter(|(number, _)| !goes_on[*number]) {
-            let [from, to] = self.shares;
+            let [from, to] = self.fractions;
             let on_path = self.passage.clear_on_path(to, &reached.q);
             let near_path = self.passage.clear_near_path(to, &reached.q);
             for q in [on_path, near_path].into_iter().flatten() {

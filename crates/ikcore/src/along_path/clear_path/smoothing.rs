@@ -14,7 +14,7 @@ const GAIN: f64 = 1e-5;
 
 /// A sequence of postures at these shares of the path.
 pub(super) struct Smoothing<'s, 'a> {
-    pub shares: &'s [f64],
+    pub fractions: &'s [f64],
     pub price: &'s Price,
     pub passage: &'s mut Passage<'a>,
     /// Whether the first posture stays as it is.
@@ -48,12 +48,12 @@ impl Smoothing<'_, '_> {
     /// Replaces what is between two postures by the postures nearest to the straight line between them.
     fn replace(&mut self, postures: &mut [Point], begin: usize, end: usize) {
         let (from, to) = (&postures[begin], &postures[end]);
-        let length = self.shares[end] - self.shares[begin];
+        let length = self.fractions[end] - self.fractions[begin];
         let mut between = vec![from.clone()];
         for i in begin + 1..end {
-            let part = (self.shares[i] - self.shares[begin]) / length;
+            let part = (self.fractions[i] - self.fractions[begin]) / length;
             let guess: Point = from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect();
-            let Some(q) = self.passage.clear_on_path(self.shares[i], &guess) else { return };
+            let Some(q) = self.passage.clear_on_path(self.fractions[i], &guess) else { return };
             between.push(q);
         }
         between.push(to.clone());
@@ -64,7 +64,7 @@ impl Smoothing<'_, '_> {
     fn replace_end(&mut self, postures: &mut [Point], begin: usize) {
         let mut tail = vec![postures[begin].clone()];
         for i in begin + 1..postures.len() {
-            let Some(q) = self.passage.clear_on_path(self.shares[i], &tail[i - begin - 1]) else { return };
+            let Some(q) = self.passage.clear_on_path(self.fractions[i], &tail[i - begin - 1]) else { return };
             tail.push(q);
         }
         self.take(postures, begin, tail);
@@ -74,7 +74,7 @@ impl Smoothing<'_, '_> {
     fn replace_begin(&mut self, postures: &mut [Point], end: usize) {
         let mut head = vec![postures[end].clone()];
         for i in (0..end).rev() {
-            let Some(q) = self.passage.clear_on_path(self.shares[i], &head[end - i - 1]) else { return };
+            let Some(q) = self.passage.clear_on_path(self.fractions[i], &head[end - i - 1]) else { return };
             head.push(q);
         }
         head.reverse();
@@ -83,10 +83,11 @@ impl Smoothing<'_, '_> {
 
     /// Takes `others` from the posture `begin` on if that lowers the cost and they lead along the path.
     fn take(&mut self, postures: &mut [Point], begin: usize, others: Vec<Point>) {
-        let shares = &self.shares[begin..begin + others.len()];
+        let fractions = &self.fractions[begin..begin + others.len()];
         let replaced = &mut postures[begin..begin + others.len()];
-        let (old, new) = (self.price.of_all(replaced, shares), self.price.of_all(&others, shares));
-        let steps = || (1..others.len()).map(|i| ((shares[i - 1], &others[i - 1][..]), (shares[i], &others[i][..])));
+        let (old, new) = (self.price.of_all(replaced, fractions), self.price.of_all(&others, fractions));
+        let steps =
+            || (1..others.len()).map(|i| ((fractions[i - 1], &others[i - 1][..]), (fractions[i], &others[i][..])));
         if new < (1.0 - GAIN) * old && steps().all(|(from, to)| self.passage.leads(from, to)) {
             replaced.clone_from_slice(&others);
         }

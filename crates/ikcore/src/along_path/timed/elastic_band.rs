@@ -1,4 +1,4 @@
-//! A motion through the points of a path, shortened as far as the leeway of the tip and the redundancy of the arm let it.
+//! A motion through the points of a path, shortened as far as the tolerance_band of the tip and the redundancy of the arm let it.
 
 use super::interpolation::JointWaypoints;
 use super::projection::project;
@@ -72,7 +72,7 @@ impl ElasticBand<'_> {
         let [before, after] = neighbours(motion, point);
         let n = q.len();
         let row = |point: usize| &motion.rows[point * n..(point + 1) * n];
-        let (share, beyond) = if point == before {
+        let (fraction, beyond) = if point == before {
             (1.0, 1.0)
         } else if point == after {
             (0.0, 1.0)
@@ -80,7 +80,7 @@ impl ElasticBand<'_> {
             ((knots[point] - knots[before]) / (knots[after] - knots[before]), BEYOND)
         };
         for (j, q) in q.iter_mut().enumerate() {
-            let between = row(before)[j] + share * (row(after)[j] - row(before)[j]);
+            let between = row(before)[j] + fraction * (row(after)[j] - row(before)[j]);
             *q = row(point)[j] + beyond * (between - row(point)[j]);
         }
         self.bounds.clip(q);

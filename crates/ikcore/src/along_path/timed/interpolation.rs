@@ -109,7 +109,7 @@ impl Interpolation<'_> {
         let JointWaypoints { knots, rows } = waypoints;
         let rests = |i: &usize| rows[(i - 1) * n..i * n] == rows[i * n..(i + 1) * n];
         let Some(i) = (1..knots.len()).find(rests) else { return Ok(()) };
-        let [from, to] = [knots[i - 1], knots[i]].map(|share| self.tip_path.place(share));
+        let [from, to] = [knots[i - 1], knots[i]].map(|fraction| self.tip_path.place(fraction));
         let problem = format!(
             "the task leaves the tip so free that the arm need not move from {from} to {to}: ask for more of the pose, or for \
              smaller tolerances"
@@ -128,7 +128,7 @@ impl Interpolation<'_> {
             let deviation = TipDeviation {
                 robot: self.robot,
                 tip_path: self.tip_path,
-                configurations: |share: f64, q: &mut [f64]| path.position(share, q),
+                configurations: |fraction: f64, q: &mut [f64]| path.position(fraction, q),
             };
             let is_coarse = |i: usize| {
                 checkpoint_at(i)?;

@@ -21,7 +21,7 @@ const INTERVALS: usize = 25;
 /// Starts tried.
 const STARTS: usize = 16;
 
-/// Parts of the leeway that a motion may use (m, rad): a wide one is not always used well.
+/// Parts of the tolerance_band that a motion may use (m, rad): a wide one is not always used well.
 const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 
 /// Values of the redundancy at which the closed form gives further starts.
@@ -44,7 +44,7 @@ enum Leading {
     OnPath,
     /// The path, displaced as the start is.
     InParallel,
-    /// The nearest pose within the leeway.
+    /// The nearest pose within the tolerance_band.
     WithinLeeway,
     /// The path with what the task ignores.
     WholePose,
@@ -63,7 +63,7 @@ impl<'a> NominalMotions<'a> {
         Self { problem, bounds, scratch: Linearization::default() }
     }
 
-    /// The shortest motions that follow the path, each shortened as far as the leeway lets it, the first as far as parts of the leeway do
+    /// The shortest motions that follow the path, each shortened as far as the tolerance_band lets it, the first as far as parts of the tolerance_band do
     /// too, then as it is; and those that keep what the task ignores. None if each ends on the way.
     ///
     /// # Errors
@@ -89,7 +89,7 @@ impl<'a> NominalMotions<'a> {
         Ok(motions)
     }
 
-    /// A motion, shortened as far as the leeway and these parts of it let it, and as it is.
+    /// A motion, shortened as far as the tolerance_band and these parts of it let it, and as it is.
     fn shortened(&mut self, nominal: JointWaypoints, rungs: &[f64]) -> Result<Vec<JointWaypoints>> {
         let mut motions = vec![self.tightened(nominal.clone(), f64::INFINITY)?];
         for most in rungs.iter().filter(|most| **most < self.problem.tip_path.largest_leeway()) {
@@ -101,7 +101,7 @@ impl<'a> NominalMotions<'a> {
         Ok(motions)
     }
 
-    /// A motion, shortened as far as the leeway lets it, or `most` of it (m, rad).
+    /// A motion, shortened as far as the tolerance_band lets it, or `most` of it (m, rad).
     fn tightened(&self, mut nominal: JointWaypoints, most: f64) -> Result<JointWaypoints> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         let due = |knot: &f64| tip_path.path_target(*knot).at_most(most);
@@ -147,7 +147,7 @@ impl<'a> NominalMotions<'a> {
         Ok(found.solutions.iter().flat_map(|solution| solution.q).copied().collect())
     }
 
-    /// The motion from a given start: in parallel to the path if the start is within its leeway, or else near it.
+    /// The motion from a given start: in parallel to the path if the start is within its tolerance_band, or else near it.
     fn begun_at(&mut self, q: &[f64]) -> Option<JointWaypoints> {
         let PathProblem { robot, tip_path, .. } = self.problem;
         let excess = tip_path.path_target(0.0).excess(|| robot.tip(q));

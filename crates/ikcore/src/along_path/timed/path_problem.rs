@@ -120,10 +120,10 @@ fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) 
     } else {
         return Ok(());
     };
-    let leeway = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+    let tolerance_band = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
     let (value, accuracy) = (number(value), number(accuracy));
     let problem =
-        format!("start_q {what} {value} {unit}{leeway} from the path's first point, allowed {accuracy} {unit}");
+        format!("start_q {what} {value} {unit}{tolerance_band} from the path's first point, allowed {accuracy} {unit}");
     Err(Error::Infeasible { problem })
 }
 

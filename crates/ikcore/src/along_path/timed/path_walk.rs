@@ -22,7 +22,7 @@ pub(super) struct PathWalk<'w> {
 /// What a walk meets at each point of its path.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum WalkAim {
-    /// The target, with the tip at this place in its leeway; `None`: anywhere.
+    /// The target, with the tip at this place in its tolerance_band; `None`: anywhere.
     Place(Option<Displacement>),
     /// The whole pose, whatever the task leaves free.
     WholePose,
@@ -38,24 +38,26 @@ impl PathWalk<'_> {
     /// Goes on to a path parameter; `None` where the path leads no farther. A step that jumps or misses the path is halved, `halvings`
     /// times at the most: near a singularity joints turn far on a short part of the path.
     #[must_use]
-    pub fn on_to(&mut self, share: f64, halvings: usize, walked: &mut JointWaypoints) -> Option<()> {
+    pub fn on_to(&mut self, fraction: f64, halvings: usize, walked: &mut JointWaypoints) -> Option<()> {
         let last = walked.rows.len() - self.robot.dof();
         let mut q = walked.rows[last..].to_vec();
-        if self.is_met(share, &mut q) && largest_difference(&q, &walked.rows[last..]) <= JUMP {
-            walked.knots.push(share);
+        if self.is_met(fraction, &mut q) && largest_difference(&q, &walked.rows[last..]) <= JUMP {
+            walked.knots.push(fraction);
             walked.rows.extend_from_slice(&q);
             return Some(());
         }
         let from = *walked.knots.last()?;
         let fewer = halvings.checked_sub(1)?;
-        self.on_to(0.5 * (from + share), fewer, walked)?;
-        self.on_to(share, fewer, walked)
+        self.on_to(0.5 * (from + fraction), fewer, walked)?;
+        self.on_to(fraction, fewer, walked)
     }
 
-    fn is_met(&mut self, share: f64, q: &mut [f64]) -> bool {
+    fn is_met(&mut self, fraction: f64, q: &mut [f64]) -> bool {
         let target = match self.aim {
-            WalkAim::Place(place) => PathTarget { place, ..self.tip_path.path_target(share) },
-            WalkAim::WholePose => PathTarget { target: self.tip_path.pose(share), leeway: None, place: None },
+            WalkAim::Place(place) => PathTarget { place, ..self.tip_path.path_target(fraction) },
+            WalkAim::WholePose => {
+                PathTarget { target: self.tip_path.pose(fraction), tolerance_band: None, place: None }
+            }
         };
         project(self.robot, &target, self.bounds, q, self.scratch) == 0.0
     }

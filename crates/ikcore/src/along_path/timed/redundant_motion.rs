@@ -2,7 +2,7 @@
 //!
 //! A nominal motion follows the path. At a few nodes along it, offsets
 //! in the null space of the task Jacobian are free; natural splines interpolate them. The nominal configurations plus
-//! offsets are then projected back onto the points by damped least squares. Where the tip has leeway, the nominal motion uses it,
+//! offsets are then projected back onto the points by damped least squares. Where the tip has tolerance_band, the nominal motion uses it,
 //! and offsets leave the tip where that motion has it.
 
 use nalgebra::DMatrix;
@@ -24,7 +24,7 @@ pub(crate) struct RedundantMotion<'a> {
     robot: &'a Robot,
     bounds: Bounds,
     nominal: JointWaypoints,
-    /// Targets of the tip at the nominal motion's knots, each where in its leeway that motion has the tip.
+    /// Targets of the tip at the nominal motion's knots, each where in its tolerance_band that motion has the tip.
     held: Vec<PathTarget>,
     /// Directions of the self-motion at each node, one per column.
     bases: Vec<DMatrix<f64>>,

@@ -85,7 +85,7 @@ impl<'a> TimedCost<'a> {
         Ok(cost + BROKEN * self.scale * broken)
     }
 
-    /// Returns the share of waypoints that are not clear.
+    /// Returns the fraction of waypoints that are not clear.
     fn blocked(&self, waypoints: &JointWaypoints) -> f64 {
         let Some(space) = self.space else { return 0.0 };
         let rows = waypoints.rows.chunks_exact(self.motion.dof());
@@ -106,7 +106,8 @@ impl<'a> TimedCost<'a> {
     /// summed.
     fn deviation(&self, waypoints: &JointWaypoints, path: &JointPath) -> f64 {
         let Interpolation { robot, tip_path, .. } = self.interpolation;
-        let tip = TipDeviation { robot, tip_path, configurations: |share: f64, q: &mut [f64]| path.position(share, q) };
+        let tip =
+            TipDeviation { robot, tip_path, configurations: |fraction: f64, q: &mut [f64]| path.position(fraction, q) };
         let off = |ends: &[f64]| (tip.bound(0.5 * (ends[0] + ends[1])) / self.problem.accuracy - 1.0).max(0.0);
         waypoints.knots.windows(2).map(off).sum()
     }

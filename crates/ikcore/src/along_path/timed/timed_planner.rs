@@ -86,7 +86,7 @@ impl PathProblem<'_> {
     /// Whether the tip of a motion is farther off the path than its accuracy.
     pub(crate) fn leaves_path(&self, motion: &PathMotion) -> bool {
         let PathMotion { waypoints, path, .. } = motion;
-        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let configurations = |fraction: f64, q: &mut [f64]| path.position(fraction, q);
         let tip = TipDeviation { robot: &self.robot, tip_path: self.tip_path, configurations };
         tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
     }
@@ -95,7 +95,7 @@ impl PathProblem<'_> {
     pub(crate) fn plan(&self, motion: PathMotion) -> Plan {
         let Self { robot, tip_path, options, .. } = self;
         let PathMotion { waypoints, stretches, path, trajectory } = motion;
-        let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+        let configurations = |fraction: f64, q: &mut [f64]| path.position(fraction, q);
         let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
         let mut violations = self.limits.violations(&trajectory);
         violations.extend(deviation.violations(tip_path, self.accuracy));

@@ -13,17 +13,17 @@ const NEAR: f64 = 0.005;
 impl TipPath {
     /// Rows at which the direction changes more than at all rows nearby, and enough for a corner.
     pub(super) fn sharpest_turns(&self) -> Vec<usize> {
-        let shares = &self.shares;
+        let fractions = &self.fractions;
         let turn_at = |row: usize| {
-            turn(self.position(shares[row] - NEAR), self.positions[row], self.position(shares[row] + NEAR))
+            turn(self.position(fractions[row] - NEAR), self.positions[row], self.position(fractions[row] + NEAR))
         };
         // Nearer to the ends of the path, changes of direction cannot be distinguished from noise.
-        let inner = (1..shares.len() - 1).filter(|row| NEAR <= shares[*row] && shares[*row] <= 1.0 - NEAR);
+        let inner = (1..fractions.len() - 1).filter(|row| NEAR <= fractions[*row] && fractions[*row] <= 1.0 - NEAR);
         let turns = inner.map(|row| (row, turn_at(row)));
         let sharp: Vec<(usize, f64)> = turns.filter(|(_, turn)| *turn > CORNER).collect();
         let near = |row: usize| {
-            let begin = sharp.partition_point(|(other, _)| shares[*other] < shares[row] - NEAR);
-            let end = sharp.partition_point(|(other, _)| shares[*other] <= shares[row] + NEAR);
+            let begin = sharp.partition_point(|(other, _)| fractions[*other] < fractions[row] - NEAR);
+            let end = sharp.partition_point(|(other, _)| fractions[*other] <= fractions[row] + NEAR);
             &sharp[begin..end]
         };
         let is_sharpest = |(row, turn): &&(usize, f64)| {

@@ -3,21 +3,21 @@
 //! | file | what |
 //! |---|---|
 //! | `tip_curve` | [`TipPath`]: straight segments from point to point |
-//! | `path_target`, `leeway` | what the tip has to meet at a point of it, and how far it may be off |
+//! | `path_target`, `tolerance_band` | what the tip has to meet at a point of it, and how far it may be off |
 //! | `sampling` | the curve of a timed path |
 //! | `corners` | where its direction jumps |
 //! | `segment_geometry` | angles and distances of single segments |
 //! | `repetition` | points that must differ |
 
 mod corners;
-mod leeway;
 mod path_target;
 mod repetition;
 mod sampling;
 mod segment_geometry;
 mod tip_curve;
+mod tolerance_band;
 
-pub(crate) use leeway::{Borders, Displacement};
 pub(crate) use path_target::PathTarget;
 pub(crate) use repetition::refuse_repetition;
 pub use tip_curve::TipPath;
+pub(crate) use tolerance_band::{Borders, Displacement};

@@ -1,6 +1,6 @@
 //! What the tip has to meet at a point of its path.
 
-use super::leeway::{Borders, Displacement, Leeway};
+use super::tolerance_band::{Borders, Displacement, ToleranceBand};
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::objective::Linearization;
@@ -12,26 +12,26 @@ use crate::task::{Target, Tolerance};
 pub(crate) struct PathTarget {
     pub target: Target,
     /// `None`: not at all.
-    pub leeway: Option<Leeway>,
-    /// Where in its leeway the tip is to be; `None`: anywhere.
+    pub tolerance_band: Option<ToleranceBand>,
+    /// Where in its tolerance_band the tip is to be; `None`: anywhere.
     pub place: Option<Displacement>,
 }
 
 impl PathTarget {
-    /// Residual and Jacobian at `q` of what exceeds the leeway; returns the sum of squares.
+    /// Residual and Jacobian at `q` of what exceeds the tolerance_band; returns the sum of squares.
     pub fn linearize(&self, robot: &Robot, q: &[f64], borders: &mut Borders, out: &mut Linearization) -> f64 {
-        let criterion = self.leeway.map_or_else(|| Tolerance::default().into(), |_| Leeway::criterion());
+        let criterion = self.tolerance_band.map_or_else(|| Tolerance::default().into(), |_| ToleranceBand::criterion());
         let value = self.target.linearize(robot, q, &criterion, &mut out.first).score.value;
-        match (&self.leeway, &self.place) {
+        match (&self.tolerance_band, &self.place) {
             (None, _) => value,
-            (Some(leeway), None) => leeway.reduce(&self.target, borders, q.len(), &mut out.first),
-            (Some(leeway), Some(place)) => leeway.hold(&self.target, place, q.len(), &mut out.first),
+            (Some(tolerance_band), None) => tolerance_band.reduce(&self.target, borders, q.len(), &mut out.first),
+            (Some(tolerance_band), Some(place)) => tolerance_band.hold(&self.target, place, q.len(), &mut out.first),
         }
     }
 
     /// The same target with the tip off by no more than `most` (m, rad) where it is not free.
     pub fn at_most(&self, most: f64) -> Self {
-        Self { leeway: self.leeway.map(|leeway| leeway.at_most(most)), ..*self }
+        Self { tolerance_band: self.tolerance_band.map(|tolerance_band| tolerance_band.at_most(most)), ..*self }
     }
 
     /// The same target with the tip on the path itself; what is free stays free.
@@ -41,11 +41,11 @@ impl PathTarget {
 
     /// The same target with the tip where `tip` is; what is free stays free.
     pub fn held_at(&self, tip: impl FnOnce() -> Frame) -> Self {
-        Self { place: self.leeway.map(|_| Leeway::place_of(&self.target, &tip())), ..*self }
+        Self { place: self.tolerance_band.map(|_| ToleranceBand::place_of(&self.target, &tip())), ..*self }
     }
 
-    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the leeway; `None` without one.
+    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the tolerance_band; `None` without one.
     pub fn excess(&self, tip: impl FnOnce() -> Frame) -> Option<[f64; 2]> {
-        self.leeway.map(|leeway| leeway.excess(&self.target, &tip()))
+        self.tolerance_band.map(|tolerance_band| tolerance_band.excess(&self.target, &tip()))
     }
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-use super::leeway::{Leeway, smallest_tolerance};
 use super::path_target::PathTarget;
 use super::repetition::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
+use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
@@ -19,13 +19,13 @@ use crate::wording::number;
 /// Its path parameter is the fraction of the whole length, from 0 to 1; a radian of rotation counts as a metre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipPath {
-    pub(super) shares: Vec<f64>,
+    pub(super) fractions: Vec<f64>,
     pub(super) positions: Vec<[f64; 3]>,
     rotations: Option<Vec<UnitQuaternion<f64>>>,
     /// The part of the poses that matters, without a tool; `None` if all of it does.
     task: Option<Task>,
     /// How far the tip may be off; `None`: not at all.
-    leeway: Option<Leeway>,
+    tolerance_band: Option<ToleranceBand>,
     /// Length of the curve (m); a radian of rotation counts as a metre.
     length: f64,
     /// Rows at which the direction jumps.
@@ -34,7 +34,7 @@ pub struct TipPath {
     times: Option<Vec<f64>>,
     points: Waypoints,
     /// Path parameters of those points.
-    point_shares: Vec<f64>,
+    point_fractions: Vec<f64>,
 }
 
 /// A path pauses if it advances by less than this fraction of its length.
@@ -69,7 +69,7 @@ impl TipPath {
             return Err(Error::InvalidPath { problem: format!("it must lead somewhere, but it is {way} m long") });
         }
         let mut travelled = 0.0;
-        let shares: Vec<f64> = steps
+        let fractions: Vec<f64> = steps
             .iter()
             .map(|step| {
                 travelled += step / way;
@@ -77,21 +77,21 @@ impl TipPath {
             })
             .collect();
         // The last one is exactly 1, regardless of rounding.
-        let share = |i: usize| shares[i] / travelled;
+        let fraction = |i: usize| fractions[i] / travelled;
         let kept: Vec<usize> = rows.filter(|i| *i == 0 || steps[*i] > PAUSE * way).collect();
         let positions: Vec<[f64; 3]> = kept.iter().map(|i| waypoints.position(*i)).collect();
         let place = points.iter().map(|i| waypoints.position(*i)).collect();
         let turned = points.iter().map(|i| waypoints.rotation(*i)).collect();
         let tip_path = Self {
-            shares: kept.iter().map(|i| share(*i)).collect(),
+            fractions: kept.iter().map(|i| fraction(*i)).collect(),
             length: way,
             corners: vec![],
             task: None,
-            leeway: None,
+            tolerance_band: None,
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
             points: Waypoints::new(place, turned)?,
-            point_shares: points.iter().map(|i| share(*i)).collect(),
+            point_fractions: points.iter().map(|i| fraction(*i)).collect(),
             positions,
         };
         Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
@@ -121,8 +121,8 @@ impl TipPath {
         let task = with_position(task);
         let curve = Self { task: Some(task), ..curve };
         let Some(components) = &task.components else { return Ok(curve) };
-        let leeway = Leeway::new(components, accuracy.unwrap_or_else(|| curve.default_accuracy()))?;
-        Ok(Self { leeway: Some(leeway), ..curve })
+        let tolerance_band = ToleranceBand::new(components, accuracy.unwrap_or_else(|| curve.default_accuracy()))?;
+        Ok(Self { tolerance_band: Some(tolerance_band), ..curve })
     }
 
     /// The part of the poses that matters, if not all of it does.
@@ -137,12 +137,12 @@ impl TipPath {
 
     /// Whether the tip may be off the path.
     pub fn has_leeway(&self) -> bool {
-        self.leeway.is_some()
+        self.tolerance_band.is_some()
     }
 
     /// How far a component of the tip may be off that is not free (m, rad), at the most.
     pub(crate) fn largest_leeway(&self) -> f64 {
-        self.leeway.map_or(0.0, |leeway| leeway.largest())
+        self.tolerance_band.map_or(0.0, |tolerance_band| tolerance_band.largest())
     }
 
     /// Whether the task leaves a part of the given poses out of account.
@@ -164,13 +164,13 @@ impl TipPath {
     }
 
     /// Path parameters of [`points`](Self::points).
-    pub fn point_shares(&self) -> &[f64] {
-        &self.point_shares
+    pub fn point_fractions(&self) -> &[f64] {
+        &self.point_fractions
     }
 
     /// Path parameters of the given points, which messages number; none for a path in time.
     pub fn numbered_points(&self) -> &[f64] {
-        if self.times.is_none() { &self.point_shares } else { &[] }
+        if self.times.is_none() { &self.point_fractions } else { &[] }
     }
 
     /// End points of the straight segments (m).
@@ -211,7 +211,7 @@ impl TipPath {
 
     /// Path parameters at which the direction jumps.
     pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
-        self.corners.iter().map(|row| self.shares[*row])
+        self.corners.iter().map(|row| self.fractions[*row])
     }
 
     /// Path parameters from 0 to 1 that include all corners; the others are about 1 / `intervals` apart, at rows where
@@ -219,9 +219,9 @@ impl TipPath {
     pub fn knots(&self, intervals: usize) -> Vec<f64> {
         let spacing = 1.0 / intervals as f64;
         let (mut knots, mut fixed) = (vec![0.0], true);
-        for (row, share) in self.shares.iter().enumerate().skip(1) {
-            let needed = row + 1 == self.shares.len() || self.corners.binary_search(&row).is_ok();
-            let since = share - knots[knots.len() - 1];
+        for (row, fraction) in self.fractions.iter().enumerate().skip(1) {
+            let needed = row + 1 == self.fractions.len() || self.corners.binary_search(&row).is_ok();
+            let since = fraction - knots[knots.len() - 1];
             if since < (1.0 - PAUSE) * spacing && !needed {
                 continue;
             }
@@ -229,37 +229,37 @@ impl TipPath {
                 knots.pop(); // too near to a required knot
             }
             let from = knots[knots.len() - 1];
-            let count = ((share - from) / spacing).round().max(1.0) as usize;
-            knots.extend((1..count).map(|i| from + (share - from) * i as f64 / count as f64));
-            knots.push(*share);
+            let count = ((fraction - from) / spacing).round().max(1.0) as usize;
+            knots.extend((1..count).map(|i| from + (fraction - from) * i as f64 / count as f64));
+            knots.push(*fraction);
             fixed = needed;
         }
         knots
     }
 
     /// The target of the tip at this path parameter: the part of the pose that matters.
-    pub fn target(&self, share: f64) -> Target {
-        let pose = self.pose(share);
+    pub fn target(&self, fraction: f64) -> Target {
+        let pose = self.pose(fraction);
         // The task has been checked with the first pose.
         self.task.and_then(|task| task.target(&pose).ok()).unwrap_or(pose)
     }
 
     /// The target, and how far the tip may be off.
-    pub(crate) fn path_target(&self, share: f64) -> PathTarget {
-        PathTarget { target: self.target(share), leeway: self.leeway, place: None }
+    pub(crate) fn path_target(&self, fraction: f64) -> PathTarget {
+        PathTarget { target: self.target(fraction), tolerance_band: self.tolerance_band, place: None }
     }
 
     /// The whole pose at this path parameter, or the position where the path has no orientations.
-    pub fn pose(&self, share: f64) -> Target {
-        let (row, part) = self.locate(share);
-        let position = self.position(share);
+    pub fn pose(&self, fraction: f64) -> Target {
+        let (row, part) = self.locate(fraction);
+        let position = self.position(fraction);
         let Some(rows) = &self.rotations else { return Target::Position(position) };
         let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
         Target::Pose(Frame::from(&pose::from_parts(position, rotation.to_rotation_matrix().into_inner())))
     }
 
-    pub(super) fn position(&self, share: f64) -> [f64; 3] {
-        let (row, part) = self.locate(share);
+    pub(super) fn position(&self, fraction: f64) -> [f64; 3] {
+        let (row, part) = self.locate(fraction);
         let [from, to] = [self.positions[row], self.positions[row + 1]];
         std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k])
     }
@@ -272,8 +272,8 @@ impl TipPath {
     }
 
     /// The point at this path parameter, in words for messages.
-    pub fn place(&self, share: f64) -> String {
-        let (row, part) = self.locate(share);
+    pub fn place(&self, fraction: f64) -> String {
+        let (row, part) = self.locate(fraction);
         match &self.times {
             Some(times) => {
                 let time = times[row] + part * (times[row + 1] - times[row]);
@@ -286,10 +286,10 @@ impl TipPath {
     }
 
     /// Returns the row at which the segment with this path parameter starts, and the fraction of the segment before it.
-    fn locate(&self, share: f64) -> (usize, f64) {
-        let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
-        let [from, to] = [self.shares[row], self.shares[row + 1]];
-        (row, ((share - from) / (to - from)).clamp(0.0, 1.0))
+    fn locate(&self, fraction: f64) -> (usize, f64) {
+        let row = self.fractions.partition_point(|start| *start <= fraction).clamp(1, self.fractions.len() - 1) - 1;
+        let [from, to] = [self.fractions[row], self.fractions[row + 1]];
+        (row, ((fraction - from) / (to - from)).clamp(0.0, 1.0))
     }
 }
 

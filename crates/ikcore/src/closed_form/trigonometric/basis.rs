@@ -75,9 +75,9 @@ pub(super) const fn chebyshev_in_bernstein() -> [[f64; DEGREE + 1]; DEGREE + 1] 
         while degree < DEGREE {
             let mut i = degree + 1;
             while i > 0 {
-                let share = i as f64 / (degree + 1) as f64;
+                let fraction = i as f64 / (degree + 1) as f64;
                 let own = if i <= degree { row[i] } else { 0.0 };
-                row[i] = share * row[i - 1] + (1.0 - share) * own;
+                row[i] = fraction * row[i - 1] + (1.0 - fraction) * own;
                 i -= 1;
             }
             degree += 1;

@@ -13,7 +13,7 @@ use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Goals;
 
-/// By this share of what a cost is hoped to fall below those asked, it may be still lower.
+/// By this fraction of what a cost is hoped to fall below those asked, it may be still lower.
 const DOUBT: f64 = 0.1;
 
 /// A place nearly on a curve, within the limits or nearly so, and a cost of the goals that is hoped for there: hardly more
@@ -76,8 +76,8 @@ impl<'r, 'a> Arcs<'r, 'a> {
 
     /// Where on a piece the cubic between the costs at its ends is lowest.
     fn promise(&mut self, ways: &[Cubic], [from, to]: [f64; 2], asked: &[Asked; 2]) {
-        let slope = |asked: &Asked, share: f64| -> f64 {
-            let along: Point = ways.iter().map(|way| way.slope(share)).collect();
+        let slope = |asked: &Asked, fraction: f64| -> f64 {
+            let along: Point = ways.iter().map(|way| way.slope(fraction)).collect();
             (to - from) * dot(&along, &asked.gradient)
         };
         let [left, right] = asked;
@@ -88,13 +88,13 @@ impl<'r, 'a> Arcs<'r, 'a> {
         self.candidates.push(Candidate { cost: cost.at(lowest) - DOUBT * fall, q });
     }
 
-    fn ask(&mut self, ways: &[Cubic], share: f64) -> Asked {
-        let q = self.place(ways, share);
+    fn ask(&mut self, ways: &[Cubic], fraction: f64) -> Asked {
+        let q = self.place(ways, fraction);
         let mut gradient = Point::from_elem(0.0, q.len());
         Asked { cost: self.goals.cost(self.robot, None, &q, &mut gradient), gradient }
     }
 
-    fn place(&self, ways: &[Cubic], share: f64) -> Point {
-        ways.iter().enumerate().map(|(j, way)| self.limits.near_middle(j, way.at(share))).collect()
+    fn place(&self, ways: &[Cubic], fraction: f64) -> Point {
+        ways.iter().enumerate().map(|(j, way)| self.limits.near_middle(j, way.at(fraction))).collect()
     }
 }

@@ -121,8 +121,8 @@ fn knows(limits: &WrappedLimits<'_>, steps: &[(Point, Point)], q: &[f64]) -> boo
         |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| limits.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
     steps.iter().filter(may_reach).any(|(begin, chord)| {
         let there = limits.apart(q, begin);
-        let share = (dot(&there, chord) / dot(chord, chord)).clamp(0.0, 1.0);
-        let aside: Point = there.iter().zip(chord).map(|(there, chord)| there - share * chord).collect();
+        let fraction = (dot(&there, chord) / dot(chord, chord)).clamp(0.0, 1.0);
+        let aside: Point = there.iter().zip(chord).map(|(there, chord)| there - fraction * chord).collect();
         norm(&aside) < ON_CURVE
     })
 }

@@ -18,7 +18,7 @@ const SHORTEST: f64 = 0.01;
 const SHARPEST: f64 = 0.94;
 /// Cosine above which the next step is twice as long.
 const STRAIGHT: f64 = 0.985;
-/// A step that was off the curve by more than this share of its length is halved.
+/// A step that was off the curve by more than this fraction of its length is halved.
 const ASTRAY: f64 = 0.3;
 /// A step that was off the curve by more than this (rad, m) is corrected again: what is left goes with its square.
 const ASIDE: f64 = 0.01;

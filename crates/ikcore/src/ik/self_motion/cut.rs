@@ -83,6 +83,6 @@ fn ways(limits: &WrappedLimits<'_>, begin: &CurvePoint, end: &CurvePoint) -> Sma
         .collect()
 }
 
-fn at(ways: &[Cubic], share: f64) -> Point {
-    ways.iter().map(|way| way.at(share)).collect()
+fn at(ways: &[Cubic], fraction: f64) -> Point {
+    ways.iter().map(|way| way.at(fraction)).collect()
 }

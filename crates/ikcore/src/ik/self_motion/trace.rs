@@ -6,7 +6,7 @@ use crate::math::vector::{distance, dot, norm};
 use crate::problem::Problem;
 use crate::solver::Monitor;
 
-/// Longest step as a share of the spacing: the correction of a step makes it longer by at most a third.
+/// Longest step as a fraction of the spacing: the correction of a step makes it longer by at most a third.
 const SHARE: f64 = 0.75;
 
 /// Longest curve (rad, m).

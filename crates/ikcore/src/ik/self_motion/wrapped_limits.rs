@@ -75,7 +75,7 @@ impl<'a> WrappedLimits<'a> {
 
     /// The pieces of a short way that lie within the limits. Joints follow `ways`, which begin near their middles.
     pub fn pieces(&self, ways: &[Cubic]) -> Pieces {
-        let mut shares: SmallVec<[f64; 8]> = smallvec![0.0, 1.0];
+        let mut fractions: SmallVec<[f64; 8]> = smallvec![0.0, 1.0];
         // Where a joint of exactly one turn passes its limit: it is inside on both sides, but a turn away.
         let mut jumps: SmallVec<[f64; 4]> = smallvec![];
         for (j, way) in ways.iter().enumerate() {
@@ -87,17 +87,17 @@ impl<'a> WrappedLimits<'a> {
                 if self.is_one_turn(j) {
                     jumps.extend(crossings.clone());
                 }
-                shares.extend(crossings);
+                fractions.extend(crossings);
                 is_crossed = true;
             }
             if !is_crossed && !self.is_within(j, low) {
                 return Pieces::new();
             }
         }
-        shares.sort_by(f64::total_cmp);
-        let is_inside = |share: f64| (0..ways.len()).all(|j| self.is_within(j, ways[j].at(share)));
+        fractions.sort_by(f64::total_cmp);
+        let is_inside = |fraction: f64| (0..ways.len()).all(|j| self.is_within(j, ways[j].at(fraction)));
         let mut pieces = Pieces::new();
-        for [from, to] in shares.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to) {
+        for [from, to] in fractions.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to) {
             if is_inside(0.5 * (from + to)) {
                 // A limit that is only touched, or that a joint of more than a turn passes, cuts nothing.
                 match pieces.last_mut() {

@@ -11,7 +11,7 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// `given` come first, then `ROS_PACKAGE_PATH`, the `share` folders of `AMENT_PREFIX_PATH`, and the folders above the URDF.
+    /// `given` come first, then `ROS_PACKAGE_PATH`, the `fraction` folders of `AMENT_PREFIX_PATH`, and the folders above the URDF.
     pub(super) fn new(given: &[String], directory: Option<&Path>) -> Self {
         let ros = folders_of("ROS_PACKAGE_PATH");
         let ament = folders_of("AMENT_PREFIX_PATH").iter().map(|prefix| prefix.join("share")).collect();

@@ -114,8 +114,8 @@ impl JointProfile {
         range
     }
 
-    /// The motion weighted by `share`, plus `other` of the same duration weighted by the rest.
-    pub(super) fn mean(&self, share: f64, other: &Self) -> Self {
+    /// The motion weighted by `fraction`, plus `other` of the same duration weighted by the rest.
+    pub(super) fn mean(&self, fraction: f64, other: &Self) -> Self {
         let mut mean = Self { segments: SmallVec::new(), duration: self.duration };
         let (mut i, mut k) = (0, 0);
         let start = |motion: &Self, index: usize| motion.segments.get(index).map_or(f64::INFINITY, |s| s.time);
@@ -123,7 +123,7 @@ impl JointProfile {
         loop {
             let (one, two) = (&self.segments[i], &other.segments[k]);
             let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
-            let blend = |x: f64, y: f64| y + share * (x - y);
+            let blend = |x: f64, y: f64| y + fraction * (x - y);
             let state = MotionState { q, v: blend(a.v, b.v), a: blend(a.a, b.a) };
             let segment = JointSegment { time, state, jerk: blend(one.jerk, two.jerk) };
             mean.segments.push(segment);

@@ -58,12 +58,12 @@ impl Transfer {
         }
         let (up, down) = (self.up.phases(t), self.down.phases(t).mirrored());
         let (highest, lowest, rounding) = (up.displacement(), down.displacement(), self.rounding(t));
-        let share = (self.displacement - lowest) / (highest - lowest);
+        let fraction = (self.displacement - lowest) / (highest - lowest);
         let profile = |phases: &Phases| JointProfile::of(phases, self.from.q, t);
         let inside = match () {
             () if !(self.displacement < highest - rounding) => profile(&up),
             () if !(self.displacement > lowest + rounding) => profile(&down),
-            () => profile(&up).mean(share, &profile(&down)),
+            () => profile(&up).mean(fraction, &profile(&down)),
         };
         self.entry.clone().then(&inside.ending_at(self.to.q, ROUNDING * self.fastest(t)))
     }

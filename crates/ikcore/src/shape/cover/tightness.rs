@@ -130,8 +130,8 @@ impl Surface {
     /// Cells that make up the whole surface.
     fn cells(&self) -> Vec<Cell> {
         let whole = self.meridian();
-        let share = |i: usize, all: f64| [i as f64 / 8.0 * all, (i + 1) as f64 / 8.0 * all];
-        (0..64).map(|i| Cell { way: share(i / 8, whole), turn: share(i % 8, 2.0 * PI) }).collect()
+        let fraction = |i: usize, all: f64| [i as f64 / 8.0 * all, (i + 1) as f64 / 8.0 * all];
+        (0..64).map(|i| Cell { way: fraction(i / 8, whole), turn: fraction(i % 8, 2.0 * PI) }).collect()
     }
 
     /// The middle of a cell, and how far the rest of it is at most (m).

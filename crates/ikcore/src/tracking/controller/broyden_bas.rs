@@ -269,13 +269,13 @@ impl BroydenBasState {
         if self.first_step && self.options.sensor_delay > 0 {
             self.lead = [0.0; ROWS];
             if !noisy && !surprising {
-                let share = self.noise.share(miss);
-                self.lead[..R].copy_from_slice(&surprise.map(|missed| share * missed));
+                let fraction = self.noise.fraction(miss);
+                self.lead[..R].copy_from_slice(&surprise.map(|missed| fraction * missed));
             }
         }
         self.first_step = false;
         if !noisy {
-            jacobian.learn(dq(), &surprise, self.noise.share(miss));
+            jacobian.learn(dq(), &surprise, self.noise.fraction(miss));
         }
         self.judge(tick, tip, noisy)
     }

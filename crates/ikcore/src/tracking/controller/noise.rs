@@ -46,7 +46,7 @@ impl Noise {
 
     /// Fraction of the update to apply after a prediction missed by `miss` (m): the part above the noise level. The
     /// whole update would carry the noise of every measurement into the Jacobian until the steps go astray.
-    pub(super) fn share(&self, miss: f64) -> f64 {
+    pub(super) fn fraction(&self, miss: f64) -> f64 {
         (1.0 - (EXPLAINED * self.level / miss).powi(2)).max(0.0)
     }
 }

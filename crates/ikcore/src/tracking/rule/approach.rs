@@ -46,8 +46,9 @@ impl Approach {
         let whole = to(tick.target);
         let mut catch_up = to(&tick.motion().begin);
         let mut keep_up: Point = whole.iter().zip(&catch_up).map(|(whole, catch_up)| whole - catch_up).collect();
-        let takes =
-            |share: f64| keep_up.iter().zip(&tick_box.velocity).all(|(step, limit)| step.abs() <= share * limit * dt);
+        let takes = |fraction: f64| {
+            keep_up.iter().zip(&tick_box.velocity).all(|(step, limit)| step.abs() <= fraction * limit * dt)
+        };
         let far_below = if takes(SLOW) { 1.0 } else { NEAR };
         // A target faster than the arm is treated like a jump.
         if !takes(1.0) {
@@ -55,11 +56,11 @@ impl Approach {
             keep_up.fill(0.0);
         }
         let mut approach = Self { catch_up, keep_up, far_below, within_reach: 1.0 };
-        approach.find_share(tick);
+        approach.find_fraction(tick);
         approach
     }
 
-    fn find_share(&mut self, tick: &Tick<'_>) {
+    fn find_fraction(&mut self, tick: &Tick<'_>) {
         let (q, [lower, upper]) = (tick.context.q, tick.context.ends());
         for (j, (catch_up, keep_up)) in self.catch_up.iter().zip(&self.keep_up).enumerate() {
             let end = if *catch_up > 0.0 { upper[j] } else { lower[j] };

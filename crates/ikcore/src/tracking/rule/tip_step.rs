@@ -89,18 +89,18 @@ impl TipStep {
         let mut end = begin.q.clone();
         self.begin.write_step(lambda, &begin.q, positions.ends(), &mut end);
         let [lower, upper] = tick.context.ends();
-        let share = |j: usize| {
+        let fraction = |j: usize| {
             let way = end[j] - begin.q[j];
             let room = if way > 0.0 { upper[j] } else { lower[j] } - begin.q[j];
             if way == 0.0 { 1.0 } else { room / way }
         };
-        let share = (0..n).map(share).fold(1.0, f64::min);
-        if share >= 1.0 {
+        let fraction = (0..n).map(fraction).fold(1.0, f64::min);
+        if fraction >= 1.0 {
             return false;
         }
         let mut near = begin.clone();
-        let share = if tick.targets.moves() { 1.0 } else { share };
-        near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += share * (end - *q));
+        let fraction = if tick.targets.moves() { 1.0 } else { fraction };
+        near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += fraction * (end - *q));
         tick_box.bounds.clip(&mut near.q);
         near.assess(robot, &aims);
         let is_nearer = near.value() < begin.value();

@@ -119,9 +119,9 @@ pub(crate) struct Scratch {
 pub(super) fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, mut tick: Tick<'_>) -> TickResult {
     let StepContext { robot, q, tick_box, .. } = tick.context;
     let mut found = TickResult::at(q);
-    let mut stage = |from: &[f64], share: f64| {
+    let mut stage = |from: &[f64], fraction: f64| {
         found.evaluations += 1;
-        displacement(rule, scratch, from, share, &mut tick)
+        displacement(rule, scratch, from, fraction, &mut tick)
     };
     match rule.integrator {
         Integrator::Euler => {
@@ -145,19 +145,19 @@ pub(super) fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, mut t
     found
 }
 
-/// Returns dt q' at the configuration `from`, at the fraction `share` of the tick that starts at `q`, such that q + dt
+/// Returns dt q' at the configuration `from`, at the fraction `fraction` of the tick that starts at `q`, such that q + dt
 /// q' is in the box.
 fn displacement(
     rule: &WeightedPseudoInverse,
     scratch: &mut Scratch,
     from: &[f64],
-    share: f64,
+    fraction: f64,
     tick: &mut Tick<'_>,
 ) -> Point {
     let StepContext { q, tick_box, dt, .. } = tick.context;
     let gain = rule.gain.unwrap_or(SHARE_A_TICK / dt);
-    let drift = linearize(scratch, from, share, tick);
-    let null_space_step = null_space_step(rule, from, share, tick);
+    let drift = linearize(scratch, from, fraction, tick);
+    let null_space_step = null_space_step(rule, from, fraction, tick);
     let TaskBlock { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
     // Scaled so that the norm of W becomes the Euclidean norm: y = W^(1/2) q.
@@ -202,8 +202,8 @@ impl ScaledEquations<'_> {
     fn solve(&self, step: &[f64]) -> Point {
         let enough = MET * norm(&self.residual);
         let mut best = (f64::INFINITY, Point::new());
-        for share in NULL_SPACE_SHARES {
-            let (missed, there) = self.nearest_to(step, share);
+        for fraction in NULL_SPACE_SHARES {
+            let (missed, there) = self.nearest_to(step, fraction);
             if missed <= enough {
                 return there;
             }
@@ -215,11 +215,11 @@ impl ScaledEquations<'_> {
     }
 
     /// Returns the y' nearest to y + share * `step`, and its residual.
-    fn nearest_to(&self, step: &[f64], share: f64) -> (f64, Point) {
+    fn nearest_to(&self, step: &[f64], fraction: f64) -> (f64, Point) {
         let bounds = self.lower.iter().zip(&self.upper);
         let moved = self.y.iter().zip(step).zip(bounds);
         let begin: Point =
-            moved.map(|((y, step), (lower, upper))| (y + share * step).max(*lower).min(*upper)).collect();
+            moved.map(|((y, step), (lower, upper))| (y + fraction * step).max(*lower).min(*upper)).collect();
         let mut there = begin.clone();
         let (columns, residual, lambda) = (self.columns, &self.residual_at(&begin), self.lambda);
         let (lower, upper) = (&self.lower, &self.upper);
@@ -239,9 +239,9 @@ impl ScaledEquations<'_> {
 
 /// Writes residual and Jacobian at `from` to the scratch; returns the rate of change of the residual by the target's
 /// own motion (1/s).
-fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -> [f64; 6] {
+fn linearize(scratch: &mut Scratch, from: &[f64], fraction: f64, tick: &Tick<'_>) -> [f64; 6] {
     let StepContext { robot, dt, .. } = tick.context;
-    let (target, twist) = tick.motion().at(share);
+    let (target, twist) = tick.motion().at(fraction);
     let n = from.len();
     let tip = robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([dt, -dt]) {
@@ -255,7 +255,7 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
 }
 
 /// Returns dt q0', the motion of the joints if the tip were free.
-fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick: &mut Tick<'_>) -> Point {
+fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], fraction: f64, tick: &mut Tick<'_>) -> Point {
     let StepContext { robot, time, dt, .. } = tick.context;
     let n = from.len();
     let mut step = Point::from_elem(0.0, n);
@@ -266,7 +266,7 @@ fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick:
     if let Some(posture) = &rule.posture {
         let (mut q, mut qd, mut qdd) = ([0.0; MAX_DOF], [0.0; MAX_DOF], [0.0; MAX_DOF]);
         // Lengths were checked; after its end the posture trajectory stands still.
-        let time = time + share * dt;
+        let time = time + fraction * dt;
         let known = posture.at(time, &mut q[..n], &mut qd[..n], &mut qdd[..n]);
         if known.is_ok() && time <= posture.duration() {
             step.iter_mut().zip(&qd).for_each(|(step, velocity)| *step += dt * velocity);
@@ -290,6 +290,6 @@ fn units(rule: &WeightedPseudoInverse, velocity_limit: &[f64]) -> Point {
 }
 
 /// q + share * step.
-fn moved(q: &[f64], step: &[f64], share: f64) -> Point {
-    q.iter().zip(step).map(|(q, step)| q + share * step).collect()
+fn moved(q: &[f64], step: &[f64], fraction: f64) -> Point {
+    q.iter().zip(step).map(|(q, step)| q + fraction * step).collect()
 }

@@ -5,10 +5,10 @@
 //! missed between two samples.
 
 use super::body_model::BodyPair;
-use super::chord_check::ChordCheck;
 use super::contact::Contact;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::joint_motion::JointMotion;
+use super::motion_certificate::MotionCertificate;
 use super::placement::Placement;
 use super::required_distance::RequiredDistance;
 use super::scene::Scene;
@@ -36,10 +36,10 @@ const MOST_DIVISIONS: usize = 24;
 
 /// Checks motions in a scene; owns its scratch.
 #[derive(Debug)]
-pub struct Sweep<'a> {
+pub struct ClearanceSweep<'a> {
     scene: &'a Scene<'a>,
     eight: EightScene<'a>,
-    chords: ChordCheck,
+    chords: MotionCertificate,
     /// Pairs that may be near in a part, and the eighths of it in which they may.
     near: Vec<(BodyPair, u32)>,
     pending: Vec<BodyPair>,
@@ -78,13 +78,13 @@ impl Part {
     }
 }
 
-impl<'a> Sweep<'a> {
+impl<'a> ClearanceSweep<'a> {
     /// A checker for any number of motions in `scene`.
     pub fn new(scene: &'a Scene<'a>) -> Self {
         Self {
             scene,
             eight: EightScene::new(scene),
-            chords: ChordCheck::new(scene),
+            chords: MotionCertificate::new(scene),
             near: vec![],
             pending: vec![],
             placement: Placement::of(scene.robot(), scene.bodies.carried.len()),
@@ -151,8 +151,8 @@ impl<'a> Sweep<'a> {
     /// Lists the pairs that may come nearer than `margin` in a part.
     #[inline(always)]
     fn find_near<A: Arithmetic>(&mut self, part: &Part, reach: &[f64], margin: f64) {
-        let share = |lane: usize| (lane as f32 + 0.5) / 8.0;
-        self.eight.place::<A>([&part.from, &part.to], std::array::from_fn(share));
+        let fraction = |lane: usize| (lane as f32 + 0.5) / 8.0;
+        self.eight.place::<A>([&part.from, &part.to], std::array::from_fn(fraction));
         self.examined += 8;
         let rounding = self.eight.rounding(part.largest());
         self.eight.each_near::<A>(margin + rounding, reach, &mut All(&mut self.near));
@@ -231,7 +231,7 @@ impl Visitor for All<'_> {
 }
 
 by_instructions! {
-    fn find_near(sweep: &mut Sweep<'_>, part: &Part, reach: &[f64], margin: f64) {
+    fn find_near(sweep: &mut ClearanceSweep<'_>, part: &Part, reach: &[f64], margin: f64) {
         sweep.find_near::<A>(part, reach, margin);
     }
 }
@@ -281,6 +281,6 @@ mod tests {
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let (from, to) = ([-0.0051, 50.0], [0.0049, 50.0]);
         assert!(scene.clearance(&from).unwrap() > 0.1 && scene.clearance(&to).unwrap() > 0.1);
-        assert!(Sweep::new(&scene).check(&Edge { from: &from, to: &to }, [0.0, 1.0], 0.001).is_err());
+        assert!(ClearanceSweep::new(&scene).check(&Edge { from: &from, to: &to }, [0.0, 1.0], 0.001).is_err());
     }
 }

@@ -6,7 +6,7 @@ use crate::robot::Robot;
 
 /// Bounds (m per rad, m per m) on how far each joint moves the points of a body, relative to a frame that carries it.
 #[derive(Debug, Clone)]
-pub(super) struct Levers(Vec<f64>);
+pub(super) struct TravelBounds(Vec<f64>);
 
 /// A ball in the frame of this number.
 #[derive(Debug, Clone, Copy)]
@@ -59,8 +59,8 @@ impl MovingElements {
         far
     }
 
-    /// Adds to `levers` how far the joints move `ball` relative to frame number `below`, which carries it.
-    pub fn add(&self, ball: &CarriedBall, below: usize, levers: &mut Levers) {
+    /// Adds to `travel_bounds` how far the joints move `ball` relative to frame number `below`, which carries it.
+    pub fn add(&self, ball: &CarriedBall, below: usize, levers: &mut TravelBounds) {
         let CarriedBall { frame: mut at, center: [x, y, z], radius } = *ball;
         // The largest distance of the ball's points from the axis of the element, and from its origin.
         let (mut beside, mut far) = (x.hypot(y) + radius, x.hypot(y).hypot(z) + radius);
@@ -75,7 +75,7 @@ impl MovingElements {
     }
 }
 
-impl Levers {
+impl TravelBounds {
     /// Of something that none of `joints` joints moves.
     pub fn none(joints: usize) -> Self {
         Self(vec![0.0; joints])

@@ -9,7 +9,7 @@ use crate::objective::TaskBlock;
 use crate::task::{Components, Criterion, Target, Tolerance};
 use crate::wording::number;
 
-/// A configuration that is sought from outside the leeway is to be this far inside (m, rad), so that the search ends. Little, because
+/// A configuration that is sought from outside the tolerance_band is to be this far inside (m, rad), so that the search ends. Little, because
 /// configurations that follow one another along the border are not to differ for it.
 const INSIDE: f64 = 1e-6;
 
@@ -22,18 +22,18 @@ pub(crate) type Displacement = [f64; ROWS];
 ///
 /// It is the tolerance of the task, less the accuracy: what the tip strays between points is within the tolerance too.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leeway {
+pub(crate) struct ToleranceBand {
     allowed: [f64; ROWS],
 }
 
-/// The border of the leeway to which each component is drawn while a configuration is sought: its sign, or 0.
+/// The border of the tolerance_band to which each component is drawn while a configuration is sought: its sign, or 0.
 ///
 /// A component that has been beyond stays drawn to its border, or else the next step could undo what the last one did.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Borders([f64; ROWS]);
 
-impl Leeway {
-    /// The leeway that `components` leave to a motion that strays by `accuracy`.
+impl ToleranceBand {
+    /// The tolerance_band that `components` leave to a motion that strays by `accuracy`.
     ///
     /// # Errors
     /// [`Error::Contradiction`] if that is more than the smallest tolerance.
@@ -52,7 +52,7 @@ impl Leeway {
         Ok(Self { allowed: std::array::from_fn(allowed) })
     }
 
-    /// This leeway, with no component off by more than `most`; those that are free stay free.
+    /// This tolerance_band, with no component off by more than `most`; those that are free stay free.
     pub fn at_most(&self, most: f64) -> Self {
         Self { allowed: self.allowed.map(|allowed| if allowed.is_finite() { allowed.min(most) } else { allowed }) }
     }
@@ -68,7 +68,7 @@ impl Leeway {
         Criterion { components, ..Tolerance::default().into() }
     }
 
-    /// Drops from residual and Jacobian what is within the leeway; returns the sum of squares of what exceeds it.
+    /// Drops from residual and Jacobian what is within the tolerance_band; returns the sum of squares of what exceeds it.
     pub fn reduce(&self, target: &Target, borders: &mut Borders, dof: usize, block: &mut TaskBlock) -> f64 {
         let mut squares = 0.0;
         for k in 0..separate_components(target) {
@@ -138,7 +138,7 @@ impl Leeway {
         place
     }
 
-    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the leeway of `target`.
+    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the tolerance_band of `target`.
     pub fn excess(&self, target: &Target, tip: &Frame) -> [f64; 2] {
         let residual = target.residual_by_component(tip);
         let beyond = |k: usize| (residual[k].abs() - self.allowed[k]).max(0.0);

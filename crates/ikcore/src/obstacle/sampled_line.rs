@@ -12,7 +12,7 @@ use crate::objective::Point;
 /// At first no body moves farther from one configuration to the next (m), by a bound that is two to three times what it moves.
 const SPACING: f64 = 0.08;
 
-/// Bodies move no farther than this share of the bound.
+/// Bodies move no farther than this fraction of the bound.
 const SLACK: f64 = 0.6;
 
 /// Number of pairs that are tested first, since they met before.
@@ -20,7 +20,7 @@ const LIKELY: usize = 24;
 
 /// Checks lines in a scene; owns its scratch.
 #[derive(Debug)]
-pub struct LineCheck<'a> {
+pub struct SampledLine<'a> {
     eight: EightScene<'a>,
     margin: f64,
     spacing: f64,
@@ -31,7 +31,7 @@ pub struct LineCheck<'a> {
     examined: usize,
 }
 
-impl<'a> LineCheck<'a> {
+impl<'a> SampledLine<'a> {
     /// For lines that keep `margin` >= 0 (m) in `scene`, but for rounding.
     pub fn new(scene: &'a Scene<'a>, margin: f64) -> Self {
         Self { eight: EightScene::new(scene), margin, spacing: SPACING, pending: vec![], likely: vec![], examined: 0 }
@@ -82,8 +82,8 @@ impl<'a> LineCheck<'a> {
     /// Places everything at entry `block` of `blocks` configurations in each eighth of the line.
     #[inline(always)]
     fn place<A: Arithmetic>(&mut self, from: &[f64], to: &[f64], block: usize, blocks: usize) {
-        let share = |lane: usize| (lane * blocks + block + 1) as f32 / (8 * blocks) as f32;
-        self.eight.place::<A>([from, to], std::array::from_fn(share));
+        let fraction = |lane: usize| (lane * blocks + block + 1) as f32 / (8 * blocks) as f32;
+        self.eight.place::<A>([from, to], std::array::from_fn(fraction));
         self.examined += 8;
     }
 
@@ -129,7 +129,7 @@ fn note_hit(likely: &mut Vec<BodyPair>, pair: BodyPair) {
 }
 
 by_instructions! {
-    fn is_clear(check: &mut LineCheck<'_>, from: &[f64], to: &[f64]) -> bool {
+    fn is_clear(check: &mut SampledLine<'_>, from: &[f64], to: &[f64]) -> bool {
         check.examine::<A>(from, to)
     }
 }
@@ -178,7 +178,7 @@ mod tests {
                 let obstacles = shapes(&mut rng);
                 let scene = Scene::new(&robot, &obstacles).unwrap();
                 let margin = rng.uniform_in(0.0, 0.03);
-                let mut check = LineCheck::new(&scene, margin);
+                let mut check = SampledLine::new(&scene, margin);
                 for _ in 0..40 {
                     let q = robot.random_configurations(1, &mut rng).unwrap();
                     let distance = scene.clearance(&q).unwrap();
@@ -202,7 +202,7 @@ mod tests {
             for _ in 0..30 {
                 let obstacles = shapes(&mut rng);
                 let scene = Scene::new(&robot, &obstacles).unwrap();
-                let mut check = LineCheck::new(&scene, 0.01);
+                let mut check = SampledLine::new(&scene, 0.01);
                 for _ in 0..20 {
                     let from = robot.random_configurations(1, &mut rng).unwrap();
                     if !scene.is_clear(&from, 0.01) {

@@ -26,7 +26,7 @@ const MOST_DEPTHS: usize = 32;
 
 /// Checks motions; owns its scratch.
 #[derive(Debug)]
-pub(crate) struct ChordCheck {
+pub(crate) struct MotionCertificate {
     /// Configurations by depth of the bisection; both ends of the motion first.
     places: Vec<Place>,
     /// Of a spline: the control points just outside of an interval.
@@ -71,7 +71,7 @@ enum Verdict {
     TooNear(f64),
 }
 
-impl ChordCheck {
+impl MotionCertificate {
     /// For motions in `scene`.
     pub(super) fn new(scene: &Scene<'_>) -> Self {
         let pending = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
@@ -290,7 +290,7 @@ impl ChordCheck {
     }
 }
 
-/// The least value between two ends of something that is off the straight line between them, at share s by at most
+/// The least value between two ends of something that is off the straight line between them, at fraction s by at most
 /// 4 s (1 - s) `beside`.
 fn least_between([first, last]: [f64; 2], beside: f64) -> f64 {
     let rise = (last - first).abs();
