@@ -87,9 +87,9 @@ impl Preference {
     pub fn choose(&self, configurations: &mut ArmConfigurations) -> Result<Point, Miss> {
         let costs = turn_inside(&self.joints, configurations);
         let mut best = (f64::INFINITY, 0);
-        for (place, cost) in costs[..configurations.len()].iter().enumerate() {
+        for (index, cost) in costs[..configurations.len()].iter().enumerate() {
             if *cost < best.0 {
-                best = (*cost, place);
+                best = (*cost, index);
             }
         }
         if best.0 < f64::INFINITY { Ok(self.inside(configurations, best.1)) } else { Err(self.miss(configurations)) }
@@ -99,18 +99,18 @@ impl Preference {
     /// the reference.
     pub fn ordered(&self, configurations: &mut ArmConfigurations) -> SmallVec<[Point; 8]> {
         let costs = turn_inside(&self.joints, configurations);
-        let inside = (0..configurations.len()).filter(|place| costs[*place] < f64::INFINITY);
+        let inside = (0..configurations.len()).filter(|index| costs[*index] < f64::INFINITY);
         let mut inside: SmallVec<[usize; MOST_CONFIGURATIONS]> = inside.collect();
         inside.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
-        inside.iter().map(|place| self.inside(configurations, *place)).collect()
+        inside.iter().map(|index| self.inside(configurations, *index)).collect()
     }
 
     /// One of `configurations`, rounding beyond the limits undone.
     #[inline]
-    fn inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+    fn inside(&self, configurations: &ArmConfigurations, index: usize) -> Point {
         let mut q = Point::new();
         for (joint, values) in self.joints.iter().zip(configurations.columns()) {
-            q.push(joint.inside(values[place]));
+            q.push(joint.inside(values[index]));
         }
         q
     }
@@ -118,9 +118,9 @@ impl Preference {
     /// How near to the limits `configurations` are, none of which is inside them.
     #[cold]
     fn miss(&self, configurations: &ArmConfigurations) -> Miss {
-        let is_near = |place: usize| {
+        let is_near = |index: usize| {
             let mut values = self.joints.iter().zip(configurations.columns());
-            values.all(|(joint, values)| joint.is_near(values[place]))
+            values.all(|(joint, values)| joint.is_near(values[index]))
         };
         if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
     }
@@ -129,8 +129,8 @@ impl Preference {
     /// inside. All are brought to whole turns near the limits.
     pub fn misses(&self, configurations: &mut ArmConfigurations, most: f64) -> impl Iterator<Item = (f64, Point)> {
         let outside = turn_near(&self.joints, configurations);
-        let places = (0..configurations.len()).filter(move |place| outside[*place] < most);
-        places.map(move |place| (outside[place], self.moved_inside(configurations, place)))
+        let indices = (0..configurations.len()).filter(move |index| outside[*index] < most);
+        indices.map(move |index| (outside[index], self.moved_inside(configurations, index)))
     }
 
     /// That of `configurations` least outside the limits, moved inside. All are brought to whole turns near the limits.
@@ -141,9 +141,9 @@ impl Preference {
     }
 
     /// The configuration inside the limits nearest to one of `configurations`, which are at whole turns near the limits.
-    fn moved_inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+    fn moved_inside(&self, configurations: &ArmConfigurations, index: usize) -> Point {
         let joints = self.joints.iter().zip(configurations.columns());
-        joints.map(|(joint, values)| joint.moved_inside(values[place])).collect()
+        joints.map(|(joint, values)| joint.moved_inside(values[index])).collect()
     }
 
     /// The preferred one of `configurations` inside the limits, which are at their whole turns nearest to the reference already.

@@ -1,7 +1,7 @@
 //! Frames of all moving elements at eight configurations at once, in single precision: for searches, whose results are confirmed in
 //! double precision.
 
-use super::chain::StageMotion;
+use super::chain::Transmission;
 use super::four_forward_pass::RunningFrames;
 use super::rotation_vector::RotationVector;
 use crate::math::Frame;
@@ -23,13 +23,13 @@ struct Stage {
     parent: usize,
     /// Its constant frame there, z along its axis, in all lanes.
     frame: Frame<F32x8>,
-    motion: StageMotion,
+    motion: Transmission,
 }
 
 impl EightStages {
     /// In the order of their frames from number 1 on: the number of the frame that each starts from, its constant frame there, and
     /// its motion; and the rotation vector among them.
-    pub fn new(stages: impl Iterator<Item = (usize, Frame, StageMotion)>, vector: Option<RotationVector>) -> Self {
+    pub fn new(stages: impl Iterator<Item = (usize, Frame, Transmission)>, vector: Option<RotationVector>) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
             origin: frame.origin.map(|x| F32x8::splat(x as f32)),

@@ -73,6 +73,12 @@ impl Joint {
         self.sampling_range_within(self.lower, self.upper)
     }
 
+    /// The middle of [`sampling_range`](Self::sampling_range) (rad or m).
+    pub(crate) fn middle(&self) -> f64 {
+        let (lower, upper) = self.sampling_range();
+        0.5 * (lower + upper)
+    }
+
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
     pub(crate) fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };

@@ -14,12 +14,12 @@ use crate::error::{Error, Result};
 use crate::math::Pose;
 use crate::wording::words;
 
-/// How a base moves.
+/// Mobility of a base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MobileBase {
-    /// On a plane: `base_x`, `base_y` (m) and `base_yaw` (rad).
+    /// Motion on a plane: `base_x`, `base_y` (m) and `base_yaw` (rad).
     Planar,
-    /// Freely: `base_x`, `base_y`, `base_z` (m), and the rotation vector `base_rx`, `base_ry`, `base_rz` (rad).
+    /// Free motion: `base_x`, `base_y`, `base_z` (m), and the rotation vector `base_rx`, `base_ry`, `base_rz` (rad).
     Floating,
 }
 

@@ -1,11 +1,9 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
-use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use super::body::Bodies;
-use super::derived::Derived;
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::off_chain::OffChain;
@@ -14,10 +12,11 @@ use super::parts::Parts;
 use super::stance::Stance;
 use super::tip_chain::TipChains;
 use super::visual::Visual;
+use crate::bodies::BodyModel;
 use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::link_tree::LinkTree;
 use crate::kinematics::{Reach, TaskRank};
@@ -47,13 +46,13 @@ pub struct Robot {
     reach_of_links: Reach,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
-    /// Of bodies and pairs.
-    derived: Derived,
+    /// The collision model, made at first use.
+    body_model: Arc<OnceLock<Arc<BodyModel>>>,
     /// The smallest change of each joint that leaves the pose of every link unchanged.
     turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
-    /// What moves each of several tips alone, made at first use; copies that differ in base share it.
+    /// Arms of the tips of a robot with several, made at first use; copies that differ in base share it.
     arms: Arc<OnceLock<Vec<Option<TipArm>>>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
@@ -61,7 +60,7 @@ pub struct Robot {
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
 }
 
-/// What moves one of several tips alone, seen from the end of what it shares with others.
+/// The elements that move one of several tips alone, from the end of those that it shares with others.
 #[derive(Debug)]
 pub(crate) struct TipArm {
     pub robot: Robot,
@@ -95,7 +94,7 @@ impl Robot {
             chain: Arc::new(chain),
             tree: OnceLock::new(),
             pairs: Arc::default(),
-            derived: Derived::default(),
+            body_model: Arc::default(),
             start_index: Arc::default(),
             arms: Arc::default(),
             task_rank: OnceLock::new(),
@@ -191,7 +190,7 @@ impl Robot {
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }
 
-    /// Says which joints are expected where `count` is too many: those of a gripper are often among them.
+    /// Names the joints that are expected where `count` is too many: those of a gripper are often among them.
     fn joints_among(&self, count: usize) -> String {
         let held = self.held_joints();
         match (self.joints(), count) {
@@ -342,7 +341,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.bodies = bodies;
         robot.pairs = Arc::default();
-        robot.derived = Derived::default();
+        robot.body_model = Arc::default();
         robot
     }
 
@@ -351,7 +350,7 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.pairs = pairs;
         robot.pairs = Arc::default();
-        robot.derived = Derived::default();
+        robot.body_model = Arc::default();
         robot
     }
 
@@ -380,10 +379,12 @@ impl Robot {
         robot
     }
 
-    /// What `make` derives from the bodies of this robot and their pairs; made once, and shared with copies that have the same. To
-    /// be called with one type alone.
-    pub(crate) fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
-        self.derived.get(make)
+    /// Bodies and pairs, prepared for distances; made at the first call, and shared with copies that have the same.
+    pub(crate) fn body_model(&self) -> &Arc<BodyModel> {
+        self.body_model.get_or_init(|| {
+            let rest = self.frames(&vec![0.0; self.dof()]);
+            Arc::new(BodyModel::new(self.carried_bodies(), &self.tested_bodies(), self.eight_stages(), rest))
+        })
     }
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {
@@ -437,17 +438,17 @@ impl Robot {
 }
 
 /// The motions of the elements that move a tip.
-fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [StageMotion] {
+fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [Transmission] {
     if tips.chains.is_empty() { &chain.motions[..chain.moving] } else { &tips.motions }
 }
 
-fn repeats_every_turn(motions: &[StageMotion], joint: &Joint, number: usize) -> bool {
+fn repeats_every_turn(motions: &[Transmission], joint: &Joint, number: usize) -> bool {
     let mut driven = motions.iter().filter(|motion| motion.joint == number);
     joint.kind.turns()
         && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0 && !motion.of_vector)
 }
 
-fn turn_periods(motions: &[StageMotion], joints: &[Joint]) -> Vec<Option<f64>> {
+fn turn_periods(motions: &[Transmission], joints: &[Joint]) -> Vec<Option<f64>> {
     let period = |(number, joint): (usize, &Joint)| {
         let mut driven = motions.iter().filter(|motion| motion.joint == number);
         match (driven.next(), driven.next()) {

@@ -1,4 +1,4 @@
-//! A validated shape at its place.
+//! A validated shape.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use super::point_cloud::PointCloud;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
-/// A validated shape at its place: an obstacle in the frame of a robot's base, or a body in the frame of its link.
+/// A validated shape: an obstacle in the frame of a robot's base, or a body in the frame of its link.
 /// Copies share the data of meshes, clouds and grids.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
@@ -21,8 +21,6 @@ pub struct Shape {
     bounds: BoundingBall,
     /// Allowance for rounding in distances from points near it (m).
     rounding: f64,
-    /// Sorted names of the links that may touch it; `None`: no link.
-    touch: Option<Arc<[String]>>,
 }
 
 /// What distances lose to rounding, for coordinates of 1 m (m).
@@ -34,7 +32,7 @@ impl Shape {
     fn made(geometry: Geometry, bounds: BoundingBall) -> Self {
         let reach = if matches!(geometry, Geometry::HalfSpace { .. }) { 0.0 } else { bounds.radius };
         let scale = bounds.center.iter().fold(1.0 + reach, |largest, x| largest.max(reach + x.abs()));
-        Self { geometry, bounds, rounding: ROUNDING * scale, touch: None }
+        Self { geometry, bounds, rounding: ROUNDING * scale }
     }
 
     /// A ball about `center` (m).
@@ -205,19 +203,6 @@ impl Shape {
             grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
         let bounds = ball_about(&corners, 0.0);
         Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
-    }
-
-    /// The same shape as an obstacle that the links of these names may touch.
-    pub fn with_touch(mut self, mut links: Vec<String>) -> Self {
-        links.sort_unstable();
-        links.dedup();
-        self.touch = (!links.is_empty()).then(|| links.into());
-        self
-    }
-
-    /// Names of the links that may touch it, sorted.
-    pub fn touch(&self) -> &[String] {
-        self.touch.as_deref().unwrap_or_default()
     }
 
     /// The geometry.

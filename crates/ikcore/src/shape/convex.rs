@@ -1,4 +1,4 @@
-//! Convex sets at their place, by their support points.
+//! Convex sets at a pose, by their support points.
 
 use nalgebra::Vector3;
 
@@ -93,7 +93,7 @@ impl<'a> Convex<'a> {
     /// The point of the core that is farthest along `direction`.
     pub fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         let along = Vector3::from(self.frame.turn_back(&(*direction).into()));
-        self.frame.place::<NoFma>(&self.core.support(&along).into()).into()
+        self.frame.transform::<NoFma>(&self.core.support(&along).into()).into()
     }
 }
 

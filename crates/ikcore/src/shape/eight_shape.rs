@@ -54,7 +54,7 @@ enum Form {
     Other(Shape),
 }
 
-/// A capsule at eight places, one per lane; a sphere if `along` is `None`.
+/// A capsule at eight poses, one per lane; a sphere if `along` is `None`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EightCapsules<A> {
     /// Start of each axis (m).

@@ -26,7 +26,7 @@
 //! | `cover` | covers of meshes by few spheres and capsules |
 //! | `enclosing_capsule` | capsules that hold other shapes |
 //! | `convex`, `convex_distance` | the signed distance of any two convex sets |
-//! | `placed_body` | a body of a robot, and its distances |
+//! | `posed_body` | a body of a robot at a pose, and its distances |
 //! | `extent` | how far bodies and shapes extend along a direction |
 //! | `separation` | where a capsule is nearest to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
@@ -51,7 +51,7 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
-mod placed_body;
+mod posed_body;
 mod point_cloud;
 #[cfg(test)]
 mod scale_tests;
@@ -77,6 +77,6 @@ pub(crate) use eight_shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, Vecto
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
-pub(crate) use placed_body::PlacedBody;
+pub(crate) use posed_body::PosedBody;
 pub use point_cloud::PointCloud;
 pub(crate) use shape_index::ShapeIndex;

@@ -14,7 +14,7 @@ const BESIDE: f64 = 1e-6;
 const LEAST_IN_COMMON: f64 = 0.05;
 
 impl Shape {
-    /// The point of a capsule that is nearest to the shape (m), and the derivative of the distance by the place of the capsule: the unit
+    /// The point of a capsule that is nearest to the shape (m), and the derivative of the distance by the position of the capsule: the unit
     /// normal there, out of the shape. Where faces on both sides of the deepest point of the axis are equally near, it is what their
     /// normals have in common, and shorter.
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {

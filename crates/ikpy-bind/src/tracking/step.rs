@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use ikcore::obstacle::{ClearSpace, Contact, NearestContact};
+use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::TipError;
@@ -39,12 +39,9 @@ pub struct PyStep {
     tips: TipErrors,
     /// What is around the arm, and its configuration; `None` if nothing is to be kept clear of.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
-    /// Found when asked for.
-    around: OnceLock<Around>,
+    /// Found when asked for; `None` if nothing is to be kept clear of.
+    around: OnceLock<Option<Clearance>>,
 }
-
-/// The nearest two bodies: `None` if nothing is to be kept clear of, `Some(None)` if nothing can touch.
-type Around = Option<Option<NearestContact>>;
 
 traversed!(PyStep: limits);
 
@@ -94,16 +91,13 @@ impl PyStep {
     /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
-        let distance = |nearest: &Option<NearestContact>| {
-            nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.contact.distance)
-        };
-        self.around().as_ref().map_or(f64::NAN, distance)
+        self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
     /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        self.around().clone().flatten().map(PyNearest::from)
+        self.around().as_ref()?.nearest.clone().map(PyNearest::from)
     }
 
     fn __repr__(&self) -> String {
@@ -120,7 +114,7 @@ impl PyStep {
     #[staticmethod]
     #[pyo3(signature = (bytes, limits, tips=None))]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Around) =
+        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
         Ok(Self { around: OnceLock::from(around), ..step })
@@ -144,15 +138,16 @@ impl PyStep {
         Self { among: space.map(|space| (space, q)), ..self }
     }
 
-    fn around(&self) -> &Around {
-        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.nearest(q)))
+    fn around(&self) -> &Option<Clearance> {
+        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.clearance(q)))
     }
 
     /// What happened, what to try, and what is in the way.
     fn sentence(&self) -> String {
         let message = self.core.message();
-        match (self.core.status, self.around()) {
-            (Status::HeldByObstacle | Status::InCollision, Some(Some(NearestContact { contact, .. }))) => {
+        let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        match (self.core.status, nearest) {
+            (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;
                 format!("{message} ({link} is {distance:.4} m from {other})")
             }

@@ -177,7 +177,7 @@ impl General {
 
     /// The displacement seen from the centre, in units of the arm's size.
     fn local(&self, goal: &Frame) -> Frame {
-        let origin = scaled(&sub(&goal.place::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
+        let origin = scaled(&sub(&goal.transform::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
         Frame { origin, ..*goal }
     }
 

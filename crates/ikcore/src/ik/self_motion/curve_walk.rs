@@ -1,7 +1,7 @@
 //! A walk in long steps along the self-motion of an arm with one joint more than its task needs, joint limits ignored.
 //!
 //! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
-//! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.
+//! back to the task. Between two points, joints follow the cubics that meet the curve's directions at both.
 
 use crate::ik::goal_descent::difference;
 use crate::math::MAX_DOF;
@@ -25,7 +25,7 @@ const ASIDE: f64 = 0.01;
 /// Gauss-Newton steps back to the task.
 const MOST_CORRECTIONS: usize = 2;
 
-/// A place on a curve, and the curve's direction there.
+/// A point on a curve, and the direction of the curve there.
 #[derive(Debug, Clone)]
 pub(in crate::ik) struct CurvePoint {
     pub q: Point,
@@ -35,7 +35,7 @@ pub(in crate::ik) struct CurvePoint {
 /// What a step led along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ik) enum StepKind {
-    /// A stretch of the curve, from the place before to here.
+    /// A stretch of the curve, from the point before to here.
     Smooth,
     /// Past a corner: another curve may have been caught, what lies between is not known.
     Corner,
@@ -49,7 +49,7 @@ pub(in crate::ik) struct Walk<'w, 'p> {
     bend: Point,
     length: f64,
     longest: f64,
-    /// The task at the last place it was asked.
+    /// The task at the last point at which it was asked.
     at: Linearization,
     /// Evaluations of the forward kinematics so far, and the most there may be.
     evaluations: usize,
@@ -97,15 +97,15 @@ impl<'w, 'p> Walk<'w, 'p> {
         self.evaluations
     }
 
-    /// Goes on from `place`, the other way.
-    pub fn turn_back_at(&mut self, place: &CurvePoint) {
-        let along = place.along.iter().map(|slope| -slope).collect();
-        self.here = CurvePoint { q: place.q.clone(), along };
+    /// Goes on from `point`, the other way.
+    pub fn turn_back_at(&mut self, point: &CurvePoint) {
+        let along = point.along.iter().map(|slope| -slope).collect();
+        self.here = CurvePoint { q: point.q.clone(), along };
         self.bend.fill(0.0);
         self.length = self.longest;
     }
 
-    /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
+    /// The next step: the point it leaves, and what it leads along. None where no evaluations are left for it.
     pub fn step(&mut self) -> Option<(CurvePoint, StepKind)> {
         while self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let (there, aside) = self.try_step();

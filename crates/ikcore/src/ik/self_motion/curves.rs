@@ -2,7 +2,7 @@
 
 use super::curve::SelfMotion;
 use super::cut::parts;
-use super::place::{EXACT, placed};
+use super::unwrapping::{EXACT, unwrapped};
 use super::seeds::{Seeds, by_closed_form};
 use super::trace::{TracedCurve, traced};
 use super::wrapped_limits::WrappedLimits;
@@ -92,7 +92,7 @@ pub fn self_motion(
     for curve in &mut curves {
         make_exact(curve, &mut attempt);
         for part in parts(curve, &limits) {
-            found.extend(placed(part, *spacing, &mut attempt, &limits, start.as_deref()));
+            found.extend(unwrapped(part, *spacing, &mut attempt, &limits, start.as_deref()));
         }
     }
     found.iter_mut().for_each(|curve| curve.complete = complete);

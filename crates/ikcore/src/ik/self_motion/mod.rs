@@ -2,15 +2,15 @@
 //!
 //! `curves` is the call. `seeds` finds configurations on the curves: by the closed form, which leaves out no branch, or by search.
 //! `trace` walks a curve past the joint limits by the steps of `curve_walk`; `cut` keeps what lies within the limits, which
-//! `wrapped_limits` knows up to whole turns; `place` makes a `curve` of it.
+//! `wrapped_limits` knows up to whole turns; `unwrapping` makes a `curve` of it.
 
 mod curve;
 mod curve_walk;
 mod curves;
 mod cut;
-mod place;
 mod seeds;
 mod trace;
+mod unwrapping;
 mod wrapped_limits;
 
 pub use curve::SelfMotion;

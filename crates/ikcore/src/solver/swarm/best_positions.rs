@@ -4,14 +4,14 @@ use super::population::{Members, Population};
 
 /// The best position of each member so far: p of particle swarms, and g, the best of them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct BestPlaces {
+pub(super) struct BestPositions {
     /// The best position of each member.
     pub members: Members,
     /// Index of the best of them.
     pub leader: usize,
 }
 
-impl BestPlaces {
+impl BestPositions {
     /// `population` members without a best position.
     pub fn new(population: usize, dimension: usize) -> Self {
         Self { members: Members::new(population, dimension), leader: 0 }
