@@ -150,10 +150,7 @@ fn an_arm_that_would_collide_goes_round_by_its_self_motion() {
         &swing(&robot),
         &AlongPathOptions { surroundings: Surroundings::default(), ..options(&robot, vec![]) },
     );
-    assert!(
-        smallest(&robot, std::slice::from_ref(&ball), &free) < 0.0
-            && free.clearance.is_none()
-    );
+    assert!(smallest(&robot, std::slice::from_ref(&ball), &free) < 0.0 && free.clearance.is_none());
     for objective in [Cost::Time, Cost::JointTravel] {
         let options = AlongPathOptions { objective, ..options(&robot, vec![ball.clone()]) };
         let plan = planned(&robot, &swing(&robot), &options);
@@ -287,7 +284,10 @@ fn a_plan_keeps_its_margin_with_other_limits() {
     let plan = planned(&robot, &swing(&robot), &options(&robot, vec![ball.clone()]));
     let slower = plan.retime(&robot, Some(&limits(&robot, 50.0))).unwrap();
     assert!(slower.trajectory.duration() > plan.trajectory.duration());
-    assert!(smallest(&robot, std::slice::from_ref(&ball), &slower) >= MARGIN && slower.clearance.as_ref().unwrap().distance >= MARGIN);
+    assert!(
+        smallest(&robot, std::slice::from_ref(&ball), &slower) >= MARGIN
+            && slower.clearance.as_ref().unwrap().distance >= MARGIN
+    );
     let back = slower.retime(&robot, Some(&limits(&robot, f64::INFINITY))).unwrap();
     assert_eq!(back.trajectory, plan.trajectory);
     let smooth = AlongPathOptions { limits: Some(limits(&robot, 50.0)), ..options(&robot, vec![ball.clone()]) };

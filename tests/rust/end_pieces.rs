@@ -152,8 +152,11 @@ fn contacts_are_allowed_on_the_line_alone() {
     let touch = vec![LineContact { obstacle: Some(0), links: vec!["link_7".into(), "link_6".into()] }];
     let approach = StraightLine { distance: 0.12, touch: touch.clone(), ..StraightLine::default() };
     let ends = [Endpoint::Configuration(end)];
-    let with =
-        |approach| PointToPointOptions { approach: Some(approach), surroundings: Surroundings::among(ball.clone()), ..options(&robot) };
+    let with = |approach| PointToPointOptions {
+        approach: Some(approach),
+        surroundings: Surroundings::among(ball.clone()),
+        ..options(&robot)
+    };
     let plan = plan_point_to_point(&robot, &start, &ends, &with(approach.clone()), &mut Unattended).unwrap();
     assert_eq!(plan.status, Status::Solved, "{}", plan.message());
     let [.., back, _] = rests(&plan)[..] else { panic!("no line") };
@@ -204,8 +207,11 @@ fn starts_in_contact_move_out_and_never_deeper() {
                 break end;
             }
         };
-        let with =
-            |free_start| PointToPointOptions { free_start, surroundings: Surroundings::among(obstacles.clone()), ..options(&robot) };
+        let with = |free_start| PointToPointOptions {
+            free_start,
+            surroundings: Surroundings::among(obstacles.clone()),
+            ..options(&robot)
+        };
         let (start, ends) = (Endpoint::Configuration(q), [Endpoint::Configuration(end)]);
         let refused = plan_point_to_point(&robot, &start, &ends, &with(false), &mut Unattended).unwrap_err();
         assert!(refused.to_string().ends_with("; free_start=True moves out first"), "{refused}");

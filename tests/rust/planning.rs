@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
-use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::obstacle::Surroundings;
+use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
     plan_along_path, plan_point_to_point,
@@ -143,7 +143,13 @@ fn obstacle_is_passed_at_its_margin() {
         let method = by_evolution();
         plan(
             4,
-            PointToPointOptions { objective, surroundings: Surroundings { margin, ..Surroundings::among(obstacles) }, seed, method, ..Default::default() },
+            PointToPointOptions {
+                objective,
+                surroundings: Surroundings { margin, ..Surroundings::among(obstacles) },
+                seed,
+                method,
+                ..Default::default()
+            },
         )
     };
     let mean = mean(3, |seed| {

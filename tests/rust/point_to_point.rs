@@ -314,8 +314,7 @@ fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
         };
         let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
         let plan =
-            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![]), &mut Unattended)
-                .unwrap();
+            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![]), &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
         let ball = Shape::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
         let says = refused(&arm, &start, &end, options(vec![ball]));

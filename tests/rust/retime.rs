@@ -43,8 +43,11 @@ fn pairs_around(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<[Vec<f6
 }
 
 fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limits: Limits) -> Plan {
-    let options =
-        PointToPointOptions { limits: Some(limits), surroundings: Surroundings::among(obstacles), ..PointToPointOptions::default() };
+    let options = PointToPointOptions {
+        limits: Some(limits),
+        surroundings: Surroundings::among(obstacles),
+        ..PointToPointOptions::default()
+    };
     let [start, end] = [start, end].map(|q| Endpoint::Configuration(q.clone()));
     plan_point_to_point(robot, &start, &[end], &options, &mut Unattended).unwrap()
 }

@@ -154,7 +154,10 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
     let to: Vec<f64> = READY.iter().map(|x| x + 0.3).collect();
     let plan = |touch: &[&str]| {
         let floor = Obstacle::new(Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap(), names(touch));
-        let options = PointToPointOptions { surroundings: Surroundings::among(Obstacles::from_iter([floor])), ..PointToPointOptions::default() };
+        let options = PointToPointOptions {
+            surroundings: Surroundings::among(Obstacles::from_iter([floor])),
+            ..PointToPointOptions::default()
+        };
         let [start, end] = [READY.to_vec(), to.clone()].map(Endpoint::Configuration);
         plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended)
     };

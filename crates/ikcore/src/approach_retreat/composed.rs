@@ -147,7 +147,8 @@ impl<'a> Pieces<'a> {
         let mut offer = |motion: &Trajectory, space: Option<ClearSpace<'_>>, kept: f64| -> Result<()> {
             let Some(space) = space else { return Ok(()) };
             let found = least_clearance(&mut ClearanceSweep::new(space.scene()), motion, Some(kept))?;
-            let is_less = |(found, _): &(Clearance, _)| least.as_ref().is_none_or(|least| found.distance < least.distance);
+            let is_less =
+                |(found, _): &(Clearance, _)| least.as_ref().is_none_or(|least| found.distance < least.distance);
             if let Some((clearance, _)) = found.filter(is_less) {
                 least = Some(clearance);
             }

@@ -135,8 +135,7 @@ impl LineSearch<'_> {
             Err(why) => return Ok(Err((0.0, why))),
         };
         let margin = self.along_line.map_or(0.0, |space| space.margin() - RESERVE);
-        let checked =
-            self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
+        let checked = self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
             let contact = near.contact.in_words(margin);

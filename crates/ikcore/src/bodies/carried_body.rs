@@ -24,7 +24,13 @@ pub(crate) struct CarriedBody {
 impl CarriedBody {
     /// A body of this shape, and its enclosing capsule from one to the other of `ends` with this `radius` (m), all given in a frame at
     /// `offset` from frame number `stages`. `solid` is `None` if it is the capsule.
-    pub fn new(link: &str, (stages, offset): (usize, Frame), ends: [[f64; 3]; 2], radius: f64, solid: Option<&Shape>) -> Self {
+    pub fn new(
+        link: &str,
+        (stages, offset): (usize, Frame),
+        ends: [[f64; 3]; 2],
+        radius: f64,
+        solid: Option<&Shape>,
+    ) -> Self {
         let ends = ends.map(|end| offset.transform::<NoFma>(&end));
         let reach = radius + 0.5 * distance(&ends[0], &ends[1]);
         Self { link: link.into(), stages, ends, radius, reach, solid: solid.map(|shape| (shape.clone(), offset)) }

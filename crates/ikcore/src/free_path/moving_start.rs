@@ -46,9 +46,8 @@ pub(super) fn begin(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
-    let mut is_free = |motion: &Trajectory| {
-        sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
-    };
+    let mut is_free =
+        |motion: &Trajectory| sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok());
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
@@ -120,14 +119,10 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 }
 
 /// A plan from rest, preceded by the stop that leads to it.
-pub(super) fn followed_by(
-    stop: Trajectory,
-    rest: Plan,
-    robot: &Robot,
-    space: Option<&ClearSpace<'_>>,
-) -> Result<Plan> {
+pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, space: Option<&ClearSpace<'_>>) -> Result<Plan> {
     // The stop keeps the margin.
-    let at_least = |(rest, space): (&Clearance, &ClearSpace<'_>)| Clearance::at_least(rest.distance.min(space.margin()));
+    let at_least =
+        |(rest, space): (&Clearance, &ClearSpace<'_>)| Clearance::at_least(rest.distance.min(space.margin()));
     let clearance = rest.clearance.as_ref().zip(space).map(at_least);
     let plan = joined(robot, Some(&stop), rest, None)?;
     Ok(Plan { clearance, ..plan })

@@ -280,7 +280,8 @@ impl OrientationTest<'_, '_> {
     fn measure(&mut self, q: &[f64], at: u64) {
         let MapTest { own, measure, .. } = self.test;
         let index = measure.index(own.robot(), q);
-        let clearance = own.space().and_then(|space| space.clearance(q).nearest).map_or(f64::NAN, |near| near.contact.distance);
+        let clearance =
+            own.space().and_then(|space| space.clearance(q).nearest).map_or(f64::NAN, |near| near.contact.distance);
         for (all, value) in self.quality.iter_mut().zip([index, clearance]) {
             for (place, best) in all.iter_mut().enumerate() {
                 if at >> place & 1 == 1 {

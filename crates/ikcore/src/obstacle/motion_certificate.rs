@@ -10,9 +10,9 @@ use super::near_rows::MOST_RESERVED;
 use super::required_distance::RequiredDistance;
 use super::scene::Scene;
 use crate::bodies::BodyPair;
+use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
 use crate::objective::Point;
-use crate::kinematics::link_tree::FrameBuffer;
 use crate::shape::PosedBody;
 
 /// Intervals examined before a motion counts as not clear.

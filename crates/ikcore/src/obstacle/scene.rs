@@ -310,9 +310,9 @@ impl<'a> Scene<'a> {
     #[inline]
     fn distance_of(&self, pair: BodyPair, frames: &[Frame], axis: impl Fn(usize) -> LineSegment, enough: f64) -> f64 {
         match pair {
-            BodyPair::Obstacle { body, obstacle } => {
-                self.others.obstacles[obstacle].shape.distance_to_body(&self.posed_at(body, &axis(body), frames), enough)
-            }
+            BodyPair::Obstacle { body, obstacle } => self.others.obstacles[obstacle]
+                .shape
+                .distance_to_body(&self.posed_at(body, &axis(body), frames), enough),
             BodyPair::Bodies { near, far, .. } => {
                 let reach = self.bodies.carried[near].reach + self.bodies.carried[far].reach;
                 let axes = [axis(near), axis(far)];

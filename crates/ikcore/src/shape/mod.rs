@@ -51,8 +51,8 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
-mod posed_body;
 mod point_cloud;
+mod posed_body;
 #[cfg(test)]
 mod scale_tests;
 mod segment_distance;
@@ -77,6 +77,6 @@ pub(crate) use eight_shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, Vecto
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
-pub(crate) use posed_body::PosedBody;
 pub use point_cloud::PointCloud;
+pub(crate) use posed_body::PosedBody;
 pub(crate) use shape_index::ShapeIndex;

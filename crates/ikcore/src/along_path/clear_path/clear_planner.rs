@@ -241,9 +241,7 @@ impl ClearPlanner<'_> {
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { fractions: &self.fractions, postures: &self.postures };
         let obstruction = layers.obstruction(&self.passage, space, dead_end);
-        let missing = |q: &Point| {
-            (space.margin() - space.clearance(q).distance).max(0.0)
-        };
+        let missing = |q: &Point| (space.margin() - space.clearance(q).distance).max(0.0);
         let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
             Ok(postures.iter().map(|q| LayerPosture { q: q.clone(), penalty: DEEP * missing(q) }).collect())

@@ -145,7 +145,10 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         let solution = self.attempt.solution(exhausted.status(), q);
         Some(Box::new(Solution {
             obstruction,
-            nearest: Some(Box::new(Nearest { clearance: Some(nearest).into(), open_mesh: self.space.first_open_mesh() })),
+            nearest: Some(Box::new(Nearest {
+                clearance: Some(nearest).into(),
+                open_mesh: self.space.first_open_mesh(),
+            })),
             ..solution
         }))
     }

@@ -2,9 +2,9 @@
 
 use super::curve::SelfMotion;
 use super::cut::parts;
-use super::unwrapping::{EXACT, unwrapped};
 use super::seeds::{Seeds, by_closed_form};
 use super::trace::{TracedCurve, traced};
+use super::unwrapping::{EXACT, unwrapped};
 use super::wrapped_limits::WrappedLimits;
 use crate::error::{Error, Result};
 use crate::ik::attempt::Attempt;

@@ -39,9 +39,7 @@ pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, pa
     for link in robot.all_link_names().filter_map(|name| document.capsules.get(name)) {
         for Primitive { capsule, exact } in &link.primitives {
             bodies.push(match wanted {
-                CollisionShapes::Hulls => {
-                    Body::new(capsule.link.clone(), exact.clone(), BodySource::Primitive)
-                }
+                CollisionShapes::Hulls => Body::new(capsule.link.clone(), exact.clone(), BodySource::Primitive),
                 _ => Body::from_capsule(capsule.clone(), BodySource::Primitive)?,
             });
         }

@@ -41,7 +41,13 @@ impl Velocities {
     }
 
     /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), with r1 and r2 drawn for each coordinate; clamped to the limits.
-    pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPositions, rng: &mut LazyRng) {
+    pub fn update(
+        &mut self,
+        [w, c1, c2]: [f64; 3],
+        population: &Population,
+        memory: &BestPositions,
+        rng: &mut LazyRng,
+    ) {
         tile(memory.members.point(memory.leader), &mut self.leader);
         rng.fill(&mut self.draws);
         let count = self.all.len();
