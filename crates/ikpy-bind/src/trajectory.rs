@@ -35,7 +35,7 @@ impl PyTrajectory {
     }
 }
 
-/// Returns the names of `n` joints; by default "q1", "q2" and so on.
+/// Returns the given names of `n` joints; by default "q1", "q2" and so on.
 pub fn names(given: Option<Vec<String>>, n: usize) -> PyResult<Vec<String>> {
     match given {
         None => Ok((1..=n).map(|i| format!("q{i}")).collect()),

@@ -187,7 +187,7 @@ swarm! {
         step_decay: f64,
         /// Ratio of delta to the distance between the antennae.
         step_over_antennae: f64,
-        /// "printed" or "downhill".
+        /// Sign of eq. (28): "printed" or "downhill".
         direction: BeetleDirection,
     }
 }
@@ -209,7 +209,7 @@ swarm! {
         weight: f64,
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
-        /// "generation" or "immediate".
+        /// Time of replacement: "generation" or "immediate".
         update: TrialUpdate,
     }
 }

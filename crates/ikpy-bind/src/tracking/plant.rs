@@ -115,7 +115,7 @@ impl PyKinematicPlant {
 }
 
 impl PyKinematicPlant {
-    /// Returns a plant at the start of its noise; an error unless `start` fits its robot.
+    /// Returns a plant at the start of its noise; an error unless `start` fits the robot.
     pub fn fresh(&self, start: &[f64]) -> PyResult<KinematicPlant> {
         self.core.robot().check("start", start).map_err(raise)?;
         Ok(self.core.clone())
@@ -125,7 +125,7 @@ impl PyKinematicPlant {
 /// A callable of q, and the exception that it raised.
 pub struct PythonPlant<'py> {
     call: Bound<'py, PyAny>,
-    /// What it has to return.
+    /// Description of the value that the callable must return.
     wanted: &'static str,
     pub exception: Option<PyErr>,
 }
