@@ -12,15 +12,15 @@ from ._core import BeetleIkError, InvalidInputError, Obstacle, pose
 from ._files import path_of
 from ._needs import library
 
-_PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # of shape_msgs/SolidPrimitive
+_PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # types of shape_msgs/SolidPrimitive
 _LISTS = (("primitives", "primitive_poses"), ("meshes", "mesh_poses"), ("planes", "plane_poses"))
 
 
 def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -> list[Obstacle]:
-    """Reads the collision objects; `frame` is the pose (4, 4) of their frame in that of the robot's base.
+    """Reads the collision objects; `frame` is the pose (4, 4) of their frame in the frame of the robot's base.
 
     Raises:
-        InvalidInputError: not a planning scene, or something in it is no obstacle here. Names the object.
+        InvalidInputError: not a planning scene, or an object that cannot become an obstacle; the message names it.
     """
     yaml = library("yaml", "pyyaml", "reading a MoveIt planning scene")
     path, where = path_of(file), os.fspath(file)
@@ -44,7 +44,7 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
 
 
 def _require_no_more(where: str, scene: dict[str, Any], world: dict[str, Any]) -> None:
-    """Refuses what the scene holds beside collision objects: left out, it would be run into."""
+    """Refuses other contents than collision objects: the arm would run into anything left out."""
     octomap = _get(_get(world, "octomap", {}), "octomap", {})
     if _get(octomap, "data", None):
         raise InvalidInputError(f"{where}: the octomap cannot be read: make a bik.obstacles.Grid or PointCloud of it")
@@ -140,5 +140,5 @@ def _numbers(given: Any, names: str) -> list[float]:
 
 
 def _get(mapping: Any, key: str, default: Any) -> Any:
-    """Returns an entry of what should be a mapping; `default` where it is missing or empty."""
+    """Returns an entry of a mapping; `default` if it is missing or empty, or the value is no mapping."""
     return (mapping.get(key) or default) if isinstance(mapping, dict) else default
