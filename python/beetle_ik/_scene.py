@@ -25,7 +25,7 @@ class Scene(Sequence[Obstacle]):
         obstacles: obstacles of `bik.obstacles`.
 
     Raises:
-            InvalidInputError: an item is no obstacle; the message gives its position.
+        InvalidInputError: an item is no obstacle; the message gives its position.
     """
 
     @worded_call
@@ -54,8 +54,8 @@ class Scene(Sequence[Obstacle]):
         lower case, with underscores) and the arguments of the class (m, rad).
 
         Raises:
-                InvalidInputError: the file is not a scene, or is of a later version; the message names the file and the
-                    obstacle.
+            InvalidInputError: the file is not a scene, or is of a later version; the message names the file and the
+                obstacle.
         """
         from ._scene_json import read_obstacles
 
@@ -77,13 +77,12 @@ class Scene(Sequence[Obstacle]):
 
         Args:
             file: the YAML file, as `ros2 topic echo` or MotionBenchMaker write it.
-                frame: pose (4, 4) of the frame of the objects in the frame of the robot's base; None: the two frames
-                    agree.
+            frame: pose (4, 4) of the frame of the objects in the frame of the robot's base; None: the two frames agree.
 
         Raises:
-                InvalidInputError: the file is not a planning scene, has objects in several frames, or an object that
-                    cannot be
-                    read; the message names the file and the object.
+            InvalidInputError: the file is not a planning scene, has objects in several frames, or an object that cannot
+                be
+                read; the message names the file and the object.
         """
         from ._moveit_scene import read_planning_scene
 
@@ -97,7 +96,7 @@ class Scene(Sequence[Obstacle]):
         all others a `Mesh`.
 
         Raises:
-                InvalidInputError: another type, a unit other than metres, or a geometry without faces.
+            InvalidInputError: another type, a unit other than metres, or a geometry without faces.
         """
         from ._trimesh_scene import obstacles_of
 

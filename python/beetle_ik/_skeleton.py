@@ -27,10 +27,10 @@ class Axis:
     """The axis of a joint: a line through `point` along `along`, at the configuration of the skeleton.
 
     Attributes:
-            travel: range of a prismatic joint to either side (m); None: the joint is revolute.
-            enter: point where the links before the joint meet the axis.
-            leave: point where the links after the joint leave the axis.
-            row: point where the links meet the first of a row of parallel axes; None: this axis is the first.
+        travel: range of a prismatic joint to either side (m); None: the joint is revolute.
+        enter: point where the links before the joint meet the axis.
+        leave: point where the links after the joint leave the axis.
+        row: point where the links meet the first of a row of parallel axes; None: this axis is the first.
     """
 
     along: Array
@@ -51,10 +51,9 @@ class Part:
 
     Attributes:
         links: their names.
-            axis: the axis about which the part moves; None for a fixed part, or a part that several joints move at
-                once.
-            after: the parts that move relative to this part.
-            ends: pairs of poses (4, 4) for each tip link on the part: of the link, and of its tip, which a tool moves.
+        axis: the axis about which the part moves; None for a fixed part, or a part that several joints move at once.
+        after: the parts that move relative to this part.
+        ends: pairs of poses (4, 4) for each tip link on the part: of the link, and of its tip, which a tool moves.
         distance: length of the skeleton from the base to the part (m).
     """
 

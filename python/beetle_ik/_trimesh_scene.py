@@ -17,8 +17,7 @@ def obstacles_of(geometry: Any) -> list[Obstacle]:
     """Returns the obstacles of a mesh or a scene of trimesh.
 
     Raises:
-            InvalidInputError: another type, a unit other than metres, or a geometry without faces; the message names
-                it.
+        InvalidInputError: another type, a unit other than metres, or a geometry without faces; the message names it.
     """
     return [_obstacle(name, part, transform) for name, part, transform in _parts(geometry)]
 

@@ -19,7 +19,7 @@ def copied() -> Iterator[ModuleType]:
     """Loads the package xacro under another name, and forgets it afterwards.
 
     Raises:
-            NotInstalledError: xacro is not installed.
+        NotInstalledError: xacro is not installed.
     """
     try:
         found = find_spec("xacro")

@@ -63,7 +63,7 @@ class Expressions:
     """Evaluates expressions.
 
     Args:
-            budget: budget that pays for the work.
+        budget: budget that pays for the work.
         functions: functions that may be called besides `CALLABLE`.
     """
 
@@ -76,8 +76,7 @@ class Expressions:
         """Returns the value of an expression, in which `names` may be used.
 
         Raises:
-                RefusedError: the text contains more than arithmetic, comparisons, conditions, literals and known
-                    functions.
+            RefusedError: the text contains more than arithmetic, comparisons, conditions, literals and known functions.
             Exception: as Python raises them, for example for a division by zero.
         """
         if len(text) > _LONGEST:

@@ -35,14 +35,14 @@ class Guard:
     """Guard between the package xacro and an untrusted file.
 
     Attributes:
-            refusal: the first refused request, and its place; None if nothing was refused.
+        refusal: the first refused request, and its place; None if nothing was refused.
     """
 
     def __init__(self, module: ModuleType, packages: Packages) -> None:
         """Replaces functions of `module`.
 
         Raises:
-                BeetleIkError: this version of xacro lacks a function to be replaced.
+            BeetleIkError: this version of xacro lacks a function to be replaced.
         """
         missing = [name for name in (*_REPLACED, *_USED) if not hasattr(module, name)]
         if missing:
@@ -163,7 +163,7 @@ def found(module: ModuleType, packages: Packages, name: str) -> str:
     """Returns the folder of a package.
 
     Raises:
-            XacroException: the package is not found.
+        XacroException: the package is not found.
     """
     folder = packages.find(name)
     if folder is None:

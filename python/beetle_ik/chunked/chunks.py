@@ -101,7 +101,7 @@ def run(
     Raises:
         BeetleIkError: a worker has another version of the library or another instruction set, or the connection to the
             scheduler is lost.
-            InvalidInputError: the store belongs to another job; or an error of `job.compute`.
+        InvalidInputError: the store belongs to another job; or an error of `job.compute`.
         OSError: the store cannot be written.
     """
     build = Build(__version__, ANY if any_instruction_set else _instructions)
@@ -236,7 +236,7 @@ def require_client(client: object, threads: int | None) -> None:
 
     Raises:
         BeetleIkError: dask is not installed.
-            InvalidInputError: another value, or `threads` together with a client.
+        InvalidInputError: another value, or `threads` together with a client.
     """
     if client is None:
         return

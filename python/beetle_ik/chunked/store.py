@@ -70,7 +70,7 @@ def store_path(store: object) -> Path:
     """Returns the folder that the argument `store` names, as an absolute path.
 
     Raises:
-            InvalidInputError: the argument is not the path of a folder, for example an address like s3://.
+        InvalidInputError: the argument is not the path of a folder, for example an address like s3://.
     """
     if not isinstance(store, str | os.PathLike) or not str(store) or "\0" in str(store):
         raise InvalidInputError(f"store must be the path of a folder, got {store!r:.60}")

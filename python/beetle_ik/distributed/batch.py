@@ -123,11 +123,10 @@ def solve_batch(
     Args:
         client: a `distributed.Client`; None: the chunks are computed here, one after the other.
         robot: the arm.
-            targets: poses (m, 4, 4) or positions (m, 3) (m), or a dict of them, as for `bik.solve_batch`. The rows of a
-                chunk are sent to its worker; rows of a zarr array are read by the worker.
-            store: folder of a zarr group for the results, on a file system that all workers share; None: the results
-                stay
-                in memory.
+        targets: poses (m, 4, 4) or positions (m, 3) (m), or a dict of them, as for `bik.solve_batch`. The rows of a
+            chunk are sent to its worker; rows of a zarr array are read by the worker.
+        store: folder of a zarr group for the results, on a file system that all workers share; None: the results stay
+            in memory.
         rows_per_chunk: targets of a chunk, which is one task and one chunk of each array of the store.
         any_instruction_set: whether workers may differ in their instruction set, and so in the last bits of results.
         starts: as for `bik.solve_batch`.
@@ -138,12 +137,12 @@ def solve_batch(
         solver: the solver of a search.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error (rad).
-            goals: secondary objectives along the self-motion.
-            prefer: choice among several solutions.
+        goals: secondary objectives along the self-motion.
+        prefer: choice among several solutions.
         limits: position limits; None: the robot's.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
-            self_collision: whether links must keep clear of each other.
+        self_collision: whether links must keep clear of each other.
         stop: budgets of each target. After `max_time` bits differ from run to run.
         seed: seed of the random draws.
 

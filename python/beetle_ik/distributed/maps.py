@@ -55,8 +55,8 @@ def reachability(
         task: the part of a pose that matters.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
-            self_collision: whether links must keep clear of each other.
-            evaluations: largest number of evaluations for a pose.
+        self_collision: whether links must keep clear of each other.
+        evaluations: largest number of evaluations for a pose.
         quality: whether to measure manipulability and clearance.
         threads: number of threads if `client` is None; None: one per core. Workers compute a chunk in each thread.
         progress: True shows a progress bar; a callable is called with (done, total), in voxels, after each chunk.
