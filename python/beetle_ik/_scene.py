@@ -72,8 +72,7 @@ class Scene(Sequence[Obstacle]):
         """Reads the collision objects of a MoveIt planning scene in YAML (`moveit_msgs/PlanningScene`).
 
         The scene has the boxes, spheres, cylinders and meshes in the order of the file. Cones, planes, octomaps and
-        objects
-        attached to the robot are refused, not left out. Needs PyYAML.
+        objects attached to the robot are refused, not left out. Needs PyYAML.
 
         Args:
             file: the YAML file, as `ros2 topic echo` or MotionBenchMaker write it.
@@ -81,8 +80,7 @@ class Scene(Sequence[Obstacle]):
 
         Raises:
             InvalidInputError: the file is not a planning scene, has objects in several frames, or an object that cannot
-                be
-                read; the message names the file and the object.
+                be read; the message names the file and the object.
         """
         from ._moveit_scene import read_planning_scene
 

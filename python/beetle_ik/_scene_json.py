@@ -5,8 +5,8 @@
         {"type": "box", "center": [0.5, 0.0, 0.1], "size": [0.4, 0.6, 0.2]}
     ]}
 
-A bare list is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in
-metres and radians.
+A bare list is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in metres
+and radians.
 """
 
 import inspect

@@ -52,7 +52,7 @@ class Part:
     Attributes:
         links: their names.
         axis: the axis about which the part moves; None for a fixed part, or a part that several joints move at once.
-        after: the parts that move relative to this part.
+            after: the parts that move relative to this part.
         ends: pairs of poses (4, 4) for each tip link on the part: of the link, and of its tip, which a tool moves.
         distance: length of the skeleton from the base to the part (m).
     """

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 FORMAT = 2
 ATTRIBUTE = "beetle_ik"
 CONTENT = "content"
-HASHES = (2, 32)  # hashes of a chunk, in bytes
+HASHES = (2, 32)  # two hashes of 32 bytes for each chunk
 FINISHED = "chunks"
 _ENCODING = {"name": "default", "separator": "."}  # files, not a folder for each chunk
 
