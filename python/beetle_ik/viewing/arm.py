@@ -34,8 +34,7 @@ _PAUSE = 30  # ticks
 
 
 class Arm:
-    """A robot, its configuration, a target for each tip, the obstacles around it, and the mode of following the
-    targets.
+    """A robot, its configuration, targets of its tips, obstacles around it, and the mode of following the targets.
 
     Attributes:
         q: the configuration (n,). Set it by `put`.
