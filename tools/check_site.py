@@ -94,7 +94,7 @@ def lost(browser: Any, address: str) -> list[str]:
     for words, wanted in SEARCHES.items():
         page.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
         page.wait_for_selector("ul.search li a")
-        page.wait_for_timeout(500)  # until all results are there
+        page.wait_for_timeout(500)  # waits for all results
         links = "[...document.querySelectorAll('ul.search li > a')].map(link => link.getAttribute('href'))"
         found = [link.split("#")[0] for link in page.evaluate(links)]
         if wanted not in found[:_FIRST]:

@@ -123,13 +123,13 @@ class Visitor:
 
     def drag(self, name: str, axis: int, distance: float) -> None:
         """Drags an arrow of a handle, for example "/target", by a distance along its axis (m)."""
-        self.settle()  # until the handle is where the server put it
+        self.settle()  # waits for the handle to arrive
         handle: Any = self.viewer.server.scene.get_handle_by_name(name)
         place = bik.pose(handle.position, wxyz=handle.wxyz)
         along = place[:3, axis]
         grip = place[:3, 3] + _GRIP * handle.scale * along
         self.page.mouse.move(*self.pixel(grip))
-        self.settle()  # until the arrow lights up
+        self.settle()  # waits for the arrow to light up
         self.page.mouse.down()
         for i in range(1, _MOVES + 1):
             self.page.mouse.move(*self.pixel(grip + distance * i / _MOVES * along))

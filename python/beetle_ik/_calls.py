@@ -97,7 +97,7 @@ def _given(signature: inspect.Signature, arguments: tuple[Any, ...], keywords: M
 
 
 def misfit(argument: str, value: object, error: Exception) -> str:
-    """Returns the message for a value of the wrong kind, with the way to make a right one."""
+    """Returns the message for a value of the wrong kind, with a way to make a right one."""
     kind = _kind(str(error))
     if kind is None:
         return f"{argument}: {error}, got {shown(value)}"

@@ -946,7 +946,7 @@ class DifferentialEvolution:
 
 @final
 class Firefly:
-    """Firefly algorithm (Yang 2009): needs only values. In turn, each firefly attracts all less bright ones.
+    """Firefly algorithm (Yang 2009): needs only values. Each firefly in turn attracts all less bright fireflies.
 
     Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     max_generations=None, stall_generations=50)`.
@@ -1007,7 +1007,7 @@ class Genetic:
     Args:
         population: size of a generation.
         elite_share: fraction that survives unchanged, rounded up.
-        crossover_share: fraction of the others produced by crossover; the rest is produced by mutation.
+        crossover_share: fraction of the remaining members produced by crossover; mutation produces the rest.
         tournament: size of a tournament; its best member becomes a parent.
         mutation_rate: probability that a coordinate of a mutant changes; at least one does. 1 changes all, as in MATLAB.
         mutation_scale: initial standard deviation of mutations, as a fraction of the box's width.
@@ -1038,7 +1038,7 @@ class Genetic:
         """Fraction that survives unchanged."""
     @property
     def crossover_share(self) -> float:
-        """Fraction of the others produced by crossover."""
+        """Fraction of the remaining members produced by crossover."""
     @property
     def tournament(self) -> int:
         """Size of a tournament."""
@@ -1168,7 +1168,7 @@ class QPSO:
 @final
 class LevenbergMarquardt:
     """Levenberg-Marquardt with the analytic Jacobian, inside the limits: joints at a bound are held, and the step is solved
-    again for the others.
+    again for the other joints.
 
     Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
 
@@ -1571,7 +1571,7 @@ def solve(
 
 @final
 class Solution:
-    """The best configuration found, and how the search ended."""
+    """The best configuration found, and the outcome of the search."""
 
     @property
     def success(self) -> bool:
@@ -2059,7 +2059,7 @@ def minimize(
 
 @final
 class Minimum:
-    """The best point found by `minimize`, and how the search ended."""
+    """The best point found by `minimize`, and the outcome of the search."""
 
     @property
     def success(self) -> bool:
@@ -3350,7 +3350,7 @@ class TPBSO:
 
 @final
 class Plan:
-    """A planned motion, and how its search ended."""
+    """A planned motion, and the outcome of its search."""
 
     @property
     def success(self) -> bool:
@@ -3692,7 +3692,7 @@ class ControlSession:
 @final
 class KinematicPlant:
     """A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
-    an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
+    an arm whose model is wrong, pass a modified robot, for example `robot.with_errors(...)`.
 
     Args:
         robot: the arm as built.
@@ -3718,7 +3718,7 @@ class KinematicPlant:
     def seed(self) -> int:
         """Seed of the noise."""
     def move(self, q: ArrayLike) -> _Array:
-        """Moves the arm to q (n,) (rad, m), and returns what the sensor measures: the position of the tip (3,) (m), or its
+        """Moves the arm to q (n,) (rad, m), and returns the measurement of the sensor: the position of the tip (3,) (m), or its
         pose (4, 4).
         """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...

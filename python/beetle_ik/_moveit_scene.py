@@ -27,7 +27,7 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
     place = np.eye(4) if frame is None else _rigid(frame)
     try:
         scene = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also dates and integers that Python cannot hold
+    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also for dates and integers that Python cannot hold
         raise InvalidInputError(f"{where}: not YAML: {error}") from error
     world = scene.get("world") if isinstance(scene, dict) else None
     if not isinstance(world, dict):

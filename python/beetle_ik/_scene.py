@@ -41,7 +41,7 @@ class Scene(Sequence[Obstacle]):
                 made = "must be made by bik.obstacles, such as Sphere or Box"
                 raise InvalidInputError(f"obstacle {i} {made}, got {obstacle!r:.60}")
         self._obstacles = given
-        self._prepared = PreparedObstacles(given)  # what calls of the core read
+        self._prepared = PreparedObstacles(given)  # read by calls of the core
 
     def __reduce__(self) -> tuple[type[Scene], tuple[tuple[Obstacle, ...]]]:
         return type(self), (self._obstacles,)

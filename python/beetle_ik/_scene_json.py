@@ -80,7 +80,7 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
         raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
     except json.JSONDecodeError as error:
         raise InvalidInputError(f"{where}: not JSON: {_not_json(error)}") from error
-    except (ValueError, RecursionError) as error:  # also integers of thousands of digits
+    except (ValueError, RecursionError) as error:  # also raised for integers of thousands of digits
         raise InvalidInputError(f"{where}: not JSON: {error}") from error
     shapes = scene
     if isinstance(scene, dict):

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     Triangles = NDArray[np.float64]
 
 _MOST = 30_000  # triangles of a figure: matplotlib takes a second for them
-_LIGHT = np.array([-0.35, -0.55, 0.76])  # from the upper left, in front of the default view
+_LIGHT = np.array([-0.35, -0.55, 0.76])  # light from the upper left, in front of the default view
 _DARKEST = 0.35  # brightness of a face turned away from the light
 _EMPTY = 1e-15  # m^2: smaller faces are left out
 

@@ -109,8 +109,8 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
 
     Raises:
         InvalidInputError: the file is not an npz file or is damaged, an array is too large for the memory, or an array
-            of a trajectory is missing; the message names it. FileNotFoundError, PermissionError, IsADirectoryError:
-            there is no such file, or it may not be read.
+            of a trajectory is missing; the message names it.
+        FileNotFoundError, PermissionError, IsADirectoryError: there is no such file, or it may not be read.
     """
     stored = read_arrays(file)
     for name in ("time", "coefficients", "joint_names"):

@@ -74,7 +74,7 @@ unsafe extern "C" fn gate<const I: usize>(
 }
 
 impl Member {
-    /// Finds the C function of a method by an instance; sets an exception where it is called in another way.
+    /// Finds the C function of a method by an instance; sets an exception for another calling convention.
     fn resolved(&self, this: *mut PyObject) -> Option<&PyCFunctionFastWithKeywords> {
         Python::attach(|py| {
             let object = self.object.bind(py);
@@ -279,7 +279,7 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
         let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };
         match derived(&class, &given) {
             Ok((make, made, arguments)) => {
-                // SAFETY: the constructor is that of a class that `made` derives from.
+                // SAFETY: `made` derives from the class of the constructor.
                 let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
                 if instance.is_null() {
                     // SAFETY: as above.

@@ -25,7 +25,7 @@ use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
 
-/// The best configuration found, and how the search ended.
+/// The best configuration found, and the outcome of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
     /// Solution as found; its nearest bodies may be missing.

@@ -42,11 +42,11 @@ class Budget:
             total += _ITEM
             if isinstance(each, str):
                 total += len(each)
-            elif isinstance(each, int) and each.bit_length() > 2 * _BITS:  # its quotients take long
+            elif isinstance(each, int) and each.bit_length() > 2 * _BITS:  # quotients of long integers are slow
                 raise RefusedError("a number that is too large")
             elif isinstance(each, list | tuple):
                 waiting.extend(each)
-            elif type(each) is dict:  # not a scope of xacro, which is not copied
+            elif type(each) is dict:  # a scope of xacro is not copied
                 waiting.extend(each)
                 waiting.extend(each.values())
         return total

@@ -195,7 +195,7 @@ class Expressions:
                 raise RefusedError("an unpacking **")
             options[keyword.arg] = self._of(keyword.value, names)
         passed = arguments[function is mapped :] + list(options.values())
-        if any(callable(each) for each in passed):  # it would be called for each item, out of the budget
+        if any(callable(each) for each in passed):  # a function would be called for each item, outside the budget
             raise RefusedError("a function as an argument")
         self._budget.keep((arguments, options))
         return self._budget.keep(function(*arguments, **options))

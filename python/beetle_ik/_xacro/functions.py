@@ -36,7 +36,7 @@ def _rounded(number: Any, ndigits: int | None = None) -> Any:
 
 def _counted(*arguments: int) -> list[int]:
     numbers = range(*arguments)
-    if numbers and (abs(numbers[-1] - numbers[0]) // abs(numbers.step)) >= _MOST_ITEMS:  # its length may overflow
+    if numbers and (abs(numbers[-1] - numbers[0]) // abs(numbers.step)) >= _MOST_ITEMS:  # the length may overflow
         raise RefusedError(f"a range of more than {_MOST_ITEMS} numbers")
     return list(numbers)
 

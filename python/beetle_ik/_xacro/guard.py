@@ -73,7 +73,7 @@ class Guard:
         self._budget.spend(_ELEMENT)
         self._spend_on_children(node)
         self._eval_all(node, macros, names)
-        self._spend_on_children(node)  # which the caller puts in place of the node
+        self._spend_on_children(node)  # the caller puts them in place of the node
 
     def _spend_on_children(self, node: Any) -> None:
         """Subtracts the work of replacing the children: each is searched for among all."""
@@ -124,7 +124,7 @@ class Guard:
             if not path.is_file():
                 raise FileNotFoundError(2, "No such file", filename)
         except OSError as error:
-            self._module.filestack.pop()  # as xacro does
+            self._module.filestack.pop()  # like xacro
             raise self._module.XacroException(f"{error.strerror}: {filename:.200}", exc=error) from error
         require_no_entities(content)
         return xml.dom.minidom.parseString(content)

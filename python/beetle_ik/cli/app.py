@@ -1,4 +1,4 @@
-"""The list of commands, and how errors are reported."""
+"""The list of commands, and the reporting of errors."""
 
 import logging
 from typing import Annotated, Any

@@ -29,7 +29,7 @@ class CurveName(StrEnum):
 @dataclass(frozen=True)
 class _Curve:
     make: Callable[..., ReferencePath]
-    lengths: dict[str, float]  # as fractions of the arm's stretched length
+    lengths: dict[str, float]  # fractions of the arm's stretched length
     others: dict[str, Any] = field(default_factory=dict)
 
 

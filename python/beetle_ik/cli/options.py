@@ -195,7 +195,7 @@ def sinusoid(option: str, text: str) -> Sinusoid:
 
 
 _NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
-_NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # also `tip=0.4,` and `--position=0.4`
+_NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # `tip=0.4,` and `--position=0.4` too
 
 
 def numbers_joined(arguments: list[str]) -> list[str]:

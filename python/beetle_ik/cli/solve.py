@@ -152,7 +152,7 @@ def _show(robot: Robot, solution: Solution, as_json: bool) -> None:
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],
     )
-    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on its own line, so that no terminal width breaks it
+    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # a line of its own: no terminal width breaks it
 
 
 def _errors(robot: Robot, tip: Any, position: float, rotation: float) -> list[tuple[str, str]]:

@@ -5,7 +5,7 @@ from importlib import import_module
 from .. import UnknownNameError
 from .experiment import Experiment
 
-# Each is a module of this folder, with "_" for "-" in its name, that defines EXPERIMENT.
+# Modules of this folder, with "_" for "-"; each defines EXPERIMENT.
 _NAMES = ("cheng2020", "khan2022", "pso-tracking", "wang2019", "yuan2016")
 
 

@@ -33,8 +33,9 @@ class ReachabilityMap:
         index: fraction of the orientations that are reached (x, y, z) float32.
         bits: a bit for each orientation (x, y, z, bytes) uint8, the lowest first.
         manipulability: largest manipulability found in each voxel (x, y, z) float32, NaN where there is none; None
-            without `quality`. clearance: largest clearance found (x, y, z) float32 (m), likewise; NaN without obstacles
-            and self-collision.
+            without `quality`.
+        clearance: largest clearance found in each voxel (x, y, z) float32 (m), NaN without obstacles and
+            self-collision; None without `quality`.
     """
 
     def __init__(

@@ -54,7 +54,7 @@ def _templates() -> Environment:
     }
     templates.tests.update(tests)
     templates.filters.update(
-        paragraphs=lambda text: Markup(paragraphs(text)),  # both escape what they are given
+        paragraphs=lambda text: Markup(paragraphs(text)),  # both functions escape their text
         inline=lambda text: Markup(inline(text)),
         slug=slug,
         rows=shown_rows,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 FIELD = 0.8  # rad: the vertical field of view
 _FROM = np.array([1.05, 0.9, 0.45])  # viewpoint relative to the target, as a fraction of its size
 _ASIDE = np.array([-0.1, 0.12, 0.0])  # shift of the view to the right: the controls cover that side
-_MARGIN, _ASPECT = 1.08, 1.3  # of a recording: distance over the least one, width over height of narrow frames
+_MARGIN, _ASPECT = 1.08, 1.3  # recording: distance over the least one, width over height of narrow frames
 _UPRIGHT, _BELOW = 0.75, 0.24  # upright window: distance, and height of the arm above the middle
 _SAME = 1e-3  # m: two camera positions nearer than this are one
 _NARROWEST = 0.3  # width over height of a window; a camera for a narrower one would be far away

@@ -13,8 +13,8 @@ class Worker:
     """A thread that carries out requests, at most once a tick, and keeps ticking during a motion.
 
     Args:
-        work: carries out the requests since the last tick, and returns whether anything still moves. dt: time between
-            two ticks (s).
+        work: carries out the requests since the last tick, and returns whether anything still moves.
+        dt: time between two ticks (s).
     """
 
     def __init__(self, work: Callable[[Collection[Request]], bool], dt: float) -> None:

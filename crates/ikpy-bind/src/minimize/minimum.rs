@@ -16,7 +16,7 @@ use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::traversal::traversed;
 
-/// The best point found by `minimize`, and how the search ended.
+/// The best point found by `minimize`, and the outcome of the search.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
 pub struct PyMinimum {
     core: minimize::Minimum,
@@ -167,7 +167,7 @@ fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> 
         true => format!("minimize: {}; kept as `best` of this exception", found.core.message()),
         false => "minimize: no finite value was found before".into(),
     };
-    // Exception classes may refuse attributes; the exception is raised all the same.
+    // Exception classes may refuse attributes; the exception is raised anyway.
     let kept = value.setattr("best", Bound::new(py, found)?);
     if kept.is_ok() {
         value.call_method1("add_note", (note,))?;

@@ -22,7 +22,7 @@ use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
 
-/// A planned motion, and how its search ended.
+/// A planned motion, and the outcome of its search.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,

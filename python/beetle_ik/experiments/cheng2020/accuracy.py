@@ -37,7 +37,7 @@ class Point:
     """Accuracy of a tracker, and its cost."""
 
     error: float
-    """Mean over the second half (m)."""
+    """Mean error over the second half (m)."""
     evaluations: float
     """Evaluations of a step, on average."""
     time: float

@@ -17,7 +17,7 @@ from .settings import DT, FIVE_LINK, IIWA, STEPS, Run, Solver, Task
 class ErrorBox:
     """A solver in a box as wide as the error, drawn anew after a few generations about the best point so far.
 
-    Its search contracts with the error, as that of BAS does by eq. (12).
+    Its search contracts with the error, like BAS by eq. (12).
     """
 
     solver: Solver

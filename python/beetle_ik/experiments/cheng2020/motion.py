@@ -59,7 +59,7 @@ with joint velocities of at most {model_speed} rad/s, which change by {model} ra
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """One arm with one reading of the walk, over many seeds."""
+    """Runs of one arm with one reading of the walk, over many seeds."""
 
     task: Task
     walk: str

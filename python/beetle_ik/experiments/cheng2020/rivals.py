@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "The beetle beside four swarms"
-_TESTS = 25  # as Table 2
+_TESTS = 25  # tests of Table 2
 _TESTS_SHORT = 2
 _FEW = 3  # tests of the swarms in boxes as wide as the error
 

@@ -45,7 +45,7 @@ that does not move is reached to rounding.
 
 @dataclass(frozen=True)
 class Antenna:
-    """One antenna at one gain, on the M; means over the seeds."""
+    """Results of one antenna at one gain, on the M; means over the seeds."""
 
     gain: float
     length: float | None

@@ -44,7 +44,7 @@ of the time.
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """One algorithm with a fixed target, and on the M."""
+    """Runs of one algorithm with a fixed target, and on the M."""
 
     point: Run
     letter: Run

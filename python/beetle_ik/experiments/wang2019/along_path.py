@@ -68,7 +68,7 @@ the library's default.
 
 @dataclass(frozen=True)
 class Case:
-    """One path and objective with all searches over all seeds."""
+    """Plans for one path and objective: all searches over all seeds."""
 
     path: str
     objective: Criterion

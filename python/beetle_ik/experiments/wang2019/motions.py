@@ -12,7 +12,7 @@ from .nearest import bang_bang, nearest_bent_as_in_the_paper
 from .searches import RIVALS, TPBSO, TUNED, USUAL, Plans, Search, best_so_far, costs, plan_all
 from .settings import LINKS, ONE_EACH, UNITS, Criterion
 
-_SEEDS = 20  # as the paper
+_SEEDS = 20  # seeds, as in the paper
 _SEEDS_SHORT = 1
 EQUAL_ITERATIONS = "equal iterations, usual constants"
 EQUAL_EVALUATIONS = "equal evaluations, usual constants"
@@ -23,7 +23,7 @@ CONTESTS = (EQUAL_ITERATIONS, EQUAL_EVALUATIONS, EQUAL_TUNING)
 
 @dataclass(frozen=True)
 class Motion:
-    """One objective and number of links with all searches over all seeds, and with the elbows of the paper."""
+    """Plans for one objective and number of links: all searches over all seeds, with the elbows of the paper."""
 
     objective: Criterion
     links: int

@@ -103,7 +103,7 @@ TUNED = (
         ),
         BLUE,
     ),
-    Search("PSO", bik.papers.PSO(population=50, stall_generations=None), VERMILION),  # its defaults
+    Search("PSO", bik.papers.PSO(population=50, stall_generations=None), VERMILION),  # default options
     Search(
         "GA",
         bik.papers.Genetic(
@@ -118,7 +118,7 @@ TUNED = (
         ),
         PURPLE,
     ),
-    Search("DE", bik.DifferentialEvolution(population=50, stall_generations=None), GREEN),  # its defaults
+    Search("DE", bik.DifferentialEvolution(population=50, stall_generations=None), GREEN),  # default options
 )
 TPBSO, RIVALS = "TPBSO", ("PSO", "GA")
 """The paper's own search, and the rivals that the paper compares; differential evolution is our addition."""

@@ -19,7 +19,7 @@ TITLE = "Table 1"
 _SEEDS, _SEEDS_SHORT = 5, 1
 _PRINTED_RUNS = 20
 _GENERATIONS = 100
-_EVALUATIONS = {  # at equal iterations
+_EVALUATIONS = {  # evaluations at equal iterations
     "GA": POPULATION * (_GENERATIONS + 1),
     "PSO": POPULATION * (_GENERATIONS + 1),
     "TPBSO": POPULATION * (3 * _GENERATIONS + 1),

@@ -97,6 +97,6 @@ TIMES = (16.36182, 10.00347, 12.62770, 22.45021, 10.69781, 9.10838, 11.31745)  #
 NEWTON_ERRORS = (None, 2.00, 1.40, 59.53, 0.83, None, 204.5)  # mm; None: "FALSE"
 NEWTON_ITERATIONS = 4000
 
-LEARNING_RATE, THRESHOLD = 0.01, 1e-8  # as printed
+LEARNING_RATE, THRESHOLD = 0.01, 1e-8  # values as printed
 HIDDEN_FACTOR = 20.0  # ratio of the paper's error E to that of eq. (11)
 BUDGET = 1000  # I_0

@@ -1,4 +1,4 @@
-"""Singular configurations: on the way of the motions, and as the start of searches."""
+"""Singular configurations: along the motions, and as the start of searches."""
 
 from __future__ import annotations
 
