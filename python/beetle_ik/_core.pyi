@@ -2972,8 +2972,9 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
     """Returns the smallest distance (m) between the robot's bodies and obstacles, or between two of its bodies: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 
-    The result is never more than the true distance, and at most 1e-9 m less; farther than 1 km from the base, at most
-    1e-12 of the coordinates less. Beyond 1e30 m, a body that may be near gives -inf.
+    The result is never more than the true distance: for capsules at most 1e-9 m less, for bodies of other shapes about
+    1e-7 m. Farther than 1 km from the base, 1e-12 of the coordinates is lost; beyond 1e30 m, a body that may be near
+    gives -inf.
 
     The depth of a capsule in an obstacle is the depth of the deepest point of its axis, plus its radius. It is measured
     to the surface of a closed mesh (to 1 % or 0.1 mm), within the nearest block of voxels of a grid, or within the
