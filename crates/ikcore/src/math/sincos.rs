@@ -123,7 +123,7 @@ pub fn sincos_eight<A: Arithmetic>(x: Eight<A>) -> (Eight<A>, Eight<A>) {
     (doubled * cosine, (-doubled).mul_add(sine, splat(1.0)))
 }
 
-/// Taylor coefficients of sin(x) / x and cos(x), highest power of x^2 first, without the leading ones.
+/// Taylor coefficients of sin(x) / x and cos(x) after the leading one, in descending powers of x^2.
 const SERIES: [(f64, f64); 6] = [
     (-1.0 / 39_916_800.0, -1.0 / 3_628_800.0),
     (1.0 / 362_880.0, 1.0 / 40_320.0),
