@@ -92,9 +92,9 @@ pub enum Error {
     /// A call that takes robots with one tip got one with several.
     #[error("{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip=")]
     SeveralTips {
-        /// The call.
+        /// Name of the call.
         call: String,
-        /// The tips.
+        /// Names of the tips.
         tips: String,
     },
     /// No joint that the robot holds has this name.
@@ -146,7 +146,7 @@ pub enum Error {
     /// A file that cannot be read.
     #[error("cannot read '{path}': {problem}")]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: String,
         /// The operating system's reason.
         problem: String,
@@ -156,9 +156,9 @@ pub enum Error {
     EmptyRange {
         /// The joint's name.
         joint: String,
-        /// Its lower limit (rad or m).
+        /// Lower limit of the joint (rad or m).
         lower: f64,
-        /// Its upper limit (rad or m).
+        /// Upper limit of the joint (rad or m).
         upper: f64,
         /// Time of the violation, for limits that vary (s).
         time: Option<f64>,
@@ -170,11 +170,11 @@ pub enum Error {
         what: String,
         /// The joint's name.
         joint: String,
-        /// Its value (rad or m).
+        /// Value of the joint (rad or m).
         value: f64,
-        /// Its lower limit (rad or m).
+        /// Lower limit of the joint (rad or m).
         lower: f64,
-        /// Its upper limit (rad or m).
+        /// Upper limit of the joint (rad or m).
         upper: f64,
     },
     /// A configuration that puts the tip outside its region.
@@ -184,11 +184,11 @@ pub enum Error {
         what: String,
         /// The coordinate, in the base's frame.
         coordinate: String,
-        /// Its value (m).
+        /// Value of the coordinate (m).
         value: f64,
-        /// Its lower bound (m).
+        /// Lower bound of the region (m).
         lower: f64,
-        /// Its upper bound (m).
+        /// Upper bound of the region (m).
         upper: f64,
     },
     /// The start or end of a motion is out of reach.
@@ -196,7 +196,7 @@ pub enum Error {
     Unreachable {
         /// Name of the end, for example "start".
         what: String,
-        /// The distance to it, and what would be right.
+        /// Shortfall, and what would be right.
         problem: String,
     },
     /// A search found nothing, which does not prove that nothing exists.
@@ -224,7 +224,7 @@ pub enum Error {
         joint: String,
         /// Smallest value of the limit (rad/s or m/s, and so on).
         value: f64,
-        /// The time at which it is reached (s).
+        /// Time of the smallest value (s).
         time: f64,
     },
     /// A limit that the method does not support. No method silently ignores a limit.
@@ -232,9 +232,9 @@ pub enum Error {
     UnsupportedLimit {
         /// Field of the limits, for example "acceleration".
         field: String,
-        /// The method.
+        /// Method that rejects the limit.
         method: String,
-        /// The remedy.
+        /// Advice to the caller.
         remedy: String,
     },
     /// No motion satisfies the request.
@@ -284,7 +284,7 @@ pub enum Error {
     InCollision {
         /// Name of the argument, for example "start".
         what: String,
-        /// The link.
+        /// Name of the link.
         link: String,
         /// Name of the other body, for example "obstacle 0 (Box)".
         other: String,
@@ -329,17 +329,17 @@ pub enum Error {
     /// A mistake in one row of a batch.
     #[error("row {row}: {error}")]
     InRow {
-        /// The row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// The problem.
+        /// Mistake in the row.
         error: Box<Error>,
     },
     /// A mistake in one problem of a batch of plans.
     #[error("problems[{index}]: {error}")]
     InProblem {
-        /// The problem, from 0.
+        /// Index of the problem, from 0.
         index: usize,
-        /// The mistake.
+        /// Mistake in the problem.
         error: Box<Error>,
     },
     /// The operating system cannot start this many threads.
@@ -353,7 +353,7 @@ pub enum Error {
     /// A call that must come after another one.
     #[error("{call}: {remedy}")]
     OutOfTurn {
-        /// The call.
+        /// Name of the call.
         call: String,
         /// The call that must come first.
         remedy: String,
@@ -369,7 +369,7 @@ pub enum Error {
     Corrupt {
         /// The object to be restored.
         what: String,
-        /// The problem.
+        /// Reason why the bytes are rejected.
         problem: String,
     },
 }

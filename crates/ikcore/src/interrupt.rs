@@ -35,7 +35,7 @@ pub fn interruptible<T>(keep_going: impl FnMut() -> bool + 'static, work: impl F
 /// # Errors
 /// [`Error::Interrupted`] if it may not.
 pub fn checkpoint() -> Result<()> {
-    // Removed during the call, which may run user code that starts another computation.
+    // The function is removed during the call, which may run user code that starts another computation.
     let Some(mut keep_going) = KEEP_GOING.take() else { return Ok(()) };
     let goes_on = keep_going();
     KEEP_GOING.set(Some(keep_going));

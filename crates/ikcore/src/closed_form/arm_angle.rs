@@ -1,5 +1,5 @@
-//! Arms with a spherical shoulder and a spherical wrist (SRS): the shoulder-wrist distance determines the elbow, and the arm
-//! angle rotates the arm about the shoulder-wrist line.
+//! Arms with a spherical shoulder and a spherical wrist (SRS): the shoulder-wrist distance determines the elbow (subproblem
+//! 3), and the arm angle rotates the arm about the shoulder-wrist line.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};

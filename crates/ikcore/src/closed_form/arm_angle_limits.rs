@@ -48,10 +48,10 @@ impl ArmAngle {
             })
     }
 
-    /// Returns arm angles (rad) of which at least one has a configuration within limits, if any arm angle has: those at which
-    /// a joint reaches a limit, one between each two neighbours, and those at which shoulder or wrist are aligned. The set is
-    /// not conclusive where an arm angle nearly aligns them, since the other joints turn fast there, or where joint 4 is
-    /// nearly free.
+    /// Returns test values: if any arm angle (rad) has a configuration within limits, one of these has. They are the arm
+    /// angles at which a joint reaches a limit, one between each two neighbours, and those at which shoulder or wrist are
+    /// aligned. The test is not conclusive where an arm angle nearly aligns them, since the other joints turn fast there, or
+    /// where joint 4 is nearly free.
     pub fn decisive(
         &self,
         pose: &ArmAnglePose,

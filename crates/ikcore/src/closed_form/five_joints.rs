@@ -90,8 +90,8 @@ impl FiveJoints {
                 }
             }
         }
-        // A family of six-joint solutions has one representative, and near a double root the virtual joint is poorly
-        // determined: solutions not found may leave it at zero.
+        // Further solutions may exist in two cases: a family of six-joint solutions has only one representative, and near a
+        // double root the virtual joint is poorly determined.
         let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty() && found.len() >= six.len();
         (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Open }, six.singular);
         found.evaluations += six.evaluations;

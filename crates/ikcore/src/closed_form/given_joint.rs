@@ -31,8 +31,8 @@ impl GivenJoint {
 
     fn at(axis: usize, chain: &AxisChain<7>) -> Self {
         let joints = std::array::from_fn(|k| chain.joints[if k < axis { k } else { k + 1 }]);
-        // The tip frame is part of the displacement. Speed matters more here than a few solutions lost near folds, since only
-        // samples of the parameter are solved.
+        // Identity tip, since the tip frame is part of the displacement. Speed matters more than a few solutions lost near folds:
+        // only samples of the parameter are solved.
         let others = ClosedForm::structured(&AxisChain { joints, tip: Frame::IDENTITY });
         Self { axis, joint: chain.joints[axis], others }
     }

@@ -69,7 +69,7 @@ struct Moving<'a> {
     limits: [Arc; 7],
     /// Vector from the root to the centre.
     centre: Orbit,
-    /// Its squared length, and its component along the axis of A.
+    /// Squared length of that vector, and its component along the axis of A.
     distance: Swing,
     height: Swing,
     /// Axis of F.
@@ -154,7 +154,7 @@ impl<'a> Moving<'a> {
     fn new(arm: &'a LimitProof, goal: &Frame, limits: &[[f64; 2]; 7]) -> Self {
         let goal = if arm.reversed { goal.inverse() } else { *goal };
         let limits = std::array::from_fn(|k| Arc::between(limits[if arm.reversed { 6 - k } else { k }]).wider(SLACK));
-        // The other joints see the pose turned backwards.
+        // Turning the parameter joint forward turns the pose backward for the other joints.
         let back = scaled(&arm.axes[0], -1.0);
         let centre = Orbit::of(&back, &sub(&goal.place::<Baseline>(&arm.centre), &arm.parameter));
         let centre = centre.moved(&sub(&arm.parameter, &arm.root));

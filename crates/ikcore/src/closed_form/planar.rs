@@ -1,4 +1,5 @@
-//! Three parallel revolute joints, optionally with a prismatic joint along their axes: planar arms and SCARA.
+//! Three parallel revolute joints, optionally with a prismatic joint along their axes: planar arms and SCARA
+//! (subproblems 1 and 3).
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};

@@ -130,7 +130,7 @@ impl<'a> PoseFamily<'a> {
         let mut candidates = Candidates::new();
         for value in values {
             self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
-            // The remaining capacity fits the candidates of one more value.
+            // Flush while there is still room for the candidates of one more value.
             if candidates.count > LANES && !visit(&self.first_verified(&mut candidates)) {
                 return;
             }

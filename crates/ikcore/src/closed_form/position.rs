@@ -77,7 +77,7 @@ pub struct ThreeAxes {
     case: Case,
     /// True if solved from the far end: the inverse motion carries the goal to the point.
     mirrored: bool,
-    /// Lever arm (m) below which it counts as zero.
+    /// Length (m) below which a lever arm counts as zero.
     floor: f64,
 }
 
@@ -130,7 +130,8 @@ impl ThreeAxes {
         arms
     }
 
-    /// Solves parallel axes 1 and 2: the height along the axes gives q3 (subproblem 4), the distance q2 (subproblem 3).
+    /// Solves parallel axes 1 and 2: the height along the axes gives q3 (subproblem 4), the distance q2 (subproblem 3), and
+    /// subproblem 1 gives q1.
     #[inline(always)]
     fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
         let [h1, h2, h3] = &self.axes;
@@ -180,13 +181,11 @@ impl ThreeAxes {
         let mut arms = Arms::NONE;
         let (e1, e2) = (perpendicular(h2), cross(h2, &perpendicular(h2)));
         // Vector u = c + rot3 w, as constant + cosine cos q3 + sine sin q3.
-        //
-        // Its square is linear too: |u|^2 = |c|^2 + |w|^2 + 2 c'rot3 w.
         let along = scaled(h3, dot(h3, w));
         let (constant, cosine, sine) = (add(c, &along), sub(w, &along), cross(h3, w));
         let component = |n: &Vector| -> Linear { [dot(n, &constant), dot(n, &cosine), dot(n, &sine)] };
         let z = component(h2);
-        // |u|^2 is linear too: |c|^2 + |w|^2 + 2 c'rot3 w.
+        // Square of u, also linear: |u|^2 = |c|^2 + |w|^2 + 2 c'rot3 w.
         let square: Linear = [dot(c, c) + dot(w, w) + 2.0 * dot(c, &along), 2.0 * dot(c, &cosine), 2.0 * dot(c, &sine)];
         // Two equations, b'rot2 u = (|a|^2 - |b|^2 - |u|^2)/2 and h1'rot2 u = h1'(a - b), without their parts along h2.
         let (bz, hz) = (dot(b, h2), dot(h1, h2));

@@ -221,8 +221,8 @@ impl ClosedForm {
         !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
     }
 
-    /// Solves in one direction, and in the other too if the first may have missed a solution. Zeros that nearly coincide make
-    /// their count no proof either.
+    /// Solves in one direction, and in the other too if the first may have missed a solution. A count with nearly coincident
+    /// zeros is no proof.
     fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
         for way in ways {
             let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
@@ -245,11 +245,11 @@ impl ClosedForm {
         }
     }
 
-    /// Solves a structure that lies elsewhere in the loop of chain and pose: opens the loop after `at` joints.
+    /// Solves a structure found elsewhere in the loop that chain and pose close: opens the loop after `at` joints.
     fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates) {
         let joints = AxisChain::rotated(&self.chain.joints, goal, at);
         let mut turned = Candidates::new();
-        // The pose may make axes meet or be parallel, exactly or nearly, that are not neighbours in the arm.
+        // Axes that are not neighbours in the arm may meet or be parallel at this pose, exactly or nearly.
         if !are_sharp(&joints, self.size) {
             turned.doubt = Doubt::Open;
         }

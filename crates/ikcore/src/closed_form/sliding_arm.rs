@@ -78,7 +78,7 @@ impl SlidingArm {
         arms
     }
 
-    /// Solves intersecting axes: the distance from their intersection gives the prismatic displacement.
+    /// Solves intersecting axes: the distance from their intersection gives the prismatic displacement, subproblem 2 the angles.
     fn meeting(&self, a: &Vector, u: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
@@ -104,7 +104,7 @@ impl SlidingArm {
         arms
     }
 
-    /// Solves parallel axes: the height along them gives the prismatic displacement, the distance the second joint.
+    /// Solves parallel axes: the height along them gives the prismatic displacement, subproblems 3 and 1 the angles.
     fn parallel(&self, a: &Vector, b: &Vector, u: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;

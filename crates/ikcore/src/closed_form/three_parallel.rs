@@ -46,7 +46,7 @@ pub struct ThreeParallel {
     floor: f64,
 }
 
-/// Elbow equation a cos q3 + b sin q3 = c: the sum of the links has the required length.
+/// Elbow equation a cos q3 + b sin q3 = c (subproblem 3): the sum of the links has the required length.
 #[derive(Debug, Clone, Copy)]
 struct Elbow {
     a: f64,
@@ -82,9 +82,9 @@ struct Wrists {
 /// Relation of axes 5 and 6, which decides how q1 and q5 separate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Last {
-    /// Intersecting axes: their common point gives q1, then the direction of axis 6 gives q5.
+    /// Intersecting axes: their common point gives q1, then the direction of axis 6 gives q5 (subproblem 4 twice).
     Meet,
-    /// Parallel axes: the direction of axis 6 gives q1, its distance q5.
+    /// Parallel axes: the direction of axis 6 gives q1, its distance q5 (subproblem 4 twice).
     Parallel,
     /// Skew axes: both equations are solved together (subproblem 6).
     Skew,
@@ -227,8 +227,8 @@ impl ThreeParallel {
         wrists.push(shoulder, q5, q6);
     }
 
-    /// Solves the planar arm: the sum of the three parallel joints, and q2, q3 and q4 from the two links between axes 2, 3
-    /// and 4. Empties `wrists`.
+    /// Solves the planar arm: the sum of the three parallel joints, and q2, q3 and q4 (subproblem 3) from the two links
+    /// between axes 2, 3 and 4. Empties `wrists`.
     #[inline(always)]
     fn planar<A: Arithmetic>(&self, wrists: &mut Wrists, found: &mut Candidates) {
         let Wrists { x, y, offset, turns, count } = wrists;
@@ -345,7 +345,7 @@ struct Bends<R> {
     /// Number of valid values in each lane.
     counts: [usize; 4],
     doubt: Doubt,
-    /// True if a lane has no value, but only narrowly.
+    /// True if a lane has no value, but a small change of the input would give one.
     near_miss: bool,
 }
 

@@ -18,7 +18,7 @@ pub const ALIGNED: f64 = 1e-10;
 /// arbitrary member.
 pub const NEARLY_ALIGNED: f64 = 1e-5;
 
-/// Middle joint of a wrist: angles q with outer' rot(axis, q) inner = outer' goal.
+/// Middle joint of a wrist (subproblem 4): angles q with outer' rot(axis, q) inner = outer' goal.
 #[derive(Debug, Clone, Copy)]
 pub struct Bend {
     outer: Vector,
@@ -122,7 +122,7 @@ pub struct WristTurns {
     pub aligned: bool,
     /// Doubt whether the outer axes are nearly aligned, or the pose is nearly out of reach.
     pub doubt: Doubt,
-    /// True if the pose is out of reach, but only narrowly.
+    /// True if the pose is only just out of reach.
     pub near_miss: bool,
 }
 

@@ -18,9 +18,9 @@ const CYCLE: Frame = Frame { axes: [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0,
 /// Rotation vector within a chain.
 #[derive(Debug, Clone)]
 pub(crate) struct RotationVector {
-    /// Index of its first stage.
+    /// Index of the first of its four stages.
     pub first: usize,
-    /// Index of its first joint.
+    /// Index of the first of its three joints.
     pub joint: usize,
     /// Constant frame relative to the stage before.
     pub start: Frame,

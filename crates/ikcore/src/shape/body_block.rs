@@ -235,7 +235,7 @@ mod tests {
                 for lane in 0..4 {
                     let radius = block.radius.0[lane];
                     let gap = shape.distance_to_segment(&block.segment(lane), f64::INFINITY) - radius - margin;
-                    // Either answer is right within rounding of the decision.
+                    // Either answer is right within rounding of the threshold.
                     assert!(gap.abs() < 3e-9 || (gap > 0.0) == (clear[lane] == 1.0), "{}: {gap}", shape.name());
                     *(if gap > 0.0 { &mut far } else { &mut near }) += 1;
                 }

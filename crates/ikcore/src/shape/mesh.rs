@@ -47,9 +47,9 @@ pub(super) struct NearestFace {
 
 /// Accuracy of the depth of a segment inside a closed mesh, relative to the depth.
 const DEPTH_ACCURACY: f64 = 0.01;
-/// Absolute accuracy of that depth (m).
+/// Absolute accuracy of the depth of a segment (m).
 const SMALLEST_DEPTH_ACCURACY: f64 = 1e-4;
-/// Largest number of points of the segment evaluated for its depth.
+/// Largest number of points evaluated for the depth of a segment.
 const MOST_DEPTHS: usize = 400;
 
 impl PartialEq for Mesh {
@@ -347,7 +347,7 @@ mod tests {
             let slack = if exact > 0.0 { 2e-12 } else { 2.0 * SMALLEST_DEPTH_ACCURACY.max(-DEPTH_ACCURACY * exact) };
             inside += usize::from(exact < 0.0);
             assert!(found <= exact + 2e-9 && found >= exact - slack, "case {case}: {found} for {exact}");
-            // Any value of `enough` leaves the answer on the same side of it.
+            // The result lies on the same side of `enough` as the distance.
             let enough = rng.uniform_in(-0.2, 0.6);
             let short = mesh.distance_to_segment(&segment, enough);
             assert!(short <= exact + 2e-9 && (short >= enough) == (found >= enough), "{short} {found} {enough}");

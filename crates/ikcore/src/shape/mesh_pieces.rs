@@ -16,9 +16,9 @@ pub(super) const NO_PIECE: usize = usize::MAX;
 pub(super) struct MeshPiece {
     /// Indices of its triangles.
     pub faces: Vec<u32>,
-    /// True if it has no boundary.
+    /// True if the piece has no boundary.
     pub closed: bool,
-    /// True if all its triangles were given in one orientation.
+    /// True if all triangles were given in one orientation.
     pub one_sided: bool,
 }
 

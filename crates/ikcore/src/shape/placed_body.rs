@@ -199,7 +199,7 @@ mod tests {
             } else {
                 assert!(found < 0.0, "{name}: {found} for {exact}");
             }
-            // A small `enough` leaves results below it unchanged, and results above it no larger.
+            // A smaller `enough` leaves distances below it unchanged, and never raises those above it.
             let short = obstacle.distance_to_body(body, 0.1);
             assert!(short <= exact + 2e-9 && (short < 0.1) == (found < 0.1), "{name}: {short} for {found}");
         });
@@ -215,7 +215,7 @@ mod tests {
                 *(if gap.distance < 0.0 { &mut inside } else { &mut outside }) += 1;
                 let own = body.convex();
                 let fixed = Convex::of(other.geometry(), &Frame::IDENTITY).unwrap();
-                // No direction separates them by more.
+                // No direction separates the two sets by more.
                 for _ in 0..100 {
                     let normal = Vector3::from(point(rng, 1.0)).normalize();
                     let along = normal.dot(&own.support(&-normal)) - normal.dot(&fixed.support(&normal));

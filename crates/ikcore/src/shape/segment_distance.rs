@@ -177,7 +177,7 @@ mod tests {
             let at = |i: usize| egg.geometry().tangent(&(a + i as f64 / 2000.0 * (b - a))).value;
             let nearest = (0..=2000).map(at).fold(f64::INFINITY, f64::min);
             assert!(found <= nearest + 1e-9 && nearest - found < 2e-3, "{found}, sampled {nearest}");
-            // With 0.1 m enough, the result may be smaller than a larger distance, but not below 0.1 m.
+            // Search with `enough` = 0.1 m: larger distances may be underestimated, but stay at least 0.1 m.
             let enough = egg.distance_to_segment(&[a, b], 0.1);
             assert!(enough <= found + 1e-9 && (enough >= 0.1) == (found >= 0.1), "{enough} for {found}");
         }

@@ -16,7 +16,7 @@ pub(super) struct NearestFraction<R> {
 }
 
 impl<R: Real> NearestFraction<R> {
-    /// Returns the nearer of two.
+    /// Returns the nearer of two results.
     #[inline(always)]
     pub fn or(self, other: Self) -> Self {
         Self {

@@ -149,8 +149,8 @@ impl<R: Real> SolidLanes<R> for CylinderLanes<R> {
 const STEPS: usize = 24;
 
 /// Returns a lower bound on the distance of the segment from `start` along `along`, in the frame of `solid`, accurate enough
-/// for a comparison with `enough`. The distance is convex along the segment, so the intersection of two tangents bounds it
-/// between their points.
+/// for a comparison with `enough`. The distance is convex along the segment, so the intersection of two tangents is a lower
+/// bound between their points of contact.
 #[inline(always)]
 pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, enough: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));

@@ -43,7 +43,7 @@ pub struct Turns<const N: usize> {
     pub free: bool,
     /// Doubt about further solutions.
     pub doubt: Doubt,
-    /// True if there is no solution, but only narrowly.
+    /// True if there is no solution, but a small change of the input would give one.
     pub near_miss: bool,
 }
 

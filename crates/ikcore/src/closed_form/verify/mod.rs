@@ -53,7 +53,7 @@ impl<const N: usize> Verifier<N> {
         self.accept_polished(target, set, found);
     }
 
-    /// Returns the residual (m, rad) of the tip at joint values from `target`.
+    /// Returns the pose error (m, rad) of the tip at the joint values `set`.
     pub fn residual(&self, target: &Frame, set: &[f64; N]) -> f64 {
         residuals::difference(&self.chain.tip_at(set), target)
     }

@@ -100,7 +100,7 @@ fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
     let [position, of_x, of_z] = squares;
     let mut rotation = [0.0; LANES];
     for w in 0..LANES {
-        // Small rotations w move x by w cross x: the part about y moves both axes and must count once.
+        // Small rotation w: x moves by w cross x. The component about y moves both axes and must count once.
         about_y[w] = (0..3).map(|k| carried[2][k][w] * target.axes[0][k]).sum();
         let square = of_x[w] + of_z[w] - about_y[w] * about_y[w];
         rotation[w] = if square > 0.0 { square } else { 0.0 };

@@ -19,7 +19,7 @@ pub enum CollisionShapes {
     /// Converts spheres, cylinders, capsules and boxes to enclosing capsules; lists meshes without reading them.
     #[default]
     Primitives,
-    /// Also reads meshes, and covers each by few capsules.
+    /// Reads meshes too, and covers each by few capsules.
     Fit,
     /// Converts meshes to their convex hulls; keeps spheres, cylinders, capsules and boxes as they are.
     Hulls,
