@@ -124,7 +124,7 @@ pub enum Error {
     InvalidRobot {
         /// The robot's name.
         robot: String,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A URDF that cannot be read.
@@ -132,7 +132,7 @@ pub enum Error {
     Urdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// An SRDF that cannot be read, or one of another robot.
@@ -140,7 +140,7 @@ pub enum Error {
     Srdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A file that cannot be read.
@@ -196,7 +196,7 @@ pub enum Error {
     Unreachable {
         /// Name of the end, for example "start".
         what: String,
-        /// Shortfall, and what would be right.
+        /// Shortfall, with advice.
         problem: String,
     },
     /// A search found nothing, which does not prove that nothing exists.
@@ -260,13 +260,13 @@ pub enum Error {
     /// Options that contradict each other.
     #[error("{problem}")]
     Contradiction {
-        /// Contradictory options, and what would be right.
+        /// Contradictory options, with advice.
         problem: String,
     },
     /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
     InvalidObstacle {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// The robot has no capsules, so its shape is unknown.
@@ -274,7 +274,7 @@ pub enum Error {
     NoCapsules {
         /// The robot's name.
         robot: String,
-        /// The problem, and the remedy.
+        /// Description of the problem, with advice.
         problem: String,
         /// Advice on adding capsules to the robot.
         remedy: String,
@@ -305,7 +305,7 @@ pub enum Error {
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
     InvalidPath {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// Times that do not increase.
@@ -323,7 +323,7 @@ pub enum Error {
     /// An invalid joint motion.
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A mistake in one row of a batch.

@@ -1,4 +1,4 @@
-//! Seven joints of which the first or the last is given: the other six solve the pose that remains.
+//! Seven joints with the first or the last given: the other six solve the remaining pose.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;

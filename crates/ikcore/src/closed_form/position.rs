@@ -112,7 +112,7 @@ impl ThreeAxes {
         Self { axes, points, case, mirrored, floor: 1e-11 * size }
     }
 
-    /// Returns all angles that carry `point` to `goal`; those outside `ranges` may be left out.
+    /// Returns all angles that carry `point` to `goal`; solutions outside `ranges` may be left out.
     #[inline(always)]
     pub fn reach(&self, point: &Vector, goal: &Vector, ranges: &[AngleRange; 3]) -> Arms {
         let (point, goal, of_q3) = if self.mirrored { (goal, point, &ranges[0]) } else { (point, goal, &ranges[2]) };

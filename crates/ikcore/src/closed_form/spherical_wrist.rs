@@ -1,5 +1,5 @@
-//! Six joints of which the last three form a spherical wrist: the wrist centre gives the first three, the remaining rotation
-//! the others. At most eight solutions (Pieper 1968).
+//! Six joints, the last three of which form a spherical wrist: the wrist centre gives the first three joints, the remaining
+//! rotation the last three. At most eight solutions (Pieper 1968).
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};

@@ -1,4 +1,4 @@
-//! Six revolute joints of which the second to fourth are parallel, as in UR and Techman arms: at most eight solutions.
+//! Six revolute joints with parallel axes 2 to 4, as in UR and Techman arms: at most eight solutions.
 //!
 //! The direction h of the three axes and the line of axis 6 give two equations in q1 and q5 alone; the rest is a planar arm
 //! with two links. With n the direction of axis 6, p6 a point on it, and H the required displacement:

@@ -22,7 +22,7 @@ pub enum Geometry {
     Box {
         /// Centre and axes.
         pose: Pose,
-        /// Edge lengths along those axes.
+        /// Edge lengths along the axes of `pose`.
         size: [f64; 3],
     },
     /// Capsule: all points within `radius` of the segment from `a` to `b`.
@@ -56,7 +56,7 @@ pub enum Geometry {
     Ellipsoid {
         /// Centre and axes.
         pose: Pose,
-        /// Semi-axes along those axes.
+        /// Semi-axes along the axes of `pose`.
         semi_axes: [f64; 3],
     },
     /// Ellipse in the plane z = 0, for planar arms.

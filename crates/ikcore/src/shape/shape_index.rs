@@ -1,4 +1,4 @@
-//! Spatial index of shapes: finds those near a ball.
+//! Spatial index that finds the shapes near a ball.
 
 use nalgebra::Vector3;
 

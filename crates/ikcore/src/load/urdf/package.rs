@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct Packages {
     /// Folder of the URDF; empty for text.
     directory: PathBuf,
-    /// Folders that contain packages, or are packages: those of the caller, of the environment, and around the URDF, in this
+    /// Folders that contain packages, or are packages: from the caller, from the environment, and around the URDF, in this
     /// order.
     roots: Vec<PathBuf>,
 }
