@@ -10,13 +10,14 @@ use super::tangent::{Tangent, nearest_on_segment};
 /// Distance from the deepest point of an axis, as a fraction of its length, at which other faces are looked for.
 const BESIDE: f64 = 1e-6;
 
-/// Length of the common part of two normals below which they belong to opposite faces, so that either leads out.
+/// Length of the combined normal below which two normals belong to opposite faces, so that either leads out.
 const LEAST_IN_COMMON: f64 = 0.05;
 
 impl Shape {
     /// Returns the point of a capsule nearest to the shape (m), and the gradient of the distance with respect to the
     /// capsule's position: the unit normal there, out of the shape. If faces on both sides of the deepest point of the axis
-    /// are equally near, the gradient is the common part of their normals, which is shorter.
+    /// are equally near, the gradient is the convex combination of their normals with zero slope along the axis, which is
+    /// shorter.
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [a, b] = segment;
         let fraction = self.geometry().approach(segment, f64::INFINITY).fraction;

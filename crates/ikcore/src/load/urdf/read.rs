@@ -53,7 +53,7 @@ impl Robot {
     ///
     /// Collision shapes of all links become enclosing capsules ([`Robot::bodies`]): exact for spheres, with protruding caps
     /// for cylinders and boxes. Meshes are read only with [`CollisionShapes::Fit`] or [`CollisionShapes::Hulls`];
-    /// [`Robot::unread_collision_shapes`] names the others.
+    /// [`Robot::unread_collision_shapes`] lists the rest.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
