@@ -39,7 +39,7 @@ impl Bend {
         let (a, b) = (dot(&cross(axis, outer), &across), dot(outer, &across));
         let constant = dot(outer, axis) * dot(axis, inner);
         let radius = a.hypot(b);
-        // Rounding of constants that are exactly one must not open a gap.
+        // Margins of rounding size are zero, so that no gap opens where the constant is exactly one.
         let margin = |m: f64| if m.abs() < 4e-16 { 0.0 } else { m };
         Self {
             outer: *outer,

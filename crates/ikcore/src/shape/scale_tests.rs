@@ -130,7 +130,7 @@ fn no_distance_is_above_the_true_one_at_any_scale() {
         let aside = if case % 2 == 0 { 0.0 } else { length(&mut rng) };
         let (half, own, gap) = (length(&mut rng), length(&mut rng), length(&mut rng));
         let center = [half + own + gap, aside, -aside];
-        // The coordinate of the centre is rounded.
+        // Allowance for the rounding of the centre's coordinate.
         let exact = center[0] - half - own + 4.0 * f64::EPSILON * center[0];
         if !exact.is_finite() {
             continue;

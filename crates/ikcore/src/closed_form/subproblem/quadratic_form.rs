@@ -12,7 +12,7 @@ const NOISE: f64 = 1e-13;
 /// Quadratic form w' F w = 0 for w = (1, cos q, sin q): a conic that meets the unit circle in at most four points.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct QuadraticForm {
-    /// Upper triangle: 11, 1c, 1s, cc, cs, ss.
+    /// Upper triangle of F: entries 11, 1c, 1s, cc, cs, ss.
     entries: [f64; 6],
     /// Magnitude of the added terms, which sets the rounding error where they cancel.
     scale: f64,

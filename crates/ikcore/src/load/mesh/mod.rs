@@ -95,7 +95,7 @@ mod tests {
     fn stl_is_read_as_text_and_binary() {
         let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 2 3\nvertex 4 5 7\nendloop\nendfacet\nendsolid";
         assert_eq!(parsed("a.STL", text).unwrap(), Triangles { vertices: CORNERS.to_vec(), faces: vec![[0, 1, 2]] });
-        // Some binary files begin like text.
+        // Binary file that begins like text.
         let mut binary = b"solid".to_vec();
         binary.resize(80, b' ');
         binary.extend(1_u32.to_le_bytes());
