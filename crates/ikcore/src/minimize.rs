@@ -1,4 +1,4 @@
-//! Minimises any function in a box with a derivative-free solver.
+//! Minimization of any function in a box by a derivative-free solver.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -13,9 +13,9 @@ use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Mon
 /// Options of [`minimize`].
 #[derive(Debug, Clone)]
 pub struct MinimizeOptions {
-    /// The algorithm.
+    /// Derivative-free algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// The start (n,). `None` draws it from the box.
+    /// Starting point (n,). `None` draws it from the box.
     pub start: Option<Vec<f64>>,
     /// Budgets. A value below [`Stop::value_below`] ends the search, also at the start.
     pub stop: Stop,
@@ -23,30 +23,29 @@ pub struct MinimizeOptions {
     pub seed: u64,
 }
 
-/// The best point found, and how the search ended.
+/// Best point found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Minimum {
-    /// The point (n,), inside the box.
+    /// Best point (n,), inside the box.
     pub x: Point,
-    /// Value of the function there; infinite if it was never finite.
+    /// Value of the function at `x`; infinite if it was never finite.
     pub value: f64,
-    /// (evaluations made, best value then): the start, every improvement, and the end.
+    /// Pairs (evaluations made, best value so far): the start, every improvement, and the end.
     pub history: Vec<[f64; 2]>,
-    /// [`Status::Solved`] below the requested value. Otherwise a search ends by its own rule ([`Status::Stalled`]) or
-    /// when its budget is spent.
+    /// Reason for the end: [`Status::Solved`] below the requested value, otherwise [`Status::Stalled`] or a spent budget.
     pub status: Status,
-    /// Iterations over all starts.
+    /// Number of iterations over all starts.
     pub iterations: usize,
-    /// Starts beyond the first.
+    /// Number of starts beyond the first.
     pub restarts: usize,
-    /// Evaluations of the function.
+    /// Number of evaluations of the function.
     pub evaluations: usize,
-    /// Time taken.
+    /// Elapsed time.
     pub elapsed: Duration,
 }
 
 impl Minimum {
-    /// Returns a sentence: what happened, and what to try.
+    /// Describes the outcome in a sentence, with advice.
     pub fn message(&self) -> String {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {
@@ -119,7 +118,7 @@ fn closed_box(dimension: usize, lower: &[f64], upper: &[f64]) -> Result<Bounds> 
     require_finite("lower", lower, entry)?;
     require_finite("upper", upper, entry)?;
     let bounds = Bounds::new(lower, upper)?;
-    // The width from -1e308 to 1e308 overflows.
+    // Widths are checked too, since the width from -1e308 to 1e308 overflows.
     let widths: Vec<f64> = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).collect();
     require_finite("upper - lower", &widths, entry)?;
     Ok(bounds)
@@ -141,7 +140,7 @@ fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
     }
 }
 
-/// Records every improvement, and compares values with the requested one.
+/// Objective that records every improvement, and compares values with the requested one.
 struct Recorded<'a> {
     objective: &'a mut dyn Objective,
     enough: Option<f64>,
@@ -159,7 +158,7 @@ impl Recorded<'_> {
         }
     }
 
-    /// The history with a last row for the end, unless the last evaluation was an improvement.
+    /// Returns the history with a last row for the end, unless the last evaluation was an improvement.
     fn finish(mut self, evaluations: usize) -> Vec<[f64; 2]> {
         if let Some([at, best]) = self.history.last().copied()
             && at < evaluations as f64
