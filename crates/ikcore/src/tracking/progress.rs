@@ -3,8 +3,7 @@
 //! Commands near obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles
 //! hold and that has come no nearer for a while therefore takes only commands that move its rest configuration nearer to the
 //! target, by a fraction of the distance moved: the error at rest falls with each command. If even this fails for a time, the
-//! arm stops.
-//! A target counts as new if its own motion, not that of the arm, has changed the error.
+//! arm stops. A target counts as new if its own motion, not that of the arm, has changed the error.
 
 use super::step_context::StepContext;
 use crate::limits::{Field, Limits};
