@@ -243,7 +243,7 @@ impl Taker<'_, '_, '_> {
             self.found.complete = false;
         }
         if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
-            // A descent decides far from singularities.
+            // A descent decides if the arm is far from singular.
             if weak.change > FAR_FROM_FREE {
                 return self.take_beyond(q);
             }

@@ -24,7 +24,7 @@ const SCANNED_VALUES: usize = 10;
 /// Largest number of parameter values, not yet excluded, that near misses start from.
 const OPEN: usize = 2;
 
-/// Divisor of the remaining evaluation budget for a short search after all else.
+/// Divisor of the remaining evaluation budget for the final short search.
 const SEARCHED_SHARE: usize = 400;
 
 /// Excess over the limits (rad, m) that rounding may explain.
@@ -117,7 +117,7 @@ impl<'a> FamilySearch<'a> {
                 Err(Miss::Far) => continue,
                 Err(Miss::Near) => {}
             }
-            // Near singular poses, configurations near a branch still need polishing.
+            // Polishing is still needed near singular poses.
             let branches = self.family.branches_at(value);
             attempt.budget.evaluations += branches.evaluations;
             if let Ok(q) = self.preference.choose(&mut branches.configurations())

@@ -56,7 +56,7 @@ impl GoalDescent<'_, '_> {
         }
         let exact = self.place(q.clone());
         let end = self.follow_slope(exact, within);
-        // The exact correction may cost an arm that cannot move the gain it had within the tolerance.
+        // The exact correction can undo a gain made within the tolerance, if the arm cannot move.
         let keeps = |q: &[f64]| within.is_none_or(|space| space.holds(q));
         *q = if (end.cost < begin.cost || !was_solved) && keeps(&end.q) { end.q } else { begin.q };
         true

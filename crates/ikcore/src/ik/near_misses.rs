@@ -18,7 +18,7 @@ pub(super) const LOOKED: usize = 32;
 /// Largest excess over the limits (rad, m) of a near miss.
 const NEAR: f64 = 1.2;
 
-/// Excess below which a branch is at a limit just where a solution is: the descent starts at once.
+/// Excess below which a solution is at the limit itself: the descent starts at once.
 const AT_A_SOLUTION: f64 = 1e-3;
 
 /// Excess below which a branch may only touch its limits from outside, where descents are slow: its parameter is refined first.

@@ -13,7 +13,7 @@ const STEPS: usize = 2;
 /// Damping of the first step, relative to the squared error.
 const DAMPING: f64 = 0.3;
 
-/// Factor on the damping after each step: most of the error cannot be removed, and steps that try to overshoot.
+/// Factor on the damping after each step: most of the error cannot be removed, and larger steps would overshoot.
 const INCREASE: f64 = 2.0;
 
 /// Tolerance (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.

@@ -27,9 +27,9 @@ const VALUES_BEFORE_DOUBT: usize = 16;
 /// Reachability test of the poses of a map. Shared by all threads.
 pub(crate) struct MapTest<'a> {
     pub(super) grid: &'a MapGrid,
-    /// Solve within the limits of the robot.
+    /// Solve context with the limits of the robot.
     own: SolveContext<'a>,
-    /// Solve with the first joint free to turn, if azimuths are equivalent.
+    /// Solve context with the first joint free to turn, if azimuths are equivalent.
     pub(super) turning: Option<(UprightAxis, SolveContext<'a>)>,
     way: Way,
     reach: Reach,
@@ -118,7 +118,7 @@ impl<'a> MapTest<'a> {
         Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
     }
 
-    /// Whether poses without a solution may be reachable nevertheless.
+    /// Whether a pose may be reachable although no solution was found.
     pub(super) fn leaves_poses_open(&self) -> bool {
         !matches!(self.way, Way::Branches)
     }

@@ -16,7 +16,7 @@ use crate::task::Target;
 /// Number of neighbours of an orientation that starts are taken from.
 const NEAR: usize = 12;
 
-/// Largest difference of the numbers of neighbours: neighbours of a spread set have similar heights.
+/// Largest index difference of neighbours: neighbours of a spread set have similar heights.
 const WINDOW: usize = 2048;
 
 /// Largest number of descents per orientation and round.
@@ -28,13 +28,15 @@ const ROUNDS: usize = 4;
 /// Descents from nearby solutions.
 pub(super) struct SecondLook<'a> {
     own: SolveContext<'a>,
-    /// Solve with the first joint free to turn, if azimuths are equivalent.
+    /// Solve context with the first joint free to turn, if azimuths are equivalent.
     turning: Option<SolveContext<'a>>,
-    /// Numbers of the neighbours of each orientation, the nearest first.
+    /// Indices of the neighbours of each orientation, the nearest first.
     near: Vec<Vec<u32>>,
 }
 
 impl<'a> SecondLook<'a> {
+    /// Second look with the robots and the grid of a map.
+    ///
     /// # Errors
     /// None in practice: the options of the map have been checked.
     pub fn new(robots: &'a MapRobots, grid: &MapGrid) -> Result<Self> {
@@ -145,7 +147,7 @@ fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &
     (solution.status == Status::Solved).then(|| solution.q.to_vec())
 }
 
-/// Numbers of the neighbours of each orientation of a grid, the nearest first.
+/// Indices of the neighbours of each orientation of a grid, the nearest first.
 fn near_orientations(grid: &MapGrid) -> Vec<Vec<u32>> {
     let count = grid.orientations().len();
     let axes: Vec<_> = (0..count).map(|i| grid.orientations().axes(i)).collect();

@@ -18,6 +18,8 @@ pub struct Bounds {
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
+    /// Box between these bounds.
+    ///
     /// # Errors
     /// [`Error::WrongLength`] for unequal lengths, [`Error::OutOfRange`] for NaN or lower > upper.
     pub fn new(lower: &[f64], upper: &[f64]) -> Result<Self> {

@@ -87,6 +87,8 @@ impl TrialVerdict {
         matches!(self, Self::Kept | Self::KeptAtLast)
     }
 
+    /// Ends the descent after a last trial.
+    ///
     /// # Errors
     /// [`Status::Stalled`] at the end of the descent.
     fn goes_on(self) -> Result<(), Status> {

@@ -15,7 +15,7 @@ use crate::math::so3::cross;
 use crate::objective::{Linearization, Score, TaskBlock};
 use crate::robot::Robot;
 
-/// Frame that a target is for.
+/// Frame that a target refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     /// Tip of this number.
@@ -32,7 +32,7 @@ pub enum Subject {
 /// Task of a tip, or of a pair of tips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedTask {
-    /// Frame that the target is for.
+    /// Frame that the target refers to.
     pub subject: Subject,
     /// Part of the target to reach. `None` means all of it.
     pub task: Option<Task>,
@@ -43,11 +43,11 @@ pub struct NamedTask {
 /// Validated task.
 #[derive(Debug, Clone)]
 pub struct TipCriterion {
-    /// Frame that the target is for.
+    /// Frame that the target refers to.
     pub(crate) subject: Subject,
     /// Part of the target to reach. `None` means all of it.
     kind: Option<TaskKind>,
-    /// Test whether the target is reached, with weights.
+    /// Criterion for reaching the target, with weights.
     pub(crate) criterion: Criterion,
     /// Tool of the task, in the frame of the moving tip.
     tool: Option<Box<Frame>>,

@@ -55,7 +55,7 @@ pub struct Goals {
     gradient: Point,
 }
 
-/// A goal in its computed form.
+/// Goal compiled for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
     /// Sum of stiffness * (q - rest)^2.

@@ -28,7 +28,7 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 /// Time for evading an approaching obstacle (s).
 const WARNING: f64 = 0.2;
 
-/// Evasion speed (m/s), from which the arm's latest start follows, and prediction horizon (s).
+/// Evasion speed (m/s), which determines how early the arm starts to evade, and prediction horizon (s).
 const GIVING_WAY: f64 = 0.05;
 const FORESEEN: f64 = 3.0;
 

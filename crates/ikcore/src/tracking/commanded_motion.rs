@@ -1,9 +1,9 @@
 //! The motion between ticks of an arm whose velocity may not jump.
 //!
-//! A uniform cubic B-spline with the commanded positions as control points. Its velocity is a mean of the displacements per
-//! tick, its acceleration interpolates their differences, and its jerk is the second difference; limits kept at the ticks
-//! therefore hold in between. The curve passes each commanded position at a sixth of that tick's acceleration times dt^2,
-//! because no curve through alternating positions could keep the limits that their differences keep.
+//! The curve is a uniform cubic B-spline with the commanded positions as control points. Its velocity is a mean of the
+//! displacements per tick, its acceleration interpolates their differences, and its jerk is the second difference; limits kept
+//! at the ticks therefore hold in between. The curve passes each commanded position at a sixth of that tick's acceleration
+//! times dt^2, because no curve through alternating positions could keep the limits that their differences keep.
 
 use crate::trajectory::{Coefficients, polynomial};
 

@@ -63,7 +63,7 @@ pub(super) struct StepRequest<'a> {
     pub towards: Towards,
 }
 
-/// Rest configuration after a `command`, and its derivative by the command, joint by joint.
+/// Rest configuration after a `command`, and its derivative with respect to the command, joint by joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Resting<'a> {
     pub rest: &'a [f64],

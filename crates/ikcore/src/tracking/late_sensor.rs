@@ -12,7 +12,7 @@ use super::tip_pose::TipPose;
 /// Longest delay considered (measurements).
 const LONGEST: usize = 8;
 
-/// Largest ratio of squared residuals, with the detected delay to with the assumed one. In trials without delay (noise,
+/// Largest ratio of the squared residuals with the detected and with the assumed delay. In trials without delay (noise,
 /// outliers, slow servos) the smallest ratio of another delay was 0.4.
 const CLEARLY_SMALLER: f64 = 0.25;
 

@@ -1,6 +1,6 @@
 //! Tracking: following a path tick by tick, inside the limits.
 //!
-//! Algorithm 1 of Cheng et al. (2020). Our choices where the paper leaves something open:
+//! The method is Algorithm 1 of Cheng et al. (2020), with our choices where the paper leaves something open:
 //!
 //! - The box of a tick is the intersection of the position limits with the range that the velocity limits allow from
 //!   the accepted configuration, so that no result can violate either. If a position limit closes in faster than its

@@ -77,7 +77,7 @@ impl KinematicPlant {
         self.noise
     }
 
-    /// Standard deviation of the measured orientation about each axis (rad); None: only the position is measured.
+    /// Standard deviation of the measured orientation about each axis (rad); `None` if only the position is measured.
     pub fn rotation_noise(&self) -> Option<f64> {
         self.rotation_noise
     }

@@ -119,8 +119,8 @@ impl ArmProgress {
         self.replaced = true;
     }
 
-    /// Whether a free command must bring the arm nearer before it frees it. This prevents two commands that undo each other
-    /// from alternating; after a change of obstacles, the way may lead away from the target at first.
+    /// Whether an unrestricted command has to bring the arm nearer to end the held state. This prevents two commands that undo
+    /// each other from alternating; after a change of obstacles, the way may lead away from the target at first.
     pub fn is_freed_nearer(&self) -> bool {
         !self.replaced
     }

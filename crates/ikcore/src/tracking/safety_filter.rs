@@ -218,7 +218,7 @@ impl SafetyFilter {
         Some(blocked)
     }
 
-    /// Returns the commands admitted beside the braking command `brake`. An arm that is too near to a body or has to evade
+    /// Decides which commands are admitted; `brake` is the braking command. An arm that is too near to a body or has to evade
     /// moves in any case.
     fn pace(&mut self, brake: &[f64]) -> Pace {
         if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {

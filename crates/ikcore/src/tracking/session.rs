@@ -268,7 +268,7 @@ impl Session {
         }
     }
 
-    /// Whether obstacles keep the goal of an arm that does not stop from its target.
+    /// Whether obstacles keep the goal from its target; false while the arm stops.
     fn goal_is_held(&self) -> bool {
         !self.stopping && self.safety.as_ref().is_some_and(|safety| safety.goal_is_held())
     }

@@ -48,7 +48,7 @@ impl ClearSearch<'_, '_, '_> {
         if self.has_candidates() && likely.is_all {
             return Some(Err(Exhausted::All));
         }
-        // Near singular poses, configurations near a branch still need polishing.
+        // Polishing is still needed near singular poses.
         self.forget_candidates();
         let branches = robot.branches(pose)?;
         self.attempt.budget.evaluations += branches.evaluations;

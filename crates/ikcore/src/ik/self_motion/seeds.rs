@@ -16,7 +16,7 @@ pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count
     let (Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
     let family = robot.family(pose)?;
     let bounds = attempt.context.bounds();
-    // Traces pass the limits of revolute joints.
+    // Tracing ignores the limits of revolute joints.
     let slides = |j: &usize| robot.joints()[*j].kind == JointKind::Prismatic;
     let limits = |values: &[f64], open: f64| -> Vec<f64> {
         (0..robot.dof()).map(|j| if slides(&j) { values[j] } else { open }).collect()

@@ -21,8 +21,8 @@ use crate::wording::words;
 /// Direction of a beetle along its velocity, given the values at its antennae.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeetleDirection {
-    /// Sign of F(right) - F(left), as printed in eq. (28): uphill if the velocity leads downhill, which slows the contraction
-    /// of the swarm.
+    /// Direction with the sign of F(right) - F(left), as printed in eq. (28): uphill if the velocity leads downhill, which
+    /// slows the contraction of the swarm.
     Printed,
     /// Direction to the antenna with the lower value.
     Downhill,

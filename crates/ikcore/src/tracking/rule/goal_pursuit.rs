@@ -45,7 +45,7 @@ pub(crate) struct GoalPursuit {
     now: f64,
     expected: Point,
     sample: Point,
-    /// Samples since the last one changed by obstacles.
+    /// Samples since obstacles last changed one.
     since_held: Option<usize>,
     /// Smallest distance (rad, m) of the goal from an arm that holds pairs, and samples since then.
     nearest: Option<(f64, usize)>,
@@ -121,7 +121,7 @@ impl GoalPursuit {
         found
     }
 
-    /// Whether an arm that holds pairs has for long come no nearer to its goal, `away` (rad, m) from it.
+    /// Whether an arm that holds pairs has made no progress towards its goal for too long; `away` is their distance (rad, m).
     fn has_no_way(&mut self, away: f64) -> bool {
         self.nearest = match self.nearest {
             _ if away <= FAR => None,

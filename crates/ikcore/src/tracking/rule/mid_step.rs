@@ -37,15 +37,15 @@ pub(crate) struct MidStepState {
 /// Linear model of a step: the configurations of its tip and its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Model {
-    /// Both at the start of the tick.
+    /// Tip and Jacobian at the start of the tick.
     Begin,
-    /// The tip at the start, the Jacobian extrapolated to the middle of the tick.
+    /// Tip at the start, Jacobian extrapolated to the middle of the tick.
     MidTick,
-    /// Both at the result of the last step.
+    /// Tip and Jacobian at the result of the last step.
     Here,
 }
 
-/// Tip and geometric Jacobian at a configuration.
+/// Tip and geometric Jacobian of a configuration.
 #[derive(Debug)]
 struct Kinematics {
     q: Point,

@@ -78,12 +78,13 @@ impl TickRule {
         }
     }
 
-    /// Whether the rule extrapolates targets, and so uses their stamps, with limits `under_acceleration` or jerk or without.
+    /// Whether the rule extrapolates targets, and so uses their stamps; `under_acceleration` is true with acceleration or jerk
+    /// limits.
     pub(in crate::tracking) fn extrapolates(&self, under_acceleration: bool) -> bool {
         *self == Self::MidStep && under_acceleration
     }
 
-    /// Starts the rule, for an arm with limits `under_acceleration` or jerk or without, and with one tip or several.
+    /// Starts the rule; `under_acceleration` is true with acceleration or jerk limits.
     pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
         match self {
             Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
