@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 
-/// Solves every target of `targets`. Item i is the solution that [`solve`](crate::ik::solve) would find with stream `first_row
-/// + i` of the seed.
+/// Solves every target of `targets`. Item i is the solution of [`solve`](crate::ik::solve) with stream `first_row + i` of the
+/// seed.
 ///
 /// The monitor is called only from the calling thread.
 ///

@@ -1,4 +1,4 @@
-//! Planar arm with a fixed tip: joint points on circles. `planning::planar_arm` describes the same arm with link orientations
+//! Planar arm with a fixed tip: joint points on circles. `plan::planar_arm` describes the same arm with link orientations
 //! as unknowns, and explains why each measures the link lengths itself.
 
 use std::f64::consts::TAU;
