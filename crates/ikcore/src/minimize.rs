@@ -1,4 +1,4 @@
-//! Minimization of any function in a box by a derivative-free solver.
+//! Minimisation of any function in a box by a derivative-free solver.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -13,11 +13,11 @@ use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Mon
 /// Options of [`minimize`].
 #[derive(Debug, Clone)]
 pub struct MinimizeOptions {
-    /// Derivative-free algorithm.
+    /// Solver of the search.
     pub solver: AnySolver<DerivativeFree>,
-    /// Starting point (n,). `None` draws it from the box.
+    /// Start of the search (n,). `None` draws it from the box.
     pub start: Option<Vec<f64>>,
-    /// Budgets. A value below [`Stop::value_below`] ends the search, also at the start.
+    /// Budgets of the search. A value below [`Stop::value_below`] ends it, also at the start.
     pub stop: Stop,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
@@ -28,24 +28,25 @@ pub struct MinimizeOptions {
 pub struct Minimum {
     /// Best point (n,), inside the box.
     pub x: Point,
-    /// Value of the function at `x`; infinite if it was never finite.
+    /// Value of the function there; infinite if it was never finite.
     pub value: f64,
-    /// Pairs (evaluations made, best value so far): the start, every improvement, and the end.
+    /// Pairs of (evaluations made, best value then): the start, every improvement, and the end.
     pub history: Vec<[f64; 2]>,
-    /// Reason for the end: [`Status::Solved`] below the requested value, otherwise [`Status::Stalled`] or a spent budget.
+    /// Status [`Status::Solved`] below the requested value. Otherwise the search ends by its own rule ([`Status::Stalled`]) or
+    /// when its budget is spent.
     pub status: Status,
-    /// Number of iterations over all starts.
+    /// Iterations over all starts.
     pub iterations: usize,
-    /// Number of starts beyond the first.
+    /// Starts beyond the first.
     pub restarts: usize,
-    /// Number of evaluations of the function.
+    /// Evaluations of the function.
     pub evaluations: usize,
-    /// Elapsed time.
+    /// Time taken.
     pub elapsed: Duration,
 }
 
 impl Minimum {
-    /// Describes the outcome in a sentence, with advice.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {
@@ -118,7 +119,7 @@ fn closed_box(dimension: usize, lower: &[f64], upper: &[f64]) -> Result<Bounds> 
     require_finite("lower", lower, entry)?;
     require_finite("upper", upper, entry)?;
     let bounds = Bounds::new(lower, upper)?;
-    // Widths are checked too, since the width from -1e308 to 1e308 overflows.
+    // The width from -1e308 to 1e308 overflows.
     let widths: Vec<f64> = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).collect();
     require_finite("upper - lower", &widths, entry)?;
     Ok(bounds)
