@@ -25,7 +25,7 @@ const SCANNED_VALUES: usize = 10;
 const OPEN: usize = 2;
 
 /// Divisor of the remaining evaluation budget for the final short search.
-const SEARCHED_SHARE: usize = 400;
+const SEARCH_DIVISOR: usize = 400;
 
 /// Excess over the limits (rad, m) that rounding may explain.
 const ROUNDED: f64 = 1e-4;
@@ -187,7 +187,7 @@ impl<'a> FamilySearch<'a> {
     #[cold]
     fn searched_in_short(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         let x0 = attempt.first_start(self.start);
-        let reserve = attempt.budget.left() - attempt.budget.left() / SEARCHED_SHARE;
+        let reserve = attempt.budget.left() - attempt.budget.left() / SEARCH_DIVISOR;
         let (status, q) = attempt.search(attempt.context.bounds(), &x0, reserve);
         if status != Status::BudgetSpent || attempt.budget.is_spent() {
             return Some(attempt.explained(status, q));

@@ -30,17 +30,17 @@ impl Manipulability {
 /// Adds the gradient of the index of the point `tip` after `screws` to `out` (n,), and returns the index.
 pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], out: &mut [f64]) -> f64 {
     // Several elements share a joint if there are mimics, so their columns are summed.
-    let mut fractions = [[0.0; 6]; MAX_DOF];
+    let mut elements = [[0.0; 6]; MAX_DOF];
     let mut columns = Columns::default();
     columns.fit(out.len());
-    for (fraction, screw) in fractions.iter_mut().zip(screws) {
-        *fraction = screw.column(tip);
-        columns[screw.joint].iter_mut().zip(&*fraction).for_each(|(sum, entry)| *sum += entry);
+    for (element, screw) in elements.iter_mut().zip(screws) {
+        *element = screw.column(tip);
+        columns[screw.joint].iter_mut().zip(&*element).for_each(|(sum, entry)| *sum += entry);
     }
     let (index, sensitivity) = sensitivity(measure, &mut columns[..out.len()]);
-    for (b, (moved, moving)) in fractions.iter().zip(screws).enumerate() {
-        for (a, (fraction, screw)) in fractions.iter().zip(screws).enumerate() {
-            let change = change_of(fraction, moved, a >= b);
+    for (b, (moved, moving)) in elements.iter().zip(screws).enumerate() {
+        for (a, (element, screw)) in elements.iter().zip(screws).enumerate() {
+            let change = change_of(element, moved, a >= b);
             out[moving.joint] += inner(&sensitivity[screw.joint], &change);
         }
     }

@@ -38,8 +38,8 @@ impl Manipulability {
             let mut columns = Columns::default();
             columns.fit(q.len());
             for screw in &screws[..=i] {
-                let fraction = screw.column(&link.end);
-                columns[screw.joint].iter_mut().zip(fraction).for_each(|(sum, entry)| *sum += entry);
+                let element = screw.column(&link.end);
+                columns[screw.joint].iter_mut().zip(element).for_each(|(sum, entry)| *sum += entry);
             }
             indices.values[i] = self.unit_ball() * self.index_of(&mut columns[..q.len()]);
         }

@@ -66,14 +66,14 @@ impl TipStarts {
     fn kept(&self, robot: &Robot, aims: &Aims<'_>, q: &mut [f64]) -> Vec<bool> {
         let mut settled = vec![false; robot.tip_count()];
         let arms = (0..robot.tip_count()).filter_map(|tip| robot.arm(tip)).map(|arm| arm.joints.len());
-        let fractions_joints = arms.sum::<usize>() < robot.dof();
-        if fractions_joints && self.attempts.is_multiple_of(2) {
+        let shares_joints = arms.sum::<usize>() < robot.dof();
+        if shares_joints && self.attempts.is_multiple_of(2) {
             return settled;
         }
         for (i, (task, _)) in aims.iter().enumerate() {
             let Subject::Tip(tip) = task.subject else { continue };
             let (Some(Some(known)), Some(arm)) = (self.solved.get(i), robot.arm(tip)) else { continue };
-            if !fractions_joints {
+            if !shares_joints {
                 arm.joints.iter().for_each(|joint| q[*joint] = known[*joint]);
                 settled[tip] = true;
             } else if self.last == Some(i) {

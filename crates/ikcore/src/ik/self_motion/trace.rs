@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::solver::Monitor;
 
 /// Longest step as a fraction of the spacing: the correction of a step makes it longer by at most a third.
-const SHARE: f64 = 0.75;
+const STEP_FRACTION: f64 = 0.75;
 
 /// Longest curve (rad, m).
 const MOST_LENGTH: f64 = 100.0;
@@ -34,7 +34,7 @@ pub(super) fn traced(
     spacing: f64,
     monitor: &mut dyn Monitor,
 ) -> Option<TracedCurve> {
-    let longest = SHARE * spacing;
+    let longest = STEP_FRACTION * spacing;
     let most_steps = (MOST_LENGTH / longest) as usize;
     let mut walk = Walk::enter(problem, seed, 16 * most_steps, longest)?;
     let begin = walk.here().clone();

@@ -25,8 +25,8 @@ pub(crate) fn wrench(target: &Target, tip: &Frame) -> Wrench {
     let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
     for (r, d) in axes(target, tip) {
-        let fraction = cross(&r, &d);
-        (0..3).for_each(|k| moment[k] += fraction[k]);
+        let part = cross(&r, &d);
+        (0..3).for_each(|k| moment[k] += part[k]);
     }
     [fx, fy, fz, moment[0], moment[1], moment[2]]
 }

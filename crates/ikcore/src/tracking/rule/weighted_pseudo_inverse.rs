@@ -67,7 +67,7 @@ impl Default for WeightedPseudoInverse {
 }
 
 /// Fraction of the error corrected in a tick if no gain is given.
-const SHARE_A_TICK: f64 = 0.5;
+const FRACTION_PER_TICK: f64 = 0.5;
 
 impl WeightedPseudoInverse {
     /// Checks the options that do not depend on the robot.
@@ -155,7 +155,7 @@ fn displacement(
     tick: &mut Tick<'_>,
 ) -> Point {
     let StepContext { q, tick_box, dt, .. } = tick.context;
-    let gain = rule.gain.unwrap_or(SHARE_A_TICK / dt);
+    let gain = rule.gain.unwrap_or(FRACTION_PER_TICK / dt);
     let drift = linearize(scratch, from, fraction, tick);
     let null_space_step = null_space_step(rule, from, fraction, tick);
     let TaskBlock { columns, residual } = &mut *scratch.linearization;
@@ -190,7 +190,7 @@ struct ScaledEquations<'a> {
 }
 
 /// Fractions of the null-space step, tried in turn until the equations are met.
-const NULL_SPACE_SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
+const NULL_SPACE_FRACTIONS: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
 
 /// Largest fraction of the residual that may remain.
 const MET: f64 = 1e-9;
@@ -202,7 +202,7 @@ impl ScaledEquations<'_> {
     fn solve(&self, step: &[f64]) -> Point {
         let enough = MET * norm(&self.residual);
         let mut best = (f64::INFINITY, Point::new());
-        for fraction in NULL_SPACE_SHARES {
+        for fraction in NULL_SPACE_FRACTIONS {
             let (missed, there) = self.nearest_to(step, fraction);
             if missed <= enough {
                 return there;
