@@ -521,6 +521,14 @@ def pose(
         matrix: rotation matrix (3, 3).
 
     Without an orientation the axes are those of the base.
+
+    For example:
+
+        >>> bik.pose([0.4, 0.1, 0.3])
+        array([[1. , 0. , 0. , 0.4],
+               [0. , 1. , 0. , 0.1],
+               [0. , 0. , 1. , 0.3],
+               [0. , 0. , 0. , 1. ]])
     """
 
 # --- limits -------------------------------------------------------------------------------------
@@ -2539,6 +2547,14 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> tracker = bik.Tracker(robot, [0.0, -1.5, 1.5, -1.5, -1.5, 0.0], dt=0.01)
+        >>> step = tracker.step([0.45, 0.13, 0.47])
+        >>> step.q.shape, step.inside_limits
+        ((6,), True)
     """
 
     def __new__(
@@ -3268,6 +3284,15 @@ def plan_batch(
     Raises:
         InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
             the argument), before anything is planned.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+        >>> problems = [{"start_q": home, "end": [0.4, y, 0.3]} for y in (-0.2, 0.2, 5.0)]
+        >>> plans = bik.plan_batch(robot, problems)
+        >>> plans.success.tolist()
+        [True, True, False]
     """
 
 def plan_along_path(
@@ -3325,6 +3350,14 @@ def plan_along_path(
         LimitError: limits that contradict each other.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
+
+    For example:
+
+        >>> arm = bik.Robot.planar([1.0, 1.0, 1.0])
+        >>> star = bik.paths.pentagram((1.0, 1.0, 0.0), 5.0, radius=0.5)
+        >>> plan = bik.plan_along_path(arm, star, limits=bik.Limits(velocity=3.0, acceleration=10.0))
+        >>> plan.success
+        True
     """
 
 @final
@@ -3502,6 +3535,14 @@ def track_model_free(
         InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
         LimitError: a start outside the limits, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
+
+    For example:
+
+        >>> arm = bik.Robot.planar([0.5, 0.4, 0.3])
+        >>> path = bik.paths.circle([0.6, 0.3, 0.0], 0.2, 5.0)
+        >>> run = bik.track_model_free(bik.KinematicPlant(arm), path, [0.4, 0.5, 0.6], dt=0.01)
+        >>> run.settled_error < 1e-6
+        True
     """
 
 @final
@@ -3734,6 +3775,13 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+
+    For example:
+
+        >>> motion = bik.Trajectory.from_samples([0.0, 1.0, 2.0], [[0.0], [0.5], [0.0]])
+        >>> q, qd, qdd = motion.at(0.5)
+        >>> float(q[0]), float(qd[0])
+        (0.25, 0.5)
     """
 
     def __new__(

@@ -26,6 +26,12 @@ class Scene(Sequence[Obstacle]):
 
     Raises:
         InvalidInputError: an item is no obstacle; the message gives its position.
+
+    For example:
+
+        >>> scene = bik.Scene([bik.obstacles.Sphere((0.5, 0.0, 0.3), 0.1)])
+        >>> len(scene + [bik.obstacles.Box((0.5, 0.3, 0.1), (0.2, 0.2, 0.2))])
+        2
     """
 
     @worded_call

@@ -56,6 +56,14 @@ use crate::task::read_task;
 ///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
+///
+/// For example:
+///
+///     >>> arm = bik.Robot.planar([1.0, 1.0, 1.0])
+///     >>> star = bik.paths.pentagram((1.0, 1.0, 0.0), 5.0, radius=0.5)
+///     >>> plan = bik.plan_along_path(arm, star, limits=bik.Limits(velocity=3.0, acceleration=10.0))
+///     >>> plan.success
+///     True
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, task=None, limits=None, method=None, objective="time", obstacles=None,
                     margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),

@@ -185,6 +185,15 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 /// Raises:
 ///     InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
 ///         the argument), before anything is planned.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+///     >>> problems = [{"start_q": home, "end": [0.4, y, 0.3]} for y in (-0.2, 0.2, 5.0)]
+///     >>> plans = bik.plan_batch(robot, problems)
+///     >>> plans.success.tolist()
+///     [True, True, False]
 #[pyfunction]
 #[pyo3(signature = (robot, problems, *, threads=None, progress=None, approach=None, retreat=None, free_start=None, task=None,
                     limits=None, method=None, objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None),

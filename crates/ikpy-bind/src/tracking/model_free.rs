@@ -144,6 +144,14 @@ impl PyModelFreeResult {
 ///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
 ///     LimitError: a start outside the limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
+///
+/// For example:
+///
+///     >>> arm = bik.Robot.planar([0.5, 0.4, 0.3])
+///     >>> path = bik.paths.circle([0.6, 0.3, 0.0], 0.2, 5.0)
+///     >>> run = bik.track_model_free(bik.KinematicPlant(arm), path, [0.4, 0.5, 0.6], dt=0.01)
+///     >>> run.settled_error < 1e-6
+///     True
 #[pyfunction]
 #[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9,
                     rotation_tolerance=1e-9, seed=0, progress=None))]

@@ -48,6 +48,14 @@ use crate::traversal::traversed;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> tracker = bik.Tracker(robot, [0.0, -1.5, 1.5, -1.5, -1.5, 0.0], dt=0.01)
+///     >>> step = tracker.step([0.45, 0.13, 0.47])
+///     >>> step.q.shape, step.inside_limits
+///     ((6,), True)
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
