@@ -2041,7 +2041,7 @@ def minimize(
         lower: (n,), finite.
         upper: (n,), finite.
         solver: a derivative-free solver, for example `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`.
-            BAS suits only functions with minimum zero, near it: see `BAS`.
+            BAS suits few functions, whose minimum must be zero: see `BAS`.
         start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
         stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
         seed: seed of the random draws; the same seed gives the same bits.
