@@ -56,8 +56,8 @@ class Scene(Sequence[Obstacle]):
     def load(cls, file: str | os.PathLike[str]) -> Scene:
         """Reads a scene from a JSON file.
 
-        The file is what `save` writes, or simpler: a list of shapes, each with its "type" (the name of the class in
-        lower case, with underscores) and the arguments of the class (m, rad).
+        The file has the form written by `save`, or is just a list of shapes, each with its "type" (the name of the
+        class in lower case, with underscores) and the arguments of the class (m, rad).
 
         Raises:
             InvalidInputError: the file is not a scene, or is of a later version; the message names the file and the

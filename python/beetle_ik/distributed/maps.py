@@ -39,7 +39,7 @@ def reachability(
 ) -> ReachabilityMap:
     """Computes a reachability map on the workers of a dask client: `bik.reachability` in chunks of voxels.
 
-    The map has the bits of `bik.reachability`, for any number of workers of one instruction set. With a store, each
+    The map is bit-identical to that of `bik.reachability`, for any number of workers of one instruction set. With a store, each
     chunk is written as soon as it is computed, and the same call goes on after a worker, the scheduler or this process
     was killed.
 
@@ -52,7 +52,7 @@ def reachability(
         directions: number of directions of the tip's z axis.
         rolls: number of rolls about each direction.
         region: two opposite corners of a box (2, 3) (m); None: all that the tip can reach.
-        task: the part of a pose that matters.
+        task: the part of a pose that counts.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
         self_collision: whether links must keep clear of each other.

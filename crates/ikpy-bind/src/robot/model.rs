@@ -225,9 +225,9 @@ impl PyRobot {
     }
 
     /// Pairs of links that are tested against each other, each (link, link). Links fixed to each other are left out.
-    /// Without an SRDF and `with_collision_pairs`, so are neighbours, links that touch with all joints in the middle of
-    /// their ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in
-    /// 10,000. Determined at the first access, with a fixed seed.
+    /// Without an SRDF and `with_collision_pairs`, three more kinds of pairs are left out: neighbours, links that touch
+    /// with all joints in the middle of their ranges or in nearly all of 1,000 random configurations, and links that
+    /// come no nearer than 20 mm in 10,000. Determined at the first access, with a fixed seed.
     #[getter]
     fn collision_pairs(&self, py: Python<'_>) -> Vec<(String, String)> {
         let pairs = py.detach(|| self.core.collision_pairs());
