@@ -39,9 +39,9 @@ def reachability(
 ) -> ReachabilityMap:
     """Computes a reachability map on the workers of a dask client: `bik.reachability` in chunks of voxels.
 
-    The map is bit-identical to that of `bik.reachability`, for any number of workers of one instruction set. With a store, each
-    chunk is written as soon as it is computed, and the same call goes on after a worker, the scheduler or this process
-    was killed.
+    The map is bit-identical to that of `bik.reachability`, for any number of workers of one instruction set. With a
+    store, each chunk is written as soon as it is computed, and the same call goes on after a worker, the scheduler or
+    this process was killed.
 
     Args:
         client: a `distributed.Client`; None: the chunks are computed here, as by `bik.reachability`.

@@ -47,8 +47,8 @@ def reachability(
     """Computes a reachability map: cubic voxels, with the same orientations at the centre of each.
 
     The map of an arm whose first axis is vertical takes an eighth of the time: its orientations turn with the azimuth
-    of the voxel about that axis, so that voxels at the same distance and height differ only by the limits of the first joint.
-    Obstacles and self-collision checks remove this saving.
+    of the voxel about that axis, so that voxels at the same distance and height differ only by the limits of the first
+    joint. Obstacles and self-collision checks remove this saving.
 
     An orientation is reached if a solution is found within the tolerances of `solve`. For an arm with a closed form and
     at most six joints, all other orientations are out of reach, except within rounding of a limit or of the edge of the
