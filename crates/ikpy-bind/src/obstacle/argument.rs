@@ -14,9 +14,9 @@ use crate::error::invalid;
 
 /// The obstacles of a call.
 pub struct GivenObstacles {
-    /// For the core.
+    /// Obstacles for the core.
     pub core: Obstacles,
-    /// For results, which store them.
+    /// Obstacles as given, which results store.
     pub tuple: Py<PyTuple>,
 }
 
@@ -61,7 +61,7 @@ impl PyPreparedObstacles {
     }
 }
 
-/// What a `Scene` has prepared; None for other sequences.
+/// Returns the prepared obstacles of a `Scene`; None for other sequences.
 fn prepared<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyPreparedObstacles>> {
     if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
         return None;
@@ -69,14 +69,14 @@ fn prepared<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyPreparedObsta
     value.getattr(intern!(value.py(), "_prepared")).ok()?.cast_into().ok()
 }
 
-/// Obstacles of which some may move: shapes, and the velocity of each; no velocities if all are at rest.
+/// Static and moving obstacles: shapes and their velocities (m/s), empty if all are at rest.
 pub struct MovingObstacles {
     pub shapes: Obstacles,
     pub velocities: Vec<[f64; 3]>,
 }
 
 impl MovingObstacles {
-    /// Reads any sequence of obstacles.
+    /// Reads any sequence of obstacles, static or moving.
     pub fn read(value: &Bound<'_, PyAny>) -> PyResult<Self> {
         let all_at_rest = |shapes| Self { shapes, velocities: vec![] };
         if let Some(prepared) = prepared(value) {
@@ -99,7 +99,7 @@ impl MovingObstacles {
         Ok(Self { shapes: shapes.into_iter().collect(), velocities })
     }
 
-    /// The obstacles as Python objects: those that move are `Moving`.
+    /// Returns the obstacles as Python objects, moving obstacles as `Moving`.
     pub fn objects(py: Python<'_>, obstacles: &[Obstacle], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
         let object = |(i, obstacle): (usize, &Obstacle)| match velocities.get(i) {
             Some(velocity) if *velocity != [0.0; 3] => {
