@@ -12,11 +12,10 @@ use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Scene};
 use crate::plan::{
-    Cost, EndName, Endpoint, Improvement, Plan, PointToPointOptions, RESERVE, configuration_at, least_clearance,
-    no_usable_end, refuse_collision, too_near,
+    Cost, EndName, Endpoint, Plan, PointToPointOptions, RESERVE, configuration_at, least_clearance, no_usable_end,
+    refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
-use crate::trajectory::Trajectory;
 
 /// Total number of configurations that all trees may examine: about half a second.
 const BUDGET: usize = 1_000_000;
@@ -88,13 +87,13 @@ pub(super) fn plan(
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
             let clearance = Some(Clearance::at_least(margin));
-            let plan = Plan { history, clearance, ..bare(search, trajectory, options.objective) };
+            let plan = Plan { history, clearance, ..search.plan(trajectory, options.objective) };
             if is_lines { with_least_clearance(plan, &mut sweep, margin)? } else { plan }
         }
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
-            let plan = Plan { status, ..bare(search, trajectory, options.objective) };
+            let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let plan = with_least_clearance(plan, &mut sweep, margin)?;
             let obstruction = if open.is_empty() {
                 no_way::blocked_ends(scene, &pairs, margin + RESERVE)
@@ -155,18 +154,6 @@ fn most_kept(space: &ClearSpace<'_>, open: &[EndPair]) -> f64 {
     };
     // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
     RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
-}
-
-/// A plan of a motion without violations.
-fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
-    let cost = objective.of(search.robot, &trajectory);
-    Plan {
-        history: vec![Improvement { evaluations: search.evaluations, cost }],
-        violations: search.limits.violations(&trajectory),
-        evaluations: search.evaluations,
-        elapsed: search.deadline.elapsed(),
-        ..Plan::of(trajectory, objective, cost)
-    }
 }
 
 /// The plan with its smallest distance, and the violation if that is less than the margin. A bound that it has is certified.

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
-use crate::plan::{Endpoint, Improvement, Plan, PointToPointOptions, certify, joined, least_clearance};
+use crate::plan::{Endpoint, Plan, PointToPointOptions, certify, joined, least_clearance};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
@@ -55,20 +55,14 @@ pub(super) fn begin(
     let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
     motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
     if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
-        let evaluations = search.evaluations;
-        let cost = options.objective.of(search.robot, &trajectory);
         let least = match &mut sweep {
             Some((sweep, margin)) => least_clearance(sweep, &trajectory, Some(*margin))?,
             None => None,
         };
         return Ok(Beginning::Whole(Box::new(Plan {
-            history: vec![Improvement { evaluations, cost }],
             clearance: least.map(|(clearance, _)| clearance),
             chosen_end: Some(chosen),
-            violations: search.limits.violations(&trajectory),
-            evaluations,
-            elapsed: search.deadline.elapsed(),
-            ..Plan::of(trajectory, options.objective, cost)
+            ..search.plan(trajectory, options.objective)
         })));
     }
     if velocity.iter().all(|v| *v == 0.0) {

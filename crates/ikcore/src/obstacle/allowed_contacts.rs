@@ -14,9 +14,7 @@ pub(super) struct AllowedContacts {
 }
 
 impl AllowedContacts {
-    /// The contacts of `bodies` of `robot` that the obstacles name ([`Obstacle::touch`]).
-    ///
-    /// [`Obstacle::touch`]: super::Obstacle::touch
+    /// Contacts of `bodies` of `robot` that the obstacles name ([`Obstacle::touch`](super::Obstacle::touch)).
     ///
     /// # Errors
     /// [`Error::InvalidObstacle`] for the name of no link, or of a link without a body.

@@ -23,7 +23,6 @@ pub(crate) const RESERVE: f64 = 2e-6;
 /// # Errors
 /// Those of [`Surroundings::clear_space`].
 pub(crate) fn motion_space<'a>(surroundings: &Surroundings, robot: &'a Robot) -> Result<Option<ClearSpace<'a>>> {
-    surroundings.kept_margin()?;
     let [no_bodies, all_read] = [robot.capsules().is_empty(), robot.unread_collision_shapes().is_empty()];
     let self_collision = surroundings.self_collision;
     if surroundings.obstacles().is_empty() && !self_collision.unwrap_or(!no_bodies && all_read) {
