@@ -9,6 +9,23 @@ use super::surroundings::Surroundings;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 
+/// Free configurations of a scene: those at which everything keeps the margin. Callers check configurations: one finite entry per
+/// joint.
+#[derive(Debug, Clone)]
+pub struct ClearSpace<'a> {
+    scene: Scene<'a>,
+    margin: f64,
+}
+
+/// A contact that no motion of the arm alone ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Blocked {
+    /// Contact of an obstacle and a body that no joint moves.
+    Base(Contact),
+    /// Contact of a body that is fixed to the tip.
+    Hand(Contact),
+}
+
 impl Surroundings {
     /// The free configurations of `robot`; `None` if nothing is to be checked.
     ///
@@ -25,23 +42,6 @@ impl Surroundings {
         let scene = if self.self_collision == Some(false) { scene.without_self_collision() } else { scene };
         Ok(Some(ClearSpace { scene, margin }))
     }
-}
-
-/// A contact that no motion of the arm alone ends.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Blocked {
-    /// Contact of an obstacle and a body that no joint moves.
-    Base(Contact),
-    /// Contact of a body that is fixed to the tip.
-    Hand(Contact),
-}
-
-/// Free configurations of a scene: those at which everything keeps the margin. Callers check configurations: one finite entry per
-/// joint.
-#[derive(Debug, Clone)]
-pub struct ClearSpace<'a> {
-    scene: Scene<'a>,
-    margin: f64,
 }
 
 impl<'a> ClearSpace<'a> {

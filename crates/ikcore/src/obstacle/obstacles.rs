@@ -16,11 +16,12 @@ const RELATIVE_ROUNDING: f64 = 1e-12;
 
 /// A shape to keep clear of, and the links that may touch it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "(Shape, Vec<String>)")]
+#[serde(from = "(Shape, Vec<String>)", into = "(Shape, Vec<String>)")]
 pub struct Obstacle {
     /// The shape, in the frame of the robot's base.
     pub shape: Shape,
-    touch: Vec<String>,
+    /// Sorted names; `None`: no link.
+    touch: Option<Arc<[String]>>,
 }
 
 /// Obstacles with a bounding ball each and, where there are many, a tree to find the near ones. Clones share all of it.
@@ -42,12 +43,12 @@ impl Obstacle {
     pub fn new(shape: Shape, mut touch: Vec<String>) -> Self {
         touch.sort_unstable();
         touch.dedup();
-        Self { shape, touch }
+        Self { shape, touch: (!touch.is_empty()).then(|| touch.into()) }
     }
 
     /// Names of the links that may touch it, sorted.
     pub fn touch(&self) -> &[String] {
-        &self.touch
+        self.touch.as_deref().unwrap_or_default()
     }
 }
 
@@ -57,9 +58,15 @@ impl From<(Shape, Vec<String>)> for Obstacle {
     }
 }
 
+impl From<Obstacle> for (Shape, Vec<String>) {
+    fn from(Obstacle { shape, touch }: Obstacle) -> Self {
+        (shape, touch.as_deref().unwrap_or_default().to_vec())
+    }
+}
+
 impl From<Shape> for Obstacle {
     fn from(shape: Shape) -> Self {
-        Self { shape, touch: vec![] }
+        Self { shape, touch: None }
     }
 }
 
