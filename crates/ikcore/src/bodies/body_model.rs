@@ -31,7 +31,7 @@ impl BodyPair {
 pub(crate) struct BodyModel {
     pub carried: Vec<CarriedBody>,
     pub groups: BodyGroups,
-    /// The same in single precision.
+    /// Bodies and groups in single precision.
     pub eight: EightBodies,
     /// Pairs of bodies, in the order of the robot's pairs.
     pub pairs: Vec<BodyPair>,

@@ -58,7 +58,7 @@ impl<'a> ClearSpace<'a> {
         Ok(Self { scene: self.scene.among(obstacles)?, margin: self.margin })
     }
 
-    /// The surroundings that leave this space.
+    /// Surroundings that leave this space.
     pub(crate) fn surroundings(&self) -> Surroundings {
         let OtherBodies { obstacles, itself, .. } = &self.scene.others;
         Surroundings { obstacles: Some(obstacles.clone()), margin: Some(self.margin), self_collision: Some(*itself) }

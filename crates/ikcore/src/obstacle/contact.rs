@@ -41,8 +41,8 @@ pub struct NearestContact {
 }
 
 impl Contact {
-    /// Words for the depth of the link in the other body, or for the distance and the margin `kept` (m): "0.01 m inside", "only 0.1 m (of a margin of
-    /// 0.2 m) from".
+    /// Words for the depth of the link in the other body, or for the distance and the margin `kept` (m): "0.01 m inside", "only 0.1 m
+    /// (of a margin of 0.2 m) from".
     pub(crate) fn depth(&self, kept: f64) -> String {
         if self.distance == f64::NEG_INFINITY {
             return "perhaps (its numbers are too large to tell) inside".into();

@@ -49,7 +49,7 @@ impl Scene<'_> {
         found.flatten().next()
     }
 
-    /// The same where it is nearer than `reach` (m); otherwise any, or none.
+    /// [`nearest_fixed`](Self::nearest_fixed) where it is nearer than `reach` (m); otherwise any pair, or none.
     fn nearest_fixed_within(&self, reach: f64) -> Option<(f64, BodyPair)> {
         let (rest, obstacles) = (&self.bodies.rest, &self.others.obstacles);
         let mut nearest = (f64::INFINITY, None);

@@ -24,7 +24,7 @@ pub(crate) struct RequiredDistance<'a> {
 }
 
 impl RequiredDistance<'static> {
-    /// The same distance (m) from everything, all of it at rest.
+    /// One distance (m) from everything, all of it at rest.
     pub fn constant(margin: f64) -> Self {
         Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], tolerance_band: 0.0, only_parts: false }
     }

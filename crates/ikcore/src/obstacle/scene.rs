@@ -102,7 +102,7 @@ impl<'a> Scene<'a> {
         *self.fixed.get_or_init(|| self.nearest_fixed())
     }
 
-    /// Each of the bodies that are `wanted` with each obstacle that it must not touch.
+    /// Pairs of the `wanted` bodies and the obstacles that they must not touch.
     fn with_obstacles(&self, wanted: impl Fn(&CarriedBody) -> bool + Clone) -> impl Iterator<Item = BodyPair> + Clone {
         let others = &self.others;
         let with_each = move |body| {
@@ -118,7 +118,7 @@ impl<'a> Scene<'a> {
         links.iter().copied().chain(self.with_obstacles(|body| body.stages > 0))
     }
 
-    /// The same scene, but links may cross each other, as in a planar arm.
+    /// Copy of the scene in which links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
         self.others.itself = false;
         self
@@ -129,7 +129,7 @@ impl<'a> Scene<'a> {
         &self.robot
     }
 
-    /// The same robot among other obstacles.
+    /// Scene of the robot among other obstacles.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
@@ -382,7 +382,7 @@ fn moves_in_plane(robot: &Robot) -> bool {
     robot.tip_count() == 1 && tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
 }
 
-/// Says which shapes are missing and how to give them.
+/// Error that names the missing shapes, and how to give them.
 fn no_capsules(robot: &Robot) -> Error {
     let unread = robot.unread_collision_shapes();
     let problem = match unread {

@@ -87,7 +87,7 @@ impl TravelBounds {
         self.0.iter().zip(reach).map(|(lever, reach)| lever * reach).sum()
     }
 
-    /// The same (m) while all joints move by 1 (rad, m).
+    /// Largest motion (m) while all joints move by 1 (rad, m).
     pub fn sum(&self) -> f64 {
         self.0.iter().sum()
     }

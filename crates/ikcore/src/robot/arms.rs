@@ -84,7 +84,7 @@ impl TipArm {
         self.write_start(|own| starts.write_next(&lower, &upper, own), choice, q)
     }
 
-    /// The same with the tip near `position` (m), at any orientation.
+    /// A start with the tip near `position` (m), at any orientation.
     pub fn start_at_position(&self, position: &[f64; 3], choice: &mut Choice<'_>, q: &mut [f64]) -> bool {
         let [lower, upper] = self.limits(choice);
         let mut starts = self.robot.starts_near_position(position);

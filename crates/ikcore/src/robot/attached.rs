@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::shape::Shape;
 
 impl Robot {
-    /// The same robot with `shape`, in the frame of `link`, attached to that link, as a body of its own named `name`; without a
+    /// Copy of the robot with `shape`, in the frame of `link`, attached to that link, as a body of its own named `name`; without a
     /// name it is "attached", "attached_2" and so on.
     ///
     /// It is tested against obstacles and against the links of the robot but

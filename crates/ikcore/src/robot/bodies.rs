@@ -39,7 +39,7 @@ impl Robot {
         self.parts().bodies.meshes()
     }
 
-    /// The same robot with these capsules and no others.
+    /// Copy of the robot with these capsules and no others.
     ///
     /// # Errors
     /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
@@ -55,7 +55,7 @@ impl Robot {
         self.with_capsules_as_bodies(capsules)
     }
 
-    /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
+    /// Copy of the robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
     /// frames of its links, to the axis of the next joint; the last capsule ends at the tip. The gap that a prismatic
     /// joint opens between two links is not covered.
     ///

@@ -163,7 +163,7 @@ impl Element {
         }
     }
 
-    /// The same element in a robot that has `shift` more joints before its own.
+    /// Copy of the element in a robot that has `shift` more joints before its own.
     pub(super) fn shifted(mut self, shift: usize) -> Self {
         if let Self::Moving { joint, .. } | Self::RotationVector { joint } = &mut self {
             *joint += shift;

@@ -57,12 +57,12 @@ impl Joint {
         Self { name: name.into(), kind, lower, upper, velocity, rated_acceleration, rated_jerk }
     }
 
-    /// The same joint between these position limits (rad or m).
+    /// Copy of the joint between these position limits (rad or m).
     pub fn with_range(self, lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..self }
     }
 
-    /// The same joint with this velocity limit (rad/s or m/s).
+    /// Copy of the joint with this velocity limit (rad/s or m/s).
     pub fn with_velocity(self, velocity: f64) -> Self {
         Self { velocity, ..self }
     }

@@ -25,7 +25,7 @@ impl Robot {
         &self.parts().off_chain.held
     }
 
-    /// The same robot with some of its held joints elsewhere, each (name, value in rad or m).
+    /// Copy of the robot with some of its held joints elsewhere, each (name, value in rad or m).
     ///
     /// # Errors
     /// [`Error::NotHeld`], [`Error::NotFinite`], [`Error::OutsideLimits`].

@@ -99,7 +99,7 @@ impl MobileBase {
 }
 
 impl Robot {
-    /// The same robot on a mobile base, whose joints come first in q, between `limits`. The first link moves; the pose of the base
+    /// Copy of the robot on a mobile base, whose joints come first in q, between `limits`. The first link moves; the pose of the base
     /// before is how it is mounted. Poses are in the frame of a new first link, "world". In named configurations the base is at zero,
     /// or as near to it as its limits allow.
     ///

@@ -38,7 +38,7 @@ pub struct Robot {
     chain: Arc<Chain>,
     /// The chains of a robot with several tips.
     tips: Arc<TipChains>,
-    /// All links, folded at first use.
+    /// Tree of all links, folded at first use.
     tree: OnceLock<Arc<LinkTree>>,
     /// The kernels compiled for the chain's size and this machine.
     kernels: Kernels,
@@ -137,7 +137,7 @@ impl Robot {
         &self.parts.tool
     }
 
-    /// The same robot with its base at `base`.
+    /// Copy of the robot with its base at `base`.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
@@ -147,7 +147,7 @@ impl Robot {
         Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
-    /// The same robot with its tip at `tool`, relative to the tip link.
+    /// Copy of the robot with its tip at `tool`, relative to the tip link.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose; [`Error::SeveralTips`].
@@ -158,7 +158,7 @@ impl Robot {
         Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
-    /// The same robot with other joint limits; `change` gets each joint with its index.
+    /// Copy of the robot with other joint limits; `change` gets each joint with its index.
     ///
     /// # Errors
     /// [`Error::EmptyRange`] or [`Error::NegativeLimit`] for impossible limits.
@@ -278,8 +278,8 @@ impl Robot {
         self.closed_form_or_reason().as_ref().is_ok_and(ClosedFormArm::proves)
     }
 
-    /// The same unless forward kinematics says otherwise, at less cost where that is possible; none without a closed form and for
-    /// redundant arms.
+    /// Finds likely branches, which forward kinematics has to confirm, at less cost where that is possible; none without a closed form
+    /// and for redundant arms.
     #[inline]
     pub(crate) fn likely_branches(&self, pose: &Frame, found: &mut ArmConfigurations) {
         match self.closed_form_or_reason() {
@@ -336,7 +336,7 @@ impl Robot {
         self.joints().iter().map(Joint::sampling_range).collect()
     }
 
-    /// The same robot with other bodies.
+    /// Copy of the robot with other bodies.
     pub(crate) fn with_bodies(&self, bodies: Bodies) -> Self {
         let mut robot = self.clone();
         robot.parts.bodies = bodies;
@@ -345,7 +345,7 @@ impl Robot {
         robot
     }
 
-    /// The same robot with another rule for the pairs of links that are tested against each other.
+    /// Copy of the robot with another rule for the pairs of links that are tested against each other.
     pub(super) fn with_pair_rule(&self, pairs: PairRule) -> Self {
         let mut robot = self.clone();
         robot.parts.pairs = pairs;
@@ -360,7 +360,7 @@ impl Robot {
         Self { start_index, closed_form, arms, ..robot }
     }
 
-    /// The same robot with these named configurations in place of others.
+    /// Copy of the robot with these named configurations in place of others.
     pub(crate) fn with_stances(&self, stances: Vec<Stance>) -> Self {
         let mut robot = self.clone();
         robot.parts.stances = stances;
@@ -372,7 +372,7 @@ impl Robot {
         &self.parts.visuals
     }
 
-    /// The same robot with these visual shapes.
+    /// Copy of the robot with these visual shapes.
     pub(crate) fn with_visuals(&self, visuals: Vec<Visual>) -> Self {
         let mut robot = self.clone();
         robot.parts.visuals = visuals;
@@ -391,12 +391,12 @@ impl Robot {
         &self.pairs
     }
 
-    /// The same robot with these branches, on which further tips are.
+    /// Copy of the robot with these branches, on which further tips are.
     pub(crate) fn with_branches(&self, off_chain: OffChain, tips: Vec<String>) -> Result<Self> {
         self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), tips, ..self.parts.clone() })
     }
 
-    /// The same robot with other branches.
+    /// Copy of the robot with other branches.
     pub(crate) fn with_off_chain(&self, off_chain: OffChain) -> Result<Self> {
         self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), ..self.parts.clone() })
     }
