@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, _plan_figure
-from ._arguments import require
-from ._shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
-from ._style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, new_figure, style
-from ._surface import Surface, draw_surfaces
-from ._text import counted
+from . import _core
+from .calls.arguments import require
+from .calls.text import counted
+from .figures import plan_figure
+from .figures.shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
+from .figures.style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, line, new_figure, style
+from .figures.surface import Surface, draw_surfaces
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -95,7 +96,7 @@ def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
     colors = dict(zip(poses, itertools.cycle(LINKS), strict=False))
     meshes = robot.collision_meshes()
     if not meshes:
-        from ._solids import solids  # the time of an import of the package is short
+        from .figures.solids import solids  # the time of an import of the package is short
 
         drawn = solids(robot, np.asarray(q, dtype=float))
         return [Surface(moved(solid.triangles, poses[solid.link]), solid.color) for solid in drawn]
@@ -174,7 +175,7 @@ def plan(plan: Plan) -> Figure:
     require("plan", plan, _core.Plan)
     with style():
         figure = new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
-        _plan_figure.draw(figure, plan)
+        plan_figure.draw(figure, plan)
     return figure
 
 
@@ -183,7 +184,7 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
     require("result", result, _core.Plan, _core.TrackResult)
     with style():
         figure = new_figure(5.0, 5.0)
-        return _plan_figure.animate(figure, result).animation(figure)
+        return plan_figure.animate(figure, result).animation(figure)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:

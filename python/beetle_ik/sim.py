@@ -19,9 +19,9 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from ._arguments import require_one_tip
 from ._core import InvalidInputError, Robot, pose
-from ._needs import library
+from .calls.arguments import require_one_tip
+from .installed.needs import library
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

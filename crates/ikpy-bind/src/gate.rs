@@ -2,7 +2,7 @@
 //!
 //! PyO3 reads arguments before a function of ours runs. Its errors ("'bool' object is not an instance of 'str'") lack the argument
 //! and the value, and it has no hook for others. So each function, method and constructor of the module stands behind one that
-//! calls it and, where arguments did not fit, lets `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
+//! calls it and, where arguments did not fit, lets `beetle_ik.calls.wording` word the error. The usual path costs a few nanoseconds.
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 

@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
-from .._arguments import require
-from .._calls import worded_call
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
-from .._needs import library
-from .._scene import Scene
+from ..calls.arguments import require
+from ..calls.wording import worded_call
+from ..installed.needs import library
+from ..scenes import Scene
 from . import start
 from .address import free_port
 from .admission import Admission
