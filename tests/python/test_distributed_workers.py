@@ -108,11 +108,10 @@ def test_a_killed_client_goes_on_where_it_was(cluster: Any, client: Any, tmp_pat
     )
     store = tmp_path / "there"
     command = [sys.executable, "-c", program, str(Path(__file__).parent), cluster.scheduler_address, str(store)]
-    other = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    assert other.stdout is not None
-    assert other.stdout.readline() == b"three\n"
-    other.kill()
-    other.wait()
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"three\n"
+        other.kill()
     finished = {file: time for file, time in written(store).items() if file.startswith("chunks")}
     assert 3 <= len(finished) < 12
     slow_batch(client, store)
