@@ -1,4 +1,4 @@
-"""Who imports whom, and what `import beetle_ik` loads."""
+"""Who imports whom, what `import beetle_ik` loads, and that no test reads a clock."""
 
 import ast
 import subprocess
@@ -10,7 +10,8 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "python" / "beetle_ik"
 FILES = sorted(PACKAGE.rglob("*.py"))
-
+TESTS = sorted(Path(__file__).parent.glob("*.py"))
+CLOCKS = {"datetime", "time", "timeit"}
 
 # From the lowest up; `__init__` stands for the public names of the package.
 LAYERS = (
@@ -62,3 +63,11 @@ def test_import_loads_no_other_package() -> None:
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
     assert "beetle_ik" in loaded
     assert not {"numpy", "typer", "rich", "matplotlib", "jinja2", "viser", "dask", "distributed", "zarr"} & set(loaded)
+
+
+@pytest.mark.parametrize("file", TESTS, ids=lambda file: file.stem)
+def test_no_test_reads_a_clock_or_sleeps(file: Path) -> None:
+    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+    assert not libraries(nodes) & CLOCKS
+    called = {node.func.attr for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)}
+    assert not called & {"wait_for_timeout"}

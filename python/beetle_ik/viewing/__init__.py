@@ -2,6 +2,7 @@
 
     viewer      the public class: joins the parts below, and answers Python
     checks      its arguments
+    turns       how its thread and Python change the state, one at a time
     worker      the only thread that moves the arm
     address     a free port
     admission   who may use the page
