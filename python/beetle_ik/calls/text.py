@@ -1,6 +1,7 @@
-"""Counts with nouns, and lists of names, for messages."""
+"""Counts with nouns and lists of names, for messages; numbers that read back."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
+from typing import SupportsFloat
 
 _LIST_LENGTH = 400  # characters
 
@@ -21,3 +22,8 @@ def listed(names: Collection[str]) -> str:
             break
         kept.append(name)
     return f"{', '.join(kept)} and {len(names) - len(kept)} more" if kept else f"{len(names)} names"
+
+
+def exact(numbers: Iterable[SupportsFloat]) -> str:
+    """Returns numbers separated by spaces, each of which reads back to the bit."""
+    return " ".join(repr(float(number)) for number in numbers)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .._core import InvalidInputError, Robot, UnknownNameError, UrdfError, pose
 from ..calls.arguments import require, require_text
-from ..calls.text import listed
+from ..calls.text import exact, listed
 from ..installed.needs import library
 from .mjcf_files import require_own_files
 
@@ -111,7 +111,7 @@ class _Reader:
         model = self.model
         for mesh in range(model.nmesh):
             first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-            lines = [f"v {_numbers(vertex)}" for vertex in model.mesh_vert[first : first + count]]
+            lines = [f"v {exact(vertex)}" for vertex in model.mesh_vert[first : first + count]]
             first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
             lines += [f"f {a} {b} {c}" for a, b, c in model.mesh_face[first : first + count] + 1]
             file = folder / self._mesh(mesh)
@@ -161,7 +161,7 @@ class _Reader:
         model = self.model
         if self._kind(joint) in ("spherical", "floating"):
             return []
-        inner = [f"<axis xyz='{_numbers(model.jnt_axis[joint])}'/>"]
+        inner = [f"<axis xyz='{exact(model.jnt_axis[joint])}'/>"]
         if model.jnt_limited[joint]:
             lower, upper = model.jnt_range[joint]
             inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}'/>")
@@ -197,7 +197,7 @@ class _Reader:
                 "mjGEOM_SPHERE": f"<sphere radius='{size[0]!r}'/>",
                 "mjGEOM_CAPSULE": f"<capsule radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
                 "mjGEOM_CYLINDER": f"<cylinder radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
-                "mjGEOM_BOX": f"<box size='{_numbers(2 * np.array(size))}'/>",
+                "mjGEOM_BOX": f"<box size='{exact(2 * np.array(size))}'/>",
                 "mjGEOM_ELLIPSOID": "<ellipsoid/>",
                 "mjGEOM_MESH": self._mesh_element(geom),
             }.get(self.mujoco.mjtGeom(model.geom_type[geom]).name, "<mesh/>")
@@ -220,8 +220,4 @@ def _origin(place: Matrix) -> str:
     sine, cosine = np.sin(yaw), np.cos(yaw)
     pitch = np.arctan2(-place[2, 0], cosine * place[0, 0] + sine * place[1, 0])
     roll = np.arctan2(sine * place[0, 2] - cosine * place[1, 2], cosine * place[1, 1] - sine * place[0, 1])
-    return f"<origin xyz='{_numbers(place[:3, 3])}' rpy='{_numbers([roll, pitch, yaw])}'/>"
-
-
-def _numbers(values: Any) -> str:
-    return " ".join(repr(float(value)) for value in values)
+    return f"<origin xyz='{exact(place[:3, 3])}' rpy='{exact([roll, pitch, yaw])}'/>"
