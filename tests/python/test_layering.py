@@ -1,4 +1,4 @@
-"""Who imports whom, what `import beetle_ik` loads, and that no test reads a clock."""
+"""Imports between modules, the modules that `import beetle_ik` loads, and clocks, which no test reads."""
 
 import ast
 import subprocess

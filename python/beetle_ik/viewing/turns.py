@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
-_LONGEST_TICK = 0.1  # s: after a rest, or on a busy machine, a motion goes on where it was
+_LONGEST_TICK = 0.1  # s: longest time by which a motion advances, after a rest or on a busy machine
 
 
 class Turns:
@@ -29,8 +29,8 @@ class Turns:
     Attributes:
         lock: held by whoever changes or reads the whole state.
         closed: whether the viewer has ended.
-        moves: whether the arm is under way to its target, or a motion is played back.
-        callbacks: what is called after a turn that changed the target.
+        moves: whether the arm is moving to its target, or a motion is played back.
+        callbacks: functions called after a turn that changed the target.
     """
 
     def __init__(self, name: str, arm: Arm) -> None:
@@ -59,7 +59,7 @@ class Turns:
 
     @contextmanager
     def between(self) -> Iterator[None]:
-        """Has the block change the state alone, from Python, and shows the result.
+        """Locks the state for the block, which changes it from Python, and shows the result.
 
         Raises:
             BeetleIkError: the viewer is closed.
@@ -68,12 +68,12 @@ class Turns:
             raise BeetleIkError(f"the viewer of '{self._name}' is closed: bik.view opens another one")
         with self.lock:
             yield
-            self.moves = True  # until the next tick knows better
+            self.moves = True  # corrected at the next tick
             self._parts.refresh()
         self.ask("changed", lambda: None)
 
     def pass_time(self, seconds: float) -> None:
-        """Moves the arm on, in a recording."""
+        """Moves the arm on by a time (s), in a recording."""
         self.moves = self._parts.pass_time(seconds)
 
     def _turn(self, requests: Collection[Request]) -> bool:
@@ -97,14 +97,14 @@ class Turns:
         return self.moves
 
     def _guarded(self, action: Callable[[], object]) -> object:
-        """Carries out an action; what it raises is shown on the page, and does not end the thread."""
+        """Carries out an action; its exceptions are shown on the page, and do not end the thread."""
         try:
             return action()
         except BeetleIkError as error:
             problem = str(error)
-        except Exception as error:  # of a callback
+        except Exception as error:  # raised by a callback
             if self.closed.is_set():
-                return None  # there is no page to show anything on
+                return None  # no page is left to show the error
             _log.exception("an error in the viewer of '%s'", self._name)
             problem = f"{type(error).__name__}: {error}"
         self._parts.report.problem = problem

@@ -1,4 +1,4 @@
-"""The viewer as Python sees it."""
+"""The Python interface of the viewer."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     Shown = Trajectory | Plan | TrackResult | ModelFreeResult | Solution | SolutionSet | SelfMotion | ReachabilityMap
 
 _NOTEBOOK_HEIGHT = 600  # pixels
-_WAKE = 0.1  # s: how often a waiting thread looks for Ctrl-C, which Windows would not wake it for
+_WAKE = 0.1  # s: interval of checks for Ctrl-C, which does not wake a waiting thread on Windows
 
 
 @worded_call
@@ -53,13 +53,13 @@ def view(
     port: int = 8080,
     block: bool = False,
 ) -> Viewer:
-    """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
+    """Shows a robot in the browser, where its tip, its joints and obstacles can be dragged. Needs the extra "view".
 
-    The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
-    clear. One with several tips has a handle for each. The page has sliders for the joints, all solutions, the
-    self-motion, and plays motions back. Links look as `robot.visuals` says where files are found, otherwise like their
-    collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the viewer shows
-    inline.
+    The arm follows the handle at its tip like `Tracker`: within its limits, and certified clear of obstacles and of
+    itself. A robot with several tips has a handle for each. The page has sliders for the joints, shows all solutions
+    and the self-motion, and plays motions back. Links show the meshes of `robot.visuals` whose files are found,
+    otherwise their collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the
+    viewer appears inline.
 
     Args:
         robot: the robot.
@@ -67,8 +67,8 @@ def view(
             configuration near the middle of the limits.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, in the frame of the robot's base.
         path: a path to draw: one of `bik.paths`, positions (k, 3) (m) or poses (k, 4, 4).
-        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": whoever reaches it
-            and knows the token, which is part of the address.
+        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": everyone who reaches
+            it and knows the token, which is part of the address.
         port: the port; if it is in use, the next free one. 0: any.
         block: whether to wait until Ctrl-C, which closes the viewer.
 
@@ -88,12 +88,12 @@ def view(
 
 
 class Viewer:
-    """A page that shows a robot, made by `view`. What the page changes and what Python sets is the same state.
+    """A page that shows a robot, made by `view`. The page and Python change the same state.
 
-    It can be used from any thread, and as a context that closes it.
+    It can be used from any thread, and as a context manager that closes it.
 
     Attributes:
-        robot: the robot as it is shown: with bodies, and with velocity limits.
+        robot: the robot with the bodies and velocity limits that the viewer added.
         server: the server of viser, which takes further controls and shapes.
         url: the address of the page, with its token if other machines reach it.
     """
@@ -140,7 +140,7 @@ class Viewer:
 
     @property
     def q(self) -> Array:
-        """The configuration shown (n,) (rad, m). Setting it puts the arm there, to rest.
+        """The configuration shown (n,) (rad, m). Setting it puts the arm there at rest.
 
         The handle moves along, unless `follow` is "off".
 
@@ -158,9 +158,9 @@ class Viewer:
 
     @property
     def target(self) -> Any:
-        """The pose (4, 4) of the handle, which the arm follows. A position (3,) (m) keeps its orientation.
+        """The pose (4, 4) of the handle, which the arm follows. Setting a position (3,) (m) keeps the orientation.
 
-        Of a robot with several tips a dict of poses by their names; those that are not set stay.
+        For a robot with several tips it is a dict from tips to poses; tips left out when it is set keep their targets.
         """
         targets = self._arm.targets
         return dict(targets) if len(targets) > 1 else targets[self.robot.tips[0]]
@@ -173,7 +173,7 @@ class Viewer:
 
     @property
     def obstacles(self) -> Scene:
-        """The obstacles as they are now, also those that were added or moved on the page."""
+        """The obstacles, including those added or moved on the page."""
         return Scene(self._arm.obstacles)
 
     @obstacles.setter
@@ -184,10 +184,10 @@ class Viewer:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the handle: "track", "solve" or "off".
+        """Mode of following the handle: "track", "solve" or "off".
 
-        "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
-        and the handle stays where it is.
+        "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm moves when `q` is set, and
+        the handle stays in place.
         """
         return self._arm.follow
 
@@ -206,11 +206,11 @@ class Viewer:
 
     @property
     def moves(self) -> bool:
-        """Whether the arm is under way to its target, or a motion is played back."""
+        """Whether the arm is moving to its target, or a motion is played back."""
         return self._turns.moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a slice of a map.
+        """Shows a result: plays a motion, puts the arm at a solution, shows several as ghosts, or a slice of a map.
 
         A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
         orange where all are.
@@ -220,16 +220,17 @@ class Viewer:
                 `ReachabilityMap`.
 
         Raises:
-            InvalidInputError: something else, or the result of a robot with another number of joints.
+            InvalidInputError: another type, or the result of a robot with another number of joints.
         """
         with self._turns.between():
             self._parts.show(result)
 
     def to_python(self) -> str:
-        """Returns a program that makes what the page shows, as its button "Copy as Python" does.
+        """Returns a program that recreates the state of the page, like its button "Copy as Python".
 
-        It has the robot (a built-in one, otherwise a place for yours), the configuration, the target and the obstacles,
-        and plans from the one to the other. After a plan that was made on the page, it has the start of that.
+        It makes the robot (a built-in one, otherwise a placeholder for yours), the configuration, the target and the
+        obstacles, and plans from the configuration to the target. After a plan made on the page, it uses the start of
+        that plan.
         """
         with self._turns.lock:
             return self._parts.program.text()
@@ -242,9 +243,9 @@ class Viewer:
 
         Args:
             file: the file, ending in `.html` or `.viser`.
-            frames: changes the viewer and yields for how long what it shows stays (s), any number of times. Time
-                passes in no other way: after each yield the arm has moved on by the time yielded. None: the motion
-                that was shown last, from start to end; without any, the scene as it is, which turns.
+            frames: changes the viewer and yields the time for which the state is shown (s), any number of times. Time
+                passes only there: after each yield the arm has moved on by that time. None: the motion shown last, from
+                start to end; without any, the scene as it is, which turns.
 
         Raises:
             InvalidInputError: another ending, or frames that are no seconds, or last longer than ten minutes.
@@ -265,9 +266,9 @@ class Viewer:
         write_recording(path, self.robot.name, recorded)
 
     def on_target(self, callback: Callable[[Any], object]) -> None:
-        """Has `callback(target)` called with each new `target`, in the thread of the viewer.
+        """Registers a `callback(target)` for each new `target`, which runs in the thread of the viewer.
 
-        While it runs, the arm waits; what it raises is logged and shown on the page.
+        The arm waits for it; its exceptions are logged and shown on the page.
         """
         if not callable(callback):
             raise InvalidInputError(f"callback must be a function of the target, got {callback!r:.60}")
@@ -282,7 +283,7 @@ class Viewer:
             self.close()
 
     def close(self) -> None:
-        """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
+        """Ends the page and its threads. A closed viewer keeps its state; a second call does nothing."""
         if self._turns.end():
             atexit.unregister(self.close)
             self.server.stop()
