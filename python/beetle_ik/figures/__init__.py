@@ -4,6 +4,8 @@ style         palette and sizes of all figures
 shapes        stick figures, bodies and obstacles in matplotlib
 surface       shaded triangles in matplotlib
 plan_figure   figure and animation of a planned motion
+track_figure  figures of tracked paths
+joints        joint values over time
 frames        animation frames, apart from their figure
 skeleton      the axes and rigid parts of a robot without meshes
 solids        solids of revolution along that skeleton

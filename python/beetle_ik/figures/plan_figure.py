@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .frames import Frames
+from .joints import draw_joints
 from .shapes import draw_from_above, draw_in_space, joints_to_tip
-from .style import BLACK, BLUE, GREEN, SKY, VERMILION, line
+from .style import BLACK, BLUE, GREEN, SKY, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,8 +103,7 @@ def draw(figure: Figure, plan: Plan) -> None:
     labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
     panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
     for axes, label, values in zip(panels, labels, plan.trajectory.at(time), strict=True):
-        for j, name in enumerate(plan.trajectory.joint_names):
-            axes.plot(time, values[:, j], label=name, **line(j))
+        draw_joints(axes, time, values, plan.trajectory.joint_names)
         axes.set(ylabel=label, xlim=(0.0, plan.trajectory.duration))
     panels[2].set_xlabel("time [s]")
     panels[0].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize="small")
