@@ -6,6 +6,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from itertools import count
 
 EVERY = 0.01  # s of computing, on all threads together
 MOST = 100  # signals between two looks for them: 0.2 s are promised, and some machines are five times as slow
@@ -48,12 +49,13 @@ def interrupted(*, most: float = MOST) -> Iterator[None]:
     A call that does not look meets the handler once, after it has returned, and nothing is raised.
     """
     came: list[int] = []
+    numbers = count(1)
 
     def look() -> None:
-        came.append(0)
+        number = next(numbers)  # a further signal may call the handler while it runs
         with suppress(BlockingIOError):
-            came[-1] = len(os.read(reading, 100_000))
-        if len(came) == 3:
+            came.append(len(os.read(reading, 100_000)))
+        if number == 3:
             raise KeyboardInterrupt
 
     with pipe() as (reading, writing):
@@ -72,6 +74,7 @@ def interrupted_by_another_thread() -> Iterator[None]:
     No thread is made to give the lock up: the other one gets it where the block releases it.
     """
     turns = looks = 0
+    raised = count()
 
     def run() -> None:
         nonlocal turns
@@ -81,7 +84,7 @@ def interrupted_by_another_thread() -> Iterator[None]:
     def look() -> None:
         nonlocal looks
         looks += 1
-        if turns >= TURNS:
+        if turns >= TURNS and next(raised) == 0:
             raise KeyboardInterrupt
         assert looks < LOOKS, "no other thread runs"
 
