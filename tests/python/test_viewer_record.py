@@ -245,10 +245,12 @@ def plays(browser: Any, address: str, *, width: int = 320, height: int = 240) ->
     assert not complaints
 
 
-def test_a_browser_plays_a_recorded_page_without_server(browser: Any, recordings: Path) -> None:
+@pytest.mark.parametrize(("width", "height"), [(320, 240), (240, 400)])
+def test_a_browser_plays_a_recorded_page_without_server(
+    browser: Any, recordings: Path, width: int, height: int
+) -> None:
     assert (recordings / "motion.html").stat().st_size < 3e6
-    plays(browser, (recordings / "motion.html").as_uri())
-    plays(browser, (recordings / "motion.html").as_uri(), width=240, height=400)
+    plays(browser, (recordings / "motion.html").as_uri(), width=width, height=height)
 
 
 def test_a_player_plays_recordings_of_its_site_alone(browser: Any, recordings: Path) -> None:
