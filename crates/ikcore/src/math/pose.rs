@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_matrix_of_three_decimals_is_taken_as_the_nearest_rotation() {
-        for (angle, decimals) in [(0.3, 1e3), (1.1, 1e3), (2.7, 1e4), (-0.9, 1e5)] {
+        for (angle, decimals) in [(0.3, 1e3_f64), (1.1, 1e3), (2.7, 1e4), (-0.9, 1e5)] {
             let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, angle, -0.4));
             let exact = Rotation3::from_axis_angle(&axis, angle).into_inner();
             let rounded = exact.map(|entry| (entry * decimals).round() / decimals);
