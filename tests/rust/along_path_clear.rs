@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::norm;
-use ikcore::obstacle::{Scene, Surroundings};
+use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::Waypoints;
 use ikcore::planning::{AlongPathOptions, Cost, Plan, TipPath, Tpbso, plan_along_path};
 use ikcore::rng::{self, LazyRng};
@@ -45,11 +45,11 @@ fn swing(robot: &Robot) -> TipPath {
     bent(robot, &Q, [0.0, 0.4, 0.0], [0.0, 0.0, 0.2])
 }
 
-fn among(obstacles: Vec<Shape>) -> Surroundings {
+fn among(obstacles: impl Into<Obstacles>) -> Surroundings {
     Surroundings { obstacles: Some(obstacles.into()), margin: Some(MARGIN), self_collision: None }
 }
 
-fn options(robot: &Robot, obstacles: Vec<Shape>) -> AlongPathOptions {
+fn options(robot: &Robot, obstacles: impl Into<Obstacles>) -> AlongPathOptions {
     AlongPathOptions {
         limits: Some(limits(robot, f64::INFINITY)),
         surroundings: among(obstacles),
@@ -116,7 +116,7 @@ fn plans_among_random_boxes_are_clear_at_every_instant() {
             // The path may leave the reach.
             let Ok(plan) = plan_along_path(&robot, &tip_path, &options, &mut Unattended) else { continue };
             let distance = smallest(&robot, &obstacles, &plan);
-            let claimed = plan.clearance.unwrap();
+            let claimed = plan.clearance.as_ref().unwrap().distance;
             if plan.status == Status::Solved {
                 assert!(distance >= MARGIN && claimed >= MARGIN, "{name} {seed}: {distance}, {claimed}");
                 assert!(claimed <= distance.max(MARGIN) + 1e-9, "{name} {seed}: {claimed} for {distance}");
@@ -150,19 +150,16 @@ fn an_arm_that_would_collide_goes_round_by_its_self_motion() {
         &swing(&robot),
         &AlongPathOptions { surroundings: Surroundings::default(), ..options(&robot, vec![]) },
     );
-    assert!(
-        smallest(&robot, std::slice::from_ref(&ball), &free) < 0.0
-            && free.clearance.is_none()
-            && free.nearest.is_none()
-    );
+    assert!(smallest(&robot, std::slice::from_ref(&ball), &free) < 0.0 && free.clearance.is_none());
     for objective in [Cost::Time, Cost::JointTravel] {
         let options = AlongPathOptions { objective, ..options(&robot, vec![ball.clone()]) };
         let plan = planned(&robot, &swing(&robot), &options);
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(smallest(&robot, std::slice::from_ref(&ball), &plan) >= MARGIN);
-        let nearest = plan.nearest.clone().unwrap();
+        let clearance = plan.clearance.clone().unwrap();
+        let nearest = clearance.nearest.unwrap();
         let distance = nearest.contact.distance;
-        assert!((distance - plan.clearance.unwrap()).abs() < 1e-4 + 0.02 * distance, "{distance}");
+        assert!((distance - clearance.distance).abs() < 1e-4 + 0.02 * distance, "{distance}");
         assert!(plan.message().contains(" m clear of everything"), "{}", plan.message());
         assert_eq!(plan, Plan { elapsed: plan.elapsed, ..planned(&robot, &swing(&robot), &options) });
     }
@@ -248,8 +245,9 @@ fn what_is_in_the_way_is_named() {
     let q = [0.3, -1.6, 1.8, -1.7, -1.5, 0.2];
     let elbows = ur5e.link_poses(&q).unwrap();
     let around = elbows[2].translation.vector + 0.5 * (elbows[3].translation.vector - elbows[2].translation.vector);
-    let ball = Shape::sphere([0.3 * around.x, 0.3 * around.y, 0.45], 0.3).unwrap().with_touch(vec!["link_1".into()]);
-    let plan = planned(&ur5e, &bent(&ur5e, &q, [0.0, 0.1, 0.0], [0.0; 3]), &options(&ur5e, vec![ball]));
+    let ball = Shape::sphere([0.3 * around.x, 0.3 * around.y, 0.45], 0.3).unwrap();
+    let ball = Obstacles::from_iter([Obstacle::new(ball, vec!["link_1".into()])]);
+    let plan = planned(&ur5e, &bent(&ur5e, &q, [0.0, 0.1, 0.0], [0.0; 3]), &options(&ur5e, ball));
     assert!(plan.message().contains(" postures, and there are no others; "), "{}", plan.message());
 }
 
@@ -286,7 +284,10 @@ fn a_plan_keeps_its_margin_with_other_limits() {
     let plan = planned(&robot, &swing(&robot), &options(&robot, vec![ball.clone()]));
     let slower = plan.retime(&robot, Some(&limits(&robot, 50.0))).unwrap();
     assert!(slower.trajectory.duration() > plan.trajectory.duration());
-    assert!(smallest(&robot, std::slice::from_ref(&ball), &slower) >= MARGIN && slower.clearance.unwrap() >= MARGIN);
+    assert!(
+        smallest(&robot, std::slice::from_ref(&ball), &slower) >= MARGIN
+            && slower.clearance.as_ref().unwrap().distance >= MARGIN
+    );
     let back = slower.retime(&robot, Some(&limits(&robot, f64::INFINITY))).unwrap();
     assert_eq!(back.trajectory, plan.trajectory);
     let smooth = AlongPathOptions { limits: Some(limits(&robot, 50.0)), ..options(&robot, vec![ball.clone()]) };

@@ -2,7 +2,7 @@
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Pose;
-use ikcore::obstacle::Scene;
+use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::planning::{
     Endpoint, Freed, LineContact, LineFrame, Plan, PointToPointOptions, StraightLine, plan_point_to_point,
 };
@@ -143,28 +143,31 @@ fn a_line_keeps_what_the_task_asks_for() {
 #[test]
 fn contacts_are_allowed_on_the_line_alone() {
     let robot = panda();
-    let scene = |obstacles: &[Shape], q: &[f64]| Scene::new(&robot, obstacles).unwrap().clearance(q).unwrap();
+    let scene = |obstacles: &Obstacles, q: &[f64]| Scene::new(&robot, obstacles).unwrap().clearance(q).unwrap();
     let end = vec![0.6, 0.5, 0.1, -1.7, 0.0, 2.0, 0.8];
     let tip = robot.tip(&end);
     let ahead = std::array::from_fn(|k| tip.origin[k] + 0.04 * tip.axes[2][k]);
-    let ball = vec![Shape::sphere(ahead, 0.05).unwrap()];
+    let ball = Obstacles::from_iter([Shape::sphere(ahead, 0.05).unwrap()]);
     let start = Endpoint::Configuration(READY.to_vec());
     let touch = vec![LineContact { obstacle: Some(0), links: vec!["link_7".into(), "link_6".into()] }];
     let approach = StraightLine { distance: 0.12, touch: touch.clone(), ..StraightLine::default() };
     let ends = [Endpoint::Configuration(end)];
-    let with =
-        |approach| PointToPointOptions { approach: Some(approach), obstacles: ball.clone().into(), ..options(&robot) };
+    let with = |approach| PointToPointOptions {
+        approach: Some(approach),
+        surroundings: Surroundings::among(ball.clone()),
+        ..options(&robot)
+    };
     let plan = plan_point_to_point(&robot, &start, &ends, &with(approach.clone()), &mut Unattended).unwrap();
     assert_eq!(plan.status, Status::Solved, "{}", plan.message());
     let [.., back, _] = rests(&plan)[..] else { panic!("no line") };
-    let touched = [ball[0].clone().with_touch(touch[0].links.clone())];
+    let touched = Obstacles::from_iter([Obstacle::new(ball[0].shape.clone(), touch[0].links.clone())]);
     for i in 0..=1000 {
         let t = plan.trajectory.duration() * f64::from(i) / 1000.0;
         let q = &at(&plan, t)[0];
         assert!(scene(&touched, q) >= MARGIN && (t > back || scene(&ball, q) >= MARGIN), "at {t} s");
     }
     assert!(scene(&ball, &at(&plan, plan.trajectory.duration())[0]) < 0.0);
-    assert!(plan.clearance.unwrap() >= MARGIN);
+    assert!(plan.clearance.as_ref().unwrap().distance >= MARGIN);
     let said = |line| plan_point_to_point(&robot, &start, &ends, &with(line), &mut Unattended).unwrap_err().to_string();
     let untouched = said(StraightLine { touch: vec![], ..approach.clone() });
     assert!(
@@ -204,8 +207,11 @@ fn starts_in_contact_move_out_and_never_deeper() {
                 break end;
             }
         };
-        let with =
-            |free_start| PointToPointOptions { free_start, obstacles: obstacles.clone().into(), ..options(&robot) };
+        let with = |free_start| PointToPointOptions {
+            free_start,
+            surroundings: Surroundings::among(obstacles.clone()),
+            ..options(&robot)
+        };
         let (start, ends) = (Endpoint::Configuration(q), [Endpoint::Configuration(end)]);
         let refused = plan_point_to_point(&robot, &start, &ends, &with(false), &mut Unattended).unwrap_err();
         assert!(refused.to_string().ends_with("; free_start=True moves out first"), "{refused}");
@@ -230,7 +236,7 @@ fn starts_in_contact_move_out_and_never_deeper() {
             let least = if t >= until { MARGIN } else { begun - 1e-4 };
             assert!(distance >= least, "case {case}: {distance} m at {t} s, began at {begun} m, free after {until} s");
         }
-        assert!(plan.violations.is_empty() && plan.clearance.unwrap() >= begun - 1e-3);
+        assert!(plan.violations.is_empty() && plan.clearance.as_ref().unwrap().distance >= begun - 1e-3);
     }
     assert!(freed >= 20 && stuck <= freed / 4, "{freed} freed, {stuck} stuck");
 }

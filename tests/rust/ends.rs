@@ -2,6 +2,7 @@
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::{Frame, Pose};
+use ikcore::obstacle::Surroundings;
 use ikcore::planning::{Cost, Endpoint, Plan, PointToPointOptions, Tpbso, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -52,7 +53,11 @@ fn the_cheapest_of_several_configurations_is_taken() {
     let robot = panda();
     let ends: Vec<Endpoint> = configurations(&robot, 12).into_iter().map(Endpoint::Configuration).collect();
     for (objective, self_collision) in [(Cost::Time, false), (Cost::JointTravel, false), (Cost::Time, true)] {
-        let options = PointToPointOptions { objective, self_collision: Some(self_collision), ..options(&robot) };
+        let options = PointToPointOptions {
+            objective,
+            surroundings: Surroundings { self_collision: Some(self_collision), ..Surroundings::default() },
+            ..options(&robot)
+        };
         let plan = planned(&robot, &ends, &options);
         let chosen = plan.chosen_end.unwrap();
         let Endpoint::Configuration(q) = &ends[chosen] else { panic!("a configuration was given") };
@@ -72,7 +77,10 @@ fn the_cheapest_of_several_poses_is_taken() {
     let robot = panda();
     let poses: Vec<Target> = configurations(&robot, 6).iter().map(|q| Target::from(&robot.fk(q).unwrap())).collect();
     let ends: Vec<Endpoint> = poses.iter().copied().map(Endpoint::from).collect();
-    let options = PointToPointOptions { self_collision: Some(false), ..options(&robot) };
+    let options = PointToPointOptions {
+        surroundings: Surroundings { self_collision: Some(false), ..Surroundings::default() },
+        ..options(&robot)
+    };
     let plan = planned(&robot, &ends, &options);
     let alone: Vec<f64> = ends.iter().map(|end| planned(&robot, std::slice::from_ref(end), &options).cost).collect();
     let least = alone.iter().copied().fold(f64::INFINITY, f64::min);
@@ -88,7 +96,7 @@ fn the_cheapest_of_several_poses_is_taken() {
 fn ends_that_cannot_be_reached_are_passed_over_unless_all_are() {
     let robot = panda();
     let ball = Shape::sphere([0.5, 0.0, 0.3], 0.1).unwrap();
-    let among = PointToPointOptions { obstacles: vec![ball].into(), ..options(&robot) };
+    let among = PointToPointOptions { surroundings: Surroundings::among(vec![ball]), ..options(&robot) };
     let far = |x: f64| Endpoint::from(Target::Position([x, 0.0, 0.0]));
     let beyond = Endpoint::Configuration(vec![9.0; 7]);
     let hitting = Endpoint::Configuration(vec![0.0, 0.9, 0.0, -1.6, 0.0, 2.4, 0.8]);
@@ -166,8 +174,11 @@ fn a_task_leaves_a_part_of_the_end_to_the_planner() {
     for obstacles in [vec![], vec![Shape::sphere([0.6, 0.3, 0.5], 0.05).unwrap()]] {
         for (kind, tool) in [(pointing, None), (TaskKind::Position, None), (pointing, Some(tool))] {
             let task = Task::new(kind, None, None, tool).unwrap();
-            let options =
-                PointToPointOptions { task: Some(task), obstacles: obstacles.clone().into(), ..options(&robot) };
+            let options = PointToPointOptions {
+                task: Some(task),
+                surroundings: Surroundings::among(obstacles.clone()),
+                ..options(&robot)
+            };
             let plan = planned(&robot, &ends, &options);
             let held = task.robot(&robot).unwrap().unwrap_or_else(|| robot.clone());
             let Frame { origin, axes } = held.tip(&last_of(&plan));
@@ -189,7 +200,8 @@ fn an_end_is_anywhere_in_a_region() {
     let task = height.within(Region::new(lower, upper).unwrap()).unwrap();
     let ends = [Endpoint::from(Target::Position([0.0, 0.0, 0.3]))];
     for obstacles in [vec![], vec![Shape::sphere([0.6, 0.3, 0.5], 0.05).unwrap()]] {
-        let options = PointToPointOptions { task: Some(task), obstacles: obstacles.into(), ..options(&robot) };
+        let options =
+            PointToPointOptions { task: Some(task), surroundings: Surroundings::among(obstacles), ..options(&robot) };
         let tip = robot.tip_position(&last_of(&planned(&robot, &ends, &options)));
         assert!((0..3).all(|k| lower[k] < tip[k] && tip[k] < upper[k]), "{tip:?}");
         assert!((tip[2] - 0.3).abs() < 2e-6, "{tip:?}");

@@ -9,7 +9,7 @@ use ikcore::load::UrdfOptions;
 use ikcore::manipulability::Motion;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Rotation3, Vector3};
-use ikcore::obstacle::{ClearanceSweep, Edge, Scene};
+use ikcore::obstacle::{ClearanceSweep, Edge, Scene, Surroundings};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
@@ -184,7 +184,7 @@ fn it_drives_round_an_obstacle() {
     let ready = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
     let [start, end] = [-1.5, 1.5].map(|x| [&[x, 0.0, 0.0], &ready[..]].concat());
     let pillar = vec![Shape::cylinder([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 0.3, 2.0).unwrap()];
-    let options = PointToPointOptions { obstacles: pillar.into(), ..PointToPointOptions::default() };
+    let options = PointToPointOptions { surroundings: Surroundings::among(pillar), ..PointToPointOptions::default() };
     let plan = plan_point_to_point(
         &robot,
         &Endpoint::Configuration(start),

@@ -6,6 +6,7 @@ use std::thread::{self, ThreadId};
 use ikcore::Error;
 use ikcore::batch::{PlanProblem, plan_batch, plan_status};
 use ikcore::limits::{Field, Limits, Profile};
+use ikcore::obstacle::Surroundings;
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::robot::Robot;
 use ikcore::shape::Shape;
@@ -32,11 +33,12 @@ fn problems(robot: &Robot) -> Vec<PlanProblem> {
     let ball = Shape::sphere([0.55, 0.2, 0.5], 0.1).unwrap();
     let options = Arc::new(PointToPointOptions {
         limits: Some(limits),
-        obstacles: vec![ball].into(),
+        surroundings: Surroundings::among(vec![ball]),
         seed: 3,
         ..PointToPointOptions::default()
     });
-    let own = Arc::new(PointToPointOptions { seed: 4, margin: Some(0.02), ..(*options).clone() });
+    let farther = Surroundings { margin: Some(0.02), ..options.surroundings.clone() };
+    let own = Arc::new(PointToPointOptions { seed: 4, surroundings: farther, ..(*options).clone() });
     let mut all: Vec<PlanProblem> = (-3..4).map(|k| to(at([0.45, 0.15 * f64::from(k), 0.4]), &options)).collect();
     all.push(to(at([0.4, 0.4, 0.5]), &own));
     all.push(to(at([4.0, 0.0, 0.5]), &options));

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
+use ikcore::obstacle::Surroundings;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
@@ -142,12 +143,18 @@ fn obstacle_is_passed_at_its_margin() {
         let method = by_evolution();
         plan(
             4,
-            PointToPointOptions { objective, obstacles: obstacles.into(), margin, seed, method, ..Default::default() },
+            PointToPointOptions {
+                objective,
+                surroundings: Surroundings { margin, ..Surroundings::among(obstacles) },
+                seed,
+                method,
+                ..Default::default()
+            },
         )
     };
     let mean = mean(3, |seed| {
         let plan = plan(seed);
-        assert!(plan.clearance.unwrap() >= 0.005);
+        assert!(plan.clearance.as_ref().unwrap().distance >= 0.005);
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; 4]);
         for i in 0..=4000 {
             plan.trajectory.at(plan.cost.max(10.0) * f64::from(i) / 4000.0, &mut q, &mut qd, &mut qdd).unwrap();

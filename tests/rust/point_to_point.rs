@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::Scene;
+use ikcore::obstacle::{Scene, Surroundings};
 use ikcore::planning::{Cost, Endpoint, Plan, PointToPointMethod, PointToPointOptions, Tpbso, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -110,7 +110,7 @@ fn arms_find_their_way_around_a_box() {
             let ends = [end];
             let options = PointToPointOptions {
                 limits: Some(limits(&robot, None, 10.0)),
-                obstacles: obstacles.clone().into(),
+                surroundings: Surroundings::among(obstacles.clone()),
                 ..Default::default()
             };
             let plan =
@@ -120,7 +120,7 @@ fn arms_find_their_way_around_a_box() {
                 solved += 1;
                 let nearest = |q: Vec<f64>| scene.nearest(&q).unwrap().unwrap().distance;
                 let sampled = states(&plan, 500).map(nearest).fold(f64::INFINITY, f64::min);
-                let clearance = plan.clearance.unwrap();
+                let clearance = plan.clearance.as_ref().unwrap().distance;
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
                 if let [Endpoint::Targets { targets, .. }] = &ends {
@@ -146,7 +146,7 @@ fn a_way_around_a_wall_is_found_and_smooth() {
     for seed in 0..5 {
         let options = PointToPointOptions {
             limits: Some(limits(&robot, None, 10.0)),
-            obstacles: obstacles.clone().into(),
+            surroundings: Surroundings::among(obstacles.clone()),
             seed,
             ..Default::default()
         };
@@ -183,7 +183,7 @@ fn a_larger_budget_finds_no_worse_plan() {
                 let obstacles = obstacles.clone();
                 let options = PointToPointOptions {
                     limits,
-                    obstacles: obstacles.into(),
+                    surroundings: Surroundings::among(obstacles),
                     seed,
                     objective,
                     stop,
@@ -208,7 +208,7 @@ fn cut_off(end: Endpoint, stop: Stop) -> Plan {
     let within = limits(&robot, Some(1.0), 10.0).replace(Field::Lower, constant(-2.0)).unwrap();
     let options = PointToPointOptions {
         limits: Some(within.replace(Field::Upper, constant(2.0)).unwrap()),
-        obstacles: vec![Shape::cuboid([1.2, 0.0, 0.0], [2.0, 0.02, 1.0], None).unwrap()].into(),
+        surroundings: Surroundings::among(vec![Shape::cuboid([1.2, 0.0, 0.0], [2.0, 0.02, 1.0], None).unwrap()]),
         stop: Some(stop),
         ..Default::default()
     };
@@ -228,7 +228,7 @@ fn a_plan_without_a_way_says_how_far_the_search_came() {
         message.contains(" rad apart; on the straight way link 'link")
             && message.contains(" m inside obstacle 0 (Box); try ")
     );
-    assert!(!plan.violations.is_empty() && plan.nearest.is_some());
+    assert!(!plan.violations.is_empty() && plan.clearance.is_some_and(|clearance| clearance.nearest.is_some()));
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn plans_reported_free_are_free_at_every_sample() {
         let [start, end] = [&ends[..n], &ends[n..]].map(|q| Endpoint::Configuration(q.to_vec()));
         let options = PointToPointOptions {
             limits: Some(limits(robot, Some(1.0), 5.0)),
-            obstacles: obstacles.clone().into(),
+            surroundings: Surroundings::among(obstacles.clone()),
             stop: Some(Stop { max_evaluations: 4000, ..Stop::default() }),
             ..Default::default()
         };
@@ -306,19 +306,18 @@ const MESH: &str = r#"<robot name="arm"><link name="base"/>
 fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
     let arm = Robot::from_urdf(MESH, None, None).unwrap();
     for method in [PointToPointMethod::MinMax, Tpbso::default().into()] {
-        let options = |obstacles| PointToPointOptions {
+        let options = |obstacles: Vec<Shape>| PointToPointOptions {
             method: method.clone(),
-            obstacles,
+            surroundings: Surroundings::among(obstacles),
             limits: Some(limits(&arm, None, 1.0)),
             ..Default::default()
         };
         let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
         let plan =
-            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![].into()), &mut Unattended)
-                .unwrap();
+            plan_point_to_point(&arm, &start, std::slice::from_ref(&end), &options(vec![]), &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
         let ball = Shape::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
-        let says = refused(&arm, &start, &end, options(vec![ball].into()));
+        let says = refused(&arm, &start, &end, options(vec![ball]));
         assert!(says.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link"), "{says}");
     }
 }
@@ -333,7 +332,7 @@ fn mistakes_are_named() {
     let thin = arm.with_capsules_along_links(0.01).unwrap();
     let (here, there) = (Endpoint::Configuration(vec![0.0, 0.0]), Endpoint::Configuration(vec![1.0, 0.0]));
     let with = |obstacles: Vec<Shape>, arm: &Robot| PointToPointOptions {
-        obstacles: obstacles.into(),
+        surroundings: Surroundings::among(obstacles),
         limits: Some(limits(arm, Some(1.0), 1.0)),
         ..Default::default()
     };
@@ -393,7 +392,7 @@ fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
     let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.01).unwrap();
     let options = PointToPointOptions {
         limits: Some(limits(&robot, Some(1.0), 5.0)),
-        obstacles: vec![Shape::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()].into(),
+        surroundings: Surroundings::among(vec![Shape::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()]),
         objective,
         stop,
         ..Default::default()

@@ -1,7 +1,7 @@
 //! Jerk limits of plans, new limits for finished plans, and motions from a moving start.
 
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::Scene;
+use ikcore::obstacle::{Scene, Surroundings};
 use ikcore::path::{Circle, Path, Plane, Polyline};
 use ikcore::planning::{
     AlongPathOptions, Endpoint, Plan, PointToPointOptions, TipPath, Tpbso, plan_along_path, plan_point_to_point,
@@ -43,8 +43,11 @@ fn pairs_around(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<[Vec<f6
 }
 
 fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limits: Limits) -> Plan {
-    let options =
-        PointToPointOptions { limits: Some(limits), obstacles: obstacles.into(), ..PointToPointOptions::default() };
+    let options = PointToPointOptions {
+        limits: Some(limits),
+        surroundings: Surroundings::among(obstacles),
+        ..PointToPointOptions::default()
+    };
     let [start, end] = [start, end].map(|q| Endpoint::Configuration(q.clone()));
     plan_point_to_point(robot, &start, &[end], &options, &mut Unattended).unwrap()
 }
@@ -92,7 +95,7 @@ fn retimed_plans_around_a_box_keep_path_and_clearance() {
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         let retimed = plan.retime(&robot, Some(&with)).unwrap();
         assert!(retimed.violations.is_empty() && retimed.status == Status::Solved);
-        assert_eq!((retimed.cost, retimed.clearance), (retimed.trajectory.duration(), plan.clearance));
+        assert_eq!((retimed.cost, &retimed.clearance), (retimed.trajectory.duration(), &plan.clearance));
         assert!(largest(retimed.trajectory.max_jerk()) <= JERK && largest_jump(&retimed.trajectory) < 1e-6);
         assert!(smallest_distance(&scene, &retimed.trajectory) >= 0.001 - 1e-9);
         for i in 0..=100 {
@@ -171,7 +174,7 @@ fn a_plan_can_begin_at_a_velocity() {
     for [start, end] in &pairs_around(&robot, &obstacles, 10) {
         let options = PointToPointOptions {
             limits: Some(limits.clone()),
-            obstacles: obstacles.clone().into(),
+            surroundings: Surroundings::among(obstacles.clone()),
             start_velocity: Some(velocity.clone()),
             ..PointToPointOptions::default()
         };
@@ -261,7 +264,7 @@ fn a_velocity_of_zero_plans_around_what_is_in_the_way() {
     let pair = &pairs_around(&robot, &obstacles, 1)[0];
     let options = PointToPointOptions {
         limits: Some(with_limits(&robot, &[(Field::Acceleration, 5.0), (Field::Jerk, JERK)])),
-        obstacles: obstacles.clone().into(),
+        surroundings: Surroundings::among(obstacles.clone()),
         start_velocity: Some(vec![0.0; 7]),
         ..PointToPointOptions::default()
     };

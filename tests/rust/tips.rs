@@ -344,7 +344,7 @@ fn robots_with_several_tips_survive_storing_and_copies() {
 fn motions_join_configurations_of_all_tips() {
     let options = PointToPointOptions::default();
     let space = Surroundings { self_collision: Some(true), ..Surroundings::default() };
-    let space = space.clear_space(&PAIR).unwrap().unwrap();
+    let space = space.clear_space(&*PAIR).unwrap().unwrap();
     let clear: Vec<Vec<f64>> = random(40).into_iter().filter(|q| space.holds(q)).collect();
     let (first, second) = (&clear[0], &clear[1]);
     let start = Endpoint::Configuration(first.clone());

@@ -2,7 +2,7 @@
 
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::math::Frame;
-use ikcore::obstacle::{ClearanceSweep, Edge, Neighbor, Scene, Surroundings};
+use ikcore::obstacle::{ClearanceSweep, Edge, Neighbor, Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
@@ -31,7 +31,7 @@ fn names(links: &[&str]) -> Vec<String> {
     links.iter().map(|link| (*link).to_owned()).collect()
 }
 
-fn random_obstacle(rng: &mut LazyRng) -> Shape {
+fn random_obstacle(rng: &mut LazyRng) -> Obstacle {
     let center = std::array::from_fn(|_| rng.uniform_in(-0.6, 0.6));
     let size = std::array::from_fn(|_| rng.uniform_in(0.05, 0.2));
     let touch: &[&str] = match rng.uniform_in(0.0, 5.0) as usize {
@@ -41,14 +41,14 @@ fn random_obstacle(rng: &mut LazyRng) -> Shape {
         3 => &["part", "link_4"],
         _ => &["link_1", "base", "link_6", "link_7", "part"],
     };
-    Shape::cuboid(center, size, None).unwrap().with_touch(names(touch))
+    Obstacle::new(Shape::cuboid(center, size, None).unwrap(), names(touch))
 }
 
 /// Smallest distance of each obstacle from the bodies that must not touch it, by robots without the other bodies.
-fn distances(obstacles: &[Shape], q: &[f64]) -> Vec<f64> {
-    let distance = |obstacle: &Shape| {
+fn distances(obstacles: &[Obstacle], q: &[f64]) -> Vec<f64> {
+    let distance = |obstacle: &Obstacle| {
         let robot = panda_without(obstacle.touch());
-        let alone = [obstacle.clone().with_touch(vec![])];
+        let alone = [obstacle.shape.clone()];
         Scene::new(&robot, &alone).unwrap().without_self_collision().clearance(q).unwrap()
     };
     obstacles.iter().map(distance).collect()
@@ -62,7 +62,7 @@ fn a_link_that_may_touch_an_obstacle_is_not_kept_from_it() {
     for case in 0..60 {
         // Many obstacles are found by a tree.
         let count = if case % 6 == 5 { 30 } else { 1 + case % 4 };
-        let obstacles: Vec<Shape> = (0..count).map(|_| random_obstacle(&mut rng)).collect();
+        let obstacles: Obstacles = (0..count).map(|_| random_obstacle(&mut rng)).collect();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
         let q = robot.random_configurations(1, &mut rng).unwrap();
         let each = distances(&obstacles, &q);
@@ -79,18 +79,19 @@ fn a_link_that_may_touch_an_obstacle_is_not_kept_from_it() {
             assert_eq!(ClearanceSweep::new(&scene).check(&standing, [0.0, 1.0], margin).is_ok(), clear);
             seen[usize::from(clear)] += 1;
         }
-        let given = |obstacles: &[Shape]| Surroundings {
-            obstacles: Some(obstacles.into()),
+        let given = |obstacles: Obstacles| Surroundings {
+            obstacles: Some(obstacles),
             margin: Some(0.0),
             self_collision: Some(false),
         };
-        let nearness = |robot: &Robot, obstacles: &[Shape]| {
+        let nearness = |robot: &Robot, obstacles: Obstacles| {
             given(obstacles).clear_space(robot).unwrap().unwrap().nearness(&q, 0.1, 1.0, &mut [0.0; 7])
         };
-        let alone =
-            |obstacle: &Shape| nearness(&panda_without(obstacle.touch()), &[obstacle.clone().with_touch(vec![])]);
+        let alone = |obstacle: &Obstacle| {
+            nearness(&panda_without(obstacle.touch()), Obstacles::from_iter([obstacle.shape.clone()]))
+        };
         let sum: f64 = obstacles.iter().map(alone).sum();
-        assert!((nearness(&robot, &obstacles) - sum).abs() < 1e-4 * (1.0 + sum), "case {case}");
+        assert!((nearness(&robot, obstacles) - sum).abs() < 1e-4 * (1.0 + sum), "case {case}");
     }
     assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
 }
@@ -103,10 +104,10 @@ fn four_configurations_side_by_side_are_judged_as_one() {
     let boxes = touch.map(|links| {
         let angle = rng.uniform_in(-3.0, 3.0);
         let center = [0.5 * f64::cos(angle), 0.5 * f64::sin(angle), rng.uniform_in(0.2, 0.7)];
-        Shape::cuboid(center, [0.25; 3], None).unwrap().with_touch(names(links))
+        Obstacle::new(Shape::cuboid(center, [0.25; 3], None).unwrap(), names(links))
     });
-    let scene = Scene::new(&robot, &boxes).unwrap();
-    let strict_boxes = boxes.clone().map(|shape| shape.with_touch(vec![]));
+    let strict_boxes = boxes.clone().map(|obstacle| obstacle.shape);
+    let scene = Scene::new(&robot, Obstacles::from_iter(boxes)).unwrap();
     let strict = Scene::new(&robot, &strict_boxes).unwrap();
     let qs = robot.random_configurations(403, &mut rng).unwrap();
     let (clear, strictly) = (scene.which_are_clear(&qs, 0.0).unwrap(), strict.which_are_clear(&qs, 0.0).unwrap());
@@ -121,8 +122,8 @@ fn four_configurations_side_by_side_are_judged_as_one() {
 /// Solution on a floor at `height`.
 fn on_floor(robot: &Robot, height: f64, touch: &[&str]) -> Result<ikcore::ik::Solution> {
     let target = Target::Pose(Frame::from(&robot.fk(&READY).unwrap()));
-    let floor = Shape::half_space([0.0, 0.0, 1.0], height).unwrap().with_touch(names(touch));
-    let surroundings = Surroundings { obstacles: Some(vec![floor].into()), ..Surroundings::default() };
+    let floor = Obstacle::new(Shape::half_space([0.0, 0.0, 1.0], height).unwrap(), names(touch));
+    let surroundings = Surroundings::among(Obstacles::from_iter([floor]));
     solve(robot, &target, &SolveOptions { surroundings, ..SolveOptions::default() }, &mut Unattended)
 }
 
@@ -140,7 +141,7 @@ fn a_robot_stands_on_a_floor_that_its_base_may_touch() {
     }
     let stands = on_floor(&robot, 0.0, &["link_1", "base"]).unwrap();
     assert_eq!(stands.status, Status::Solved, "{}", stands.message());
-    let Neighbor::Obstacle(..) = stands.nearest.unwrap().bodies.unwrap().contact.other else { return };
+    let Neighbor::Obstacle(..) = stands.nearest.unwrap().clearance.nearest.unwrap().contact.other else { return };
     // A floor above the hand stays in the way of the other links.
     let sunk = on_floor(&robot, 0.8, &["link_1", "base"]).unwrap();
     assert_eq!(sunk.status, Status::InCollision);
@@ -152,8 +153,11 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
     let robot = panda_without(&names(&["part"]));
     let to: Vec<f64> = READY.iter().map(|x| x + 0.3).collect();
     let plan = |touch: &[&str]| {
-        let floor = Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap().with_touch(names(touch));
-        let options = PointToPointOptions { obstacles: vec![floor].into(), ..PointToPointOptions::default() };
+        let floor = Obstacle::new(Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap(), names(touch));
+        let options = PointToPointOptions {
+            surroundings: Surroundings::among(Obstacles::from_iter([floor])),
+            ..PointToPointOptions::default()
+        };
         let [start, end] = [READY.to_vec(), to.clone()].map(Endpoint::Configuration);
         plan_point_to_point(&robot, &start, &[end], &options, &mut Unattended)
     };
@@ -180,7 +184,7 @@ fn a_link_without_a_body_cannot_be_named() {
 }
 
 #[test]
-fn an_attached_shape_may_touch_the_links_that_it_names() {
+fn an_attached_shape_may_touch_the_links_that_are_named() {
     let robot = panda_without(&names(&["part"]));
     let rod = Shape::capsule([0.0; 3], [0.0, 0.0, 0.2], 0.05).unwrap();
     let tested = |rod: &Shape, touch: &[&str]| {
@@ -188,7 +192,6 @@ fn an_attached_shape_may_touch_the_links_that_it_names() {
         let pairs: Vec<String> = carrying.collision_pairs().iter().map(|pair| pair.join(" ")).collect();
         pairs
     };
-    let by_argument = tested(&rod, &["link_3"]);
-    assert_eq!(tested(&rod.clone().with_touch(names(&["link_3"])), &[]), by_argument);
-    assert!(tested(&rod, &[]).len() == by_argument.len() + 1, "{by_argument:?}");
+    let allowed = tested(&rod, &["link_3"]);
+    assert!(tested(&rod, &[]).len() == allowed.len() + 1, "{allowed:?}");
 }

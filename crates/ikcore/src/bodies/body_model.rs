@@ -1,15 +1,15 @@
-//! The bodies of a robot, prepared for scenes: made once, whatever the obstacles.
-
-use std::sync::Arc;
+//! The collision model of an arm: made once, whatever the obstacles.
 
 use super::body_groups::BodyGroups;
+use super::body_poses::BodyPoses;
+use super::carried_body::CarriedBody;
 use super::eight_bodies::EightBodies;
-use super::placement::Placement;
-use crate::robot::{Carried, Robot};
+use crate::kinematics::eight_frames::EightStages;
+use crate::kinematics::link_tree::FrameBuffer;
 
-/// Two things that could touch.
+/// Two bodies that could touch.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum BodyPair {
+pub(crate) enum BodyPair {
     /// A body and an obstacle.
     Obstacle { body: usize, obstacle: usize },
     /// Two bodies of the robot; `near` is nearer to the base. They have this number among the robot's pairs.
@@ -28,31 +28,27 @@ impl BodyPair {
 
 /// Bodies, their groups, and the pairs of bodies that must not touch.
 #[derive(Debug)]
-pub(super) struct BodyModel {
-    pub carried: Vec<Carried>,
+pub(crate) struct BodyModel {
+    pub carried: Vec<CarriedBody>,
     pub groups: BodyGroups,
-    /// The same in single precision.
+    /// Bodies and groups in single precision.
     pub eight: EightBodies,
-    /// In the order of the robot's pairs.
+    /// Pairs of bodies, in the order of the robot's pairs.
     pub pairs: Vec<BodyPair>,
-    /// The bodies with all joints at zero: where those that no joint moves always are.
-    pub rest: Placement,
+    /// Poses with all joints at zero: bodies that no joint moves are always there.
+    pub rest: BodyPoses,
     /// The pairs by pairs of groups.
     by_groups: Vec<([usize; 2], Vec<BodyPair>)>,
 }
 
 impl BodyModel {
-    /// That of `robot`.
-    pub fn of(robot: &Robot) -> Arc<Self> {
-        robot.derived(|| Self::new(robot))
-    }
-
-    fn new(robot: &Robot) -> Self {
-        let carried = robot.carried_bodies();
-        let ordered = |[one, other]: [usize; 2]| {
+    /// The model of an arm with these bodies, of which these pairs must not touch, and its moving elements, which are at `rest` with
+    /// all joints at zero.
+    pub fn new(carried: Vec<CarriedBody>, pairs: &[[usize; 2]], stages: EightStages, rest: FrameBuffer) -> Self {
+        let ordered = |&[one, other]: &[usize; 2]| {
             if carried[one].stages <= carried[other].stages { [one, other] } else { [other, one] }
         };
-        let pairs: Vec<[usize; 2]> = robot.tested_bodies().into_iter().map(ordered).collect();
+        let pairs: Vec<[usize; 2]> = pairs.iter().map(ordered).collect();
         let groups = BodyGroups::new(&carried, &pairs);
         let pairs: Vec<BodyPair> =
             (0..).zip(pairs).map(|(number, [near, far])| BodyPair::Bodies { near, far, number }).collect();
@@ -66,9 +62,9 @@ impl BodyModel {
                 }
             }
         }
-        let mut rest = Placement::of(robot, carried.len());
-        rest.update(robot, &carried, &vec![0.0; robot.dof()]);
-        let eight = EightBodies::new(robot, &carried, &groups);
+        let mut rest = BodyPoses::with_room(rest, carried.len());
+        rest.update_axes(&carried);
+        let eight = EightBodies::new(stages, &carried, &groups);
         Self { carried, groups, eight, pairs, rest, by_groups }
     }
 

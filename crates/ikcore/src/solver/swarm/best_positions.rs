@@ -4,14 +4,14 @@ use super::population::{Members, Population};
 
 /// Best positions so far: p of each member in particle swarms, and g, the best of all.
 #[derive(Debug, Clone, Default)]
-pub(super) struct BestPlaces {
+pub(super) struct BestPositions {
     /// Best position of each member.
     pub members: Members,
     /// Index of the best member.
     pub leader: usize,
 }
 
-impl BestPlaces {
+impl BestPositions {
     /// Memory of `population` members without a best position.
     pub fn new(population: usize, dimension: usize) -> Self {
         Self { members: Members::new(population, dimension), leader: 0 }

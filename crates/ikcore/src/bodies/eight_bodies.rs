@@ -1,18 +1,18 @@
 //! The bodies of a robot at eight configurations at once, in single precision.
 
 use super::body_groups::BodyGroups;
+use super::carried_body::CarriedBody;
 use crate::kinematics::eight_frames::EightStages;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::vec3::Vec3;
-use crate::robot::{Carried, Robot};
 use crate::shape::{EightCapsules, Vectors, splat};
 
 /// The bodies, each in the frame that carries it, and balls around those of one frame.
 #[derive(Debug)]
-pub(super) struct EightBodies {
+pub(crate) struct EightBodies {
     stages: EightStages,
     bodies: Vec<EightBody>,
     balls: Vec<EightBody>,
@@ -27,19 +27,19 @@ struct EightBody {
     radius: F32x8,
 }
 
-/// Where everything is at eight configurations; bodies are placed when they are first asked for.
+/// Poses of all bodies at eight configurations; axes are computed when first asked for.
 #[derive(Debug)]
-pub(super) struct EightPlacement {
+pub(crate) struct EightPoses {
     pub frames: Vec<Frame<F32x8>>,
     axes: Vec<[Vectors; 2]>,
-    /// When each body was placed.
-    placed: Vec<u32>,
+    /// The update at which each axis was computed.
+    computed: Vec<u32>,
     now: u32,
 }
 
 impl EightBodies {
-    /// The bodies of `robot`, of which `carried` are described, in `groups`.
-    pub fn new(robot: &Robot, carried: &[Carried], groups: &BodyGroups) -> Self {
+    /// The bodies `carried`, in `groups`, of an arm with these moving elements.
+    pub fn new(stages: EightStages, carried: &[CarriedBody], groups: &BodyGroups) -> Self {
         let bodies = carried.iter().map(|body| {
             let [a, b] = body.ends;
             let along = (a != b).then(|| splat(&std::array::from_fn(|k| b[k] - a[k])));
@@ -50,43 +50,43 @@ impl EightBodies {
             let radius = F32x8::splat(radius as f32);
             EightBody { frame: groups.frame_of(group), start: splat(&center), along: None, radius }
         });
-        Self { stages: robot.eight_stages(), bodies: bodies.collect(), balls: balls.collect() }
+        Self { stages, bodies: bodies.collect(), balls: balls.collect() }
     }
 
-    /// Room for a placement.
-    pub fn placement(&self) -> EightPlacement {
+    /// Room for poses.
+    pub fn buffer(&self) -> EightPoses {
         let count = self.bodies.len();
         let axes = vec![[[F32x8::ZERO; 3]; 2]; count];
-        EightPlacement { frames: self.stages.buffer(), axes, placed: vec![0; count], now: 0 }
+        EightPoses { frames: self.stages.buffer(), axes, computed: vec![0; count], now: 0 }
     }
 
-    /// Moves a placement to the configurations `qs`, one entry per joint.
+    /// Updates the poses to the configurations `qs`, one entry per joint.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&self, qs: &[F32x8], placement: &mut EightPlacement) {
-        self.stages.write::<A>(qs, &mut placement.frames);
-        placement.now += 1;
+    pub fn update<A: Arithmetic>(&self, qs: &[F32x8], poses: &mut EightPoses) {
+        self.stages.write::<A>(qs, &mut poses.frames);
+        poses.now += 1;
     }
 
     /// The ball around a group.
     #[inline(always)]
-    pub fn ball<A: Arithmetic>(&self, group: usize, placement: &EightPlacement) -> EightCapsules<A> {
+    pub fn ball<A: Arithmetic>(&self, group: usize, poses: &EightPoses) -> EightCapsules<A> {
         let ball = &self.balls[group];
-        let start = at(&placement.frames[ball.frame], Vec3::of(&ball.start));
+        let start = at(&poses.frames[ball.frame], Vec3::of(&ball.start));
         EightCapsules { start, along: None, radius: Eight::of(ball.radius) }
     }
 
     /// The capsule around a body.
     #[inline(always)]
-    pub fn body<A: Arithmetic>(&self, number: usize, placement: &mut EightPlacement) -> EightCapsules<A> {
+    pub fn body<A: Arithmetic>(&self, number: usize, poses: &mut EightPoses) -> EightCapsules<A> {
         let body = &self.bodies[number];
-        let EightPlacement { frames, axes, placed, now } = placement;
-        if placed[number] != *now {
+        let EightPoses { frames, axes, computed, now } = poses;
+        if computed[number] != *now {
             let frame = &frames[body.frame];
             axes[number][0] = at(frame, Vec3::<Eight<A>>::of(&body.start)).stored();
             if let Some(along) = &body.along {
                 axes[number][1] = turned(frame, Vec3::<Eight<A>>::of(along)).stored();
             }
-            placed[number] = *now;
+            computed[number] = *now;
         }
         let [start, along] = &axes[number];
         let along = body.along.is_some().then(|| Vec3::of(along));

@@ -1,4 +1,4 @@
-//! Parts of curves as configurations of the arm: at the right whole turns, at the target and at the limits that cut them.
+//! Unwrapping of curves: whole turns that bring a part within the limits, its points at the target, and its ends at the limits.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ pub(super) const EXACT: f64 = 1e-9;
 /// Returns the curve of a part, at the whole turns that bring it within the limits; several curves if it takes several turns.
 /// Points that do not reach the target from within the limits are omitted; so is an end where the curve grazes its limit and
 /// the solution at the limit is elsewhere. A gap wider than `spacing` divides the curve.
-pub(super) fn placed(
+pub(super) fn unwrapped(
     part: Part,
     spacing: f64,
     attempt: &mut Attempt<'_, '_>,
@@ -35,7 +35,7 @@ pub(super) fn placed(
         }
         let first = Part { points: points[..=half].to_vec(), closed: false, cut: [cut[0], false] };
         let second = Part { points: points[half..].to_vec(), closed: false, cut: [false, cut[1]] };
-        return [first, second].into_iter().flat_map(|part| placed(part, spacing, attempt, limits, start)).collect();
+        return [first, second].into_iter().flat_map(|part| unwrapped(part, spacing, attempt, limits, start)).collect();
     };
     let end = points.len() - 1;
     let [lower_cut, upper_cut] =

@@ -13,7 +13,7 @@ use crate::math::Frame;
 
 /// Convex body at its current frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PlacedBody<'a> {
+pub(crate) struct PosedBody<'a> {
     /// Axis of the enclosing capsule.
     pub axis: &'a LineSegment,
     /// Radius of the enclosing capsule (m).
@@ -22,7 +22,7 @@ pub(crate) struct PlacedBody<'a> {
     pub solid: Option<(&'a Shape, Frame)>,
 }
 
-impl<'a> PlacedBody<'a> {
+impl<'a> PosedBody<'a> {
     pub(super) fn convex(&self) -> Convex<'a> {
         let solid = self.solid.as_ref().and_then(|(shape, frame)| Convex::of(shape.geometry(), frame));
         solid.unwrap_or_else(|| Convex::capsule(*self.axis, self.radius))
@@ -35,7 +35,7 @@ impl<'a> PlacedBody<'a> {
 
     /// Returns the signed distance (m) from another body: a lower bound, exact where it is below `enough`.
     #[inline]
-    pub fn distance_to(&self, other: &PlacedBody, enough: f64) -> f64 {
+    pub fn distance_to(&self, other: &PosedBody, enough: f64) -> f64 {
         let by_capsules = distance_between(other.axis, self.axis) - (other.radius + self.radius);
         if by_capsules >= enough || (self.solid.is_none() && other.solid.is_none()) {
             return by_capsules;
@@ -43,7 +43,7 @@ impl<'a> PlacedBody<'a> {
         self.gap_to_body(other, enough).distance
     }
 
-    fn gap_to_body(&self, other: &PlacedBody, enough: f64) -> Gap {
+    fn gap_to_body(&self, other: &PosedBody, enough: f64) -> Gap {
         if self.is_huge() || other.is_huge() {
             return Gap::beyond(f64::NEG_INFINITY);
         }
@@ -51,7 +51,7 @@ impl<'a> PlacedBody<'a> {
     }
 
     /// Returns the point nearest to another body (m), and the unit normal from that body.
-    pub fn nearest_to(&self, other: &PlacedBody) -> (Vector3<f64>, Vector3<f64>) {
+    pub fn nearest_to(&self, other: &PosedBody) -> (Vector3<f64>, Vector3<f64>) {
         if self.solid.is_none() && other.solid.is_none() {
             return capsules_nearest((self.axis, self.radius), (other.axis, other.radius));
         }
@@ -65,7 +65,7 @@ impl Shape {
     /// [`distance_to_segment`](Self::distance_to_segment), and exact to about 1e-7 m for other bodies. For overlap it is
     /// minus the shortest translation that parts them; inside a closed mesh it is minus the depth of the enclosing capsule.
     #[inline]
-    pub(crate) fn distance_to_body(&self, body: &PlacedBody, enough: f64) -> f64 {
+    pub(crate) fn distance_to_body(&self, body: &PosedBody, enough: f64) -> f64 {
         let by_capsule = self.distance_to_segment(body.axis, enough + body.radius) - body.radius;
         if by_capsule >= enough || body.solid.is_none() {
             return by_capsule;
@@ -75,7 +75,7 @@ impl Shape {
 
     /// Returns the point of a body nearest to the shape (m), and the gradient of the distance with respect to the body's
     /// position, as [`nearest_to_capsule`](Self::nearest_to_capsule) does.
-    pub(crate) fn nearest_to_body(&self, body: &PlacedBody) -> (Vector3<f64>, Vector3<f64>) {
+    pub(crate) fn nearest_to_body(&self, body: &PosedBody) -> (Vector3<f64>, Vector3<f64>) {
         if body.solid.is_none() {
             return self.nearest_to_capsule(body.axis, body.radius);
         }
@@ -83,7 +83,7 @@ impl Shape {
         (point, normal)
     }
 
-    fn gap_to(&self, body: &PlacedBody, enough: f64) -> Gap {
+    fn gap_to(&self, body: &PosedBody, enough: f64) -> Gap {
         if self.is_huge() || body.is_huge() {
             return Gap::beyond(f64::NEG_INFINITY);
         }
@@ -130,7 +130,7 @@ impl Shape {
     }
 
     /// Returns the gap of the enclosing capsule, for a body inside a mesh.
-    fn depth_of(&self, body: &PlacedBody) -> Gap {
+    fn depth_of(&self, body: &PosedBody) -> Gap {
         let distance = self.distance_to_segment(body.axis, f64::INFINITY) - body.radius;
         let (point, normal) = self.nearest_to_capsule(body.axis, body.radius);
         Gap { distance: distance.min(0.0), normal, point }
@@ -168,14 +168,14 @@ mod tests {
     }
 
     /// Calls `check` with a body of each kind of shape at random poses.
-    fn for_bodies(seed: u64, rounds: usize, mut check: impl FnMut(&mut LazyRng, &PlacedBody)) {
+    fn for_bodies(seed: u64, rounds: usize, mut check: impl FnMut(&mut LazyRng, &PosedBody)) {
         let mut rng = rng::stream(seed, 0);
         for _ in 0..rounds {
             for shape in solids(&mut rng) {
                 let place = frame(&mut rng);
                 let (a, b, radius) = shape.enclosing_capsule();
-                let axis = [a, b].map(|end| Vector3::from(place.place::<crate::math::arithmetic::NoFma>(&end)));
-                check(&mut rng, &PlacedBody { axis: &axis, radius, solid: Some((&shape, place)) });
+                let axis = [a, b].map(|end| Vector3::from(place.transform::<crate::math::arithmetic::NoFma>(&end)));
+                check(&mut rng, &PosedBody { axis: &axis, radius, solid: Some((&shape, place)) });
             }
         }
     }
@@ -190,7 +190,7 @@ mod tests {
             let found = obstacle.distance_to_body(body, f64::INFINITY);
             let (shape, place) = body.solid.unwrap();
             let back = place.inverse();
-            let seen = [a, b].map(|p| Vector3::from(back.place::<crate::math::arithmetic::NoFma>(&p)));
+            let seen = [a, b].map(|p| Vector3::from(back.transform::<crate::math::arithmetic::NoFma>(&p)));
             let exact = shape.distance_to_segment(&seen, f64::INFINITY) - radius;
             let name = shape.name();
             if exact > -radius {
@@ -225,7 +225,7 @@ mod tests {
                 let by = (1e-6 - gap.distance) * gap.normal;
                 place.origin = (Vector3::from(place.origin) + by).into();
                 let axis = body.axis.map(|end| end + by);
-                let moved = PlacedBody { axis: &axis, solid: Some((shape, place)), ..*body };
+                let moved = PosedBody { axis: &axis, solid: Some((shape, place)), ..*body };
                 let left = other.gap_to(&moved, f64::INFINITY).distance;
                 assert!((5e-7..1e-5).contains(&left), "{} {}: {left}", shape.name(), other.name());
             }
@@ -284,7 +284,7 @@ mod tests {
         for far in [1e31, 1e100] {
             let place = Frame { origin: [far, 0.0, 0.0], ..Frame::IDENTITY };
             let axis = [Vector3::new(far, 0.0, 0.0); 2];
-            let body = PlacedBody { axis: &axis, radius: 1.0, solid: Some((&cube, place)) };
+            let body = PosedBody { axis: &axis, radius: 1.0, solid: Some((&cube, place)) };
             let distance = cube.distance_to_body(&body, f64::INFINITY);
             assert!(distance <= far && !distance.is_nan(), "{far}: {distance}");
         }
