@@ -1,5 +1,6 @@
-//! What several test files need: robots, targets, generated chains with a slow twin, error messages.
+//! What several test files need: robots, targets, arms, generated chains with a slow twin, error messages.
 
+pub mod arms;
 pub mod chains;
 pub mod circles;
 

@@ -10,7 +10,7 @@ use ikcore::solver::Unattended;
 use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 use ikcore::tracking::{Arrival, Session, TrackOptions};
 
-use crate::tips::two_arms;
+use crate::common::arms::two_arms;
 
 const DT: f64 = 0.02;
 const PAIR: Subject = Subject::Pair { from: 0, of: 1 };
