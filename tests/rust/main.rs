@@ -42,6 +42,7 @@ mod kinematics {
 mod load {
     mod catalog;
     mod damaged_files;
+    mod mesh_loader;
     mod urdf;
 }
 mod manipulability {
@@ -102,6 +103,7 @@ mod tracking {
     mod streams;
     mod tips;
     mod track;
+    mod work;
 }
 mod trajectory {
     mod piecewise;

@@ -32,7 +32,9 @@ pub(crate) struct MotionCertificate {
     /// Of a spline: the control points just outside of an interval.
     outside: Vec<Place>,
     pending: Vec<BodyPair>,
+    /// Intervals examined so far, and from how many on this motion is divided no further.
     intervals: usize,
+    most: usize,
     /// By how much the joints change between the control points of an interval, and get off the straight lines between them.
     change: Point,
     off_line: Point,
@@ -77,7 +79,12 @@ impl MotionCertificate {
         let pending = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
         let [change, off_line, aside, halfway] = [(); 4].map(|()| Point::new());
         let (places, outside) = (Vec::with_capacity(MOST_DEPTHS), Vec::with_capacity(2));
-        Self { places, outside, pending, intervals: 0, change, off_line, aside, halfway }
+        Self { places, outside, pending, intervals: 0, most: 0, change, off_line, aside, halfway }
+    }
+
+    /// Intervals examined so far.
+    pub fn intervals(&self) -> usize {
+        self.intervals
     }
 
     /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
@@ -112,7 +119,7 @@ impl MotionCertificate {
 
     /// Places the arm at both ends of a motion.
     fn begin(&mut self, scene: &Scene<'_>, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Interval {
-        self.intervals = 0;
+        self.most = self.intervals + MOST_INTERVALS;
         self.outside.clear();
         place(&mut self.places, 0, scene, (motion, from));
         place(&mut self.places, 1, scene, (motion, to));
@@ -223,7 +230,7 @@ impl MotionCertificate {
             return Ok(());
         }
         let Interval { from, to, ends: [first, last], depth } = interval;
-        let middle = motion.middle(from, to).filter(|_| self.intervals <= MOST_INTERVALS);
+        let middle = motion.middle(from, to).filter(|_| self.intervals <= self.most);
         let Some(middle) = middle else { return Err(Blocker { at: 0.5 * (from + to), pair: self.pending[0] }) };
         let slot = depth + 2;
         place(&mut self.places, slot, scene, (motion, middle));

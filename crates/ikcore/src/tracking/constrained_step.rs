@@ -82,6 +82,11 @@ impl ConstrainedStep {
         }
     }
 
+    /// Exchanges of constraints so far.
+    pub fn exchanges(&self) -> usize {
+        self.solver.exchanges()
+    }
+
     /// Whether an arm at `q` is to move: bodies are to part, or it has to give way to what moves, whose rows are softer.
     pub fn ask_to_move(&self, q: &[f64]) -> bool {
         let gives_way = |row: &Row| row.softness > SOFTNESS && dot(&row.gradient, q) < row.least;
