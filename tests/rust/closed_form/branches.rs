@@ -1,4 +1,4 @@
-//! All solutions by closed form: none missing, each verified, and what is said of singular and unreachable poses.
+//! Closed-form solutions: none missing, each verified, with messages for singular and unreachable poses.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -13,7 +13,7 @@ use ikcore::task::{Target, Task, TaskKind};
 
 const Q: f64 = FRAC_PI_2;
 
-/// A Panda with its last joint held: its first three axes meet.
+/// Panda with its last joint fixed: its first three axes intersect.
 fn panda_without_7() -> Robot {
     let shoulder = [[0.0, -Q, 0.333], [0.0, Q, 0.0], [0.0825, Q, 0.316]];
     let rest = [[-0.0825, -Q, 0.0], [0.0, Q, 0.384], [0.088, Q, 0.0]];

@@ -10,7 +10,7 @@ use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 
 const Q: f64 = FRAC_PI_2;
 
-/// An arm without limits from rows (a, alpha, d).
+/// Arm without limits from rows (a, alpha, d).
 pub fn arm<const N: usize>(name: &str, rows: [[f64; 3]; N]) -> Robot {
     let column = |k: usize| rows.iter().map(|row| row[k]).collect();
     Robot::from_dh(name, &DhTable::new(Dh::Standard, column(0), column(1), column(2))).unwrap()
@@ -22,7 +22,7 @@ pub fn puma560() -> Robot {
     arm("Puma 560", [link[0], link[1], link[2], wrist[0], wrist[1], wrist[2]])
 }
 
-/// A UR10 whose axes are off by some `off` (rad).
+/// UR10 with axes that deviate by up to `off` (rad).
 pub fn calibrated_ur10(off: f64) -> Robot {
     let upper = [[0.0, Q, 0.1273], [-0.612, off, 0.0], [-0.5723, -0.7 * off, 0.0]];
     let wrist = [[0.0, Q, 0.163941], [0.0, -Q + 0.3 * off, 0.1157], [0.0, 0.0, 0.0922]];
@@ -35,7 +35,7 @@ pub fn jaco2() -> Robot {
     arm("JACO 2", [arm_rows[0], arm_rows[1], arm_rows[2], wrist[0], wrist[1], wrist[2]])
 }
 
-/// A UR10 whose joint 3 is geared by `scale` and starts at `offset`; with `twice`, it drives another axis too.
+/// UR10 with joint 3 geared by `scale` from `offset`; with `twice`, it drives another axis too.
 pub fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
     let links = [[0.0, Q, 0.1273], [-0.612, 0.0, 0.0], [-0.5723, 0.0, 0.0], [0.0, Q, 0.1639], [0.0, -Q, 0.1157]];
     let mut chain = ChainBuilder::new("geared", "base");
@@ -52,7 +52,7 @@ pub fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
     chain.build().unwrap()
 }
 
-/// A lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
+/// Lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
 pub fn two_arms() -> String {
     let mut urdf = String::from(
         r#"<robot name="pair"><link name="floor"/><link name="chest"/><link name="camera"/>

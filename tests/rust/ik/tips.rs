@@ -1,5 +1,5 @@
-//! Several tips: chains over one joint vector, their targets and those of pairs, starts, obstacles between the arms, and what is
-//! refused.
+//! Robots with several tips: chains over one joint vector, targets of tips and pairs, starts, obstacles between the arms, and
+//! errors.
 
 use std::sync::LazyLock;
 
