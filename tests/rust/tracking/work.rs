@@ -50,7 +50,7 @@ fn session(robot: &Robot, limits: Limits, surroundings: Surroundings, goals: Vec
 fn target(robot: &Robot, kind: usize, tick: usize, draws: &mut LazyRng) -> Target {
     let mut frame = robot.tip(&START);
     frame.origin = hostile(kind % 5, tick, frame.origin, draws);
-    if kind % 2 == 0 { Target::Position(frame.origin) } else { Target::Pose(frame) }
+    if kind.is_multiple_of(2) { Target::Position(frame.origin) } else { Target::Pose(frame) }
 }
 
 /// Walls at the margin from the tip on all sides, some of them twice, and a grid of spheres above.
