@@ -174,7 +174,17 @@ fn files_import_one_another_in_no_circle() {
 }
 
 #[test]
-fn no_two_types_fraction_a_name() {
+fn tests_stand_in_the_rooms_of_the_core() {
+    let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
+    for file in tests.files() {
+        let room = room_of(file);
+        let known = ["main", "common", "layers"].contains(&&*room) || LAYERS.iter().any(|(name, _)| *name == room);
+        assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
+    }
+}
+
+#[test]
+fn no_two_types_share_a_name() {
     let core = core();
     let mut places: BTreeMap<&str, BTreeSet<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -187,7 +197,7 @@ fn no_two_types_fraction_a_name() {
 }
 
 #[test]
-fn no_three_files_fraction_a_name() {
+fn no_three_files_share_a_name() {
     let core = core();
     let mut places: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -245,7 +255,7 @@ fn circles_are_found_through_re_exports() {
 /// Lines of `file` that violate its rule, each as `file:line: rule`.
 fn faults_of(file: &SourceFile) -> Vec<String> {
     let place = file.path.display();
-    let module = file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "");
+    let module = room_of(file);
     if module == "lib" {
         return Vec::new(); // its contents and re-exports
     }
@@ -261,6 +271,11 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))
         .collect()
+}
+
+/// The folder or file of the crate's root that `file` belongs to.
+fn room_of(file: &SourceFile) -> String {
+    file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "")
 }
 
 /// Top-level modules named after `crate::`, with their lines. Names in capitals are re-exports of the root, not modules.

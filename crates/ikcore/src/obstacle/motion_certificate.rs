@@ -32,7 +32,9 @@ pub(crate) struct MotionCertificate {
     /// Control points of a spline just outside of an interval.
     outside: Vec<Sample>,
     pending: Vec<BodyPair>,
+    /// Intervals examined so far, and from how many on this motion is divided no further.
     intervals: usize,
+    most: usize,
     /// Change of the joints between the control points of an interval, and their deviation from the straight lines between them.
     change: Point,
     off_line: Point,
@@ -77,7 +79,12 @@ impl MotionCertificate {
         let pending = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
         let [change, off_line, aside, halfway] = [(); 4].map(|()| Point::new());
         let (samples, outside) = (Vec::with_capacity(MOST_DEPTHS), Vec::with_capacity(2));
-        Self { samples, outside, pending, intervals: 0, change, off_line, aside, halfway }
+        Self { samples, outside, pending, intervals: 0, most: 0, change, off_line, aside, halfway }
+    }
+
+    /// Number of intervals examined so far.
+    pub fn intervals(&self) -> usize {
+        self.intervals
     }
 
     /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
@@ -112,7 +119,7 @@ impl MotionCertificate {
 
     /// Samples the arm at both ends of a motion.
     fn begin(&mut self, scene: &Scene<'_>, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Interval {
-        self.intervals = 0;
+        self.most = self.intervals + MOST_INTERVALS;
         self.outside.clear();
         sample(&mut self.samples, 0, scene, (motion, from));
         sample(&mut self.samples, 1, scene, (motion, to));
@@ -223,7 +230,7 @@ impl MotionCertificate {
             return Ok(());
         }
         let Interval { from, to, ends: [first, last], depth } = interval;
-        let middle = motion.middle(from, to).filter(|_| self.intervals <= MOST_INTERVALS);
+        let middle = motion.middle(from, to).filter(|_| self.intervals <= self.most);
         let Some(middle) = middle else { return Err(Blocker { at: 0.5 * (from + to), pair: self.pending[0] }) };
         let slot = depth + 2;
         sample(&mut self.samples, slot, scene, (motion, middle));

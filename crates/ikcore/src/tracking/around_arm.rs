@@ -153,6 +153,11 @@ impl Around {
         if limited && self.obstacles.fastest() > 0.0 { ROOM_TO_START } else { ROOM }
     }
 
+    /// Intervals that certificates have examined so far.
+    pub fn intervals(&self) -> usize {
+        self.check.intervals()
+    }
+
     /// Whether the motion until `end` (ticks) is certified clear.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
         let kept = RequiredDistance {

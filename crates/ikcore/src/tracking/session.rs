@@ -6,7 +6,7 @@ use super::around_arm::ObstacleVelocities;
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::safety_filter::{Kept, SafetyFilter};
+use super::safety_filter::{FilterWork, Kept, SafetyFilter};
 use super::step::Step;
 use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
@@ -293,6 +293,11 @@ impl Session {
     /// Clear space of the arm, if collisions are avoided.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
         self.safety.as_ref().and_then(|safety| safety.space())
+    }
+
+    /// Work of the safety filter since it began, with the first obstacles or pairs of tips; zero without either.
+    pub fn filter_work(&self) -> FilterWork {
+        self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.

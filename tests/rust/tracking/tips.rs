@@ -10,12 +10,12 @@ use ikcore::solver::Unattended;
 use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 use ikcore::tracking::{Arrival, Session, TrackOptions};
 
-use crate::tips::two_arms;
+use crate::common::arms::two_arms;
 
 const DT: f64 = 0.02;
 const PAIR: Subject = Subject::Pair { from: 0, of: 1 };
 
-fn robot() -> Robot {
+pub(super) fn robot() -> Robot {
     let tips = vec!["left_tool".into(), "right_tool".into()];
     Robot::from_urdf_with(&two_arms(), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap()
 }
@@ -30,11 +30,11 @@ fn task(subject: Subject) -> NamedTask {
 }
 
 /// Targets of the left hand at `left`, and of the tray.
-fn targets(left: &Pose) -> Vec<(NamedTask, Target)> {
+pub(super) fn targets(left: &Pose) -> Vec<(NamedTask, Target)> {
     vec![(task(Subject::Tip(0)), Target::from(left)), (task(PAIR), Target::from(&tray()))]
 }
 
-fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
+pub(super) fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
     let (tips, wanted): (Vec<NamedTask>, Vec<Target>) = targets(left).into_iter().unzip();
     let tight = Tolerance { position: 1e-9, rotation: 1e-9 };
     let tips = tips.into_iter().map(|task| NamedTask { tolerance: tight, ..task }).collect();
@@ -52,7 +52,7 @@ fn slip(robot: &Robot, q: &[f64]) -> f64 {
 }
 
 /// Limits on velocity alone, with acceleration, and with jerk.
-fn all_limits(robot: &Robot) -> [(Limits, [f64; 3]); 3] {
+pub(super) fn all_limits(robot: &Robot) -> [(Limits, [f64; 3]); 3] {
     let none = f64::INFINITY;
     [[1.0, none, none], [1.0, 4.0, none], [1.0, 4.0, 40.0]].map(|values| {
         let mut limits = Limits::of(robot);
@@ -65,12 +65,12 @@ fn all_limits(robot: &Robot) -> [(Limits, [f64; 3]); 3] {
     })
 }
 
-fn session(robot: &Robot, q: &[f64], limits: Limits) -> Session {
+pub(super) fn session(robot: &Robot, q: &[f64], limits: Limits) -> Session {
     let options = TrackOptions { limits: Some(limits), ..TrackOptions::default() };
     Session::new(robot, q, DT, &options).unwrap()
 }
 
-fn forward(position: [f64; 3], rpy: [f64; 3]) -> Pose {
+pub(super) fn forward(position: [f64; 3], rpy: [f64; 3]) -> Pose {
     pose::from_rpy(rpy, position) * pose::from_rpy([0.0, std::f64::consts::FRAC_PI_2, 0.0], [0.0; 3])
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::closed_form::{arm, calibrated_ur10, geared, jaco2, puma560};
+use crate::common::arms::{arm, calibrated_ur10, geared, jaco2, puma560};
 use crate::common::{bits, configurations, pose_at, robot};
 use ikcore::ik::{AllOptions, Solution, SolveOptions, solve, solve_all};
 use ikcore::math::{Frame, pose};

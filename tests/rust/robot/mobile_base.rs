@@ -17,8 +17,8 @@ use ikcore::shape::Shape;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Goal, NamedTask, Subject, Target, Tolerance};
 
+use crate::common::arms::two_arms;
 use crate::common::{assert_derivative, configurations, message, pose_at};
-use crate::tips::two_arms;
 
 const FLOATING: [f64; 6] = [1.5, 1.5, 1.0, PI, PI, PI];
 

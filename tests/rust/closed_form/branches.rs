@@ -1,43 +1,17 @@
 //! Closed-form solutions: none missing, each verified, with messages for singular and unreachable poses.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use crate::common::arms::{arm, calibrated_ur10, geared, jaco2, puma560};
 use crate::common::{bits, configurations, message, pose_at, robot};
 use ikcore::ik::{AllOptions, SolutionSet, SolveOptions, nearest_miss, solve_all};
 use ikcore::limits::Limits;
-use ikcore::load::{Dh, DhTable};
 use ikcore::math::pose;
-use ikcore::nalgebra::Vector3;
-use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
+use ikcore::robot::{Joint, Robot};
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Target, Task, TaskKind};
 
 const Q: f64 = FRAC_PI_2;
-
-/// Arm without limits from rows (a, alpha, d).
-pub fn arm<const N: usize>(name: &str, rows: [[f64; 3]; N]) -> Robot {
-    let column = |k: usize| rows.iter().map(|row| row[k]).collect();
-    Robot::from_dh(name, &DhTable::new(Dh::Standard, column(0), column(1), column(2))).unwrap()
-}
-
-pub fn puma560() -> Robot {
-    let link = [[0.0, Q, 0.0], [0.4318, 0.0, 0.0], [0.0203, -Q, 0.15005]];
-    let wrist = [[0.0, Q, 0.4318], [0.0, -Q, 0.0], [0.0, 0.0, 0.1]];
-    arm("Puma 560", [link[0], link[1], link[2], wrist[0], wrist[1], wrist[2]])
-}
-
-/// UR10 with axes that deviate by up to `off` (rad).
-pub fn calibrated_ur10(off: f64) -> Robot {
-    let upper = [[0.0, Q, 0.1273], [-0.612, off, 0.0], [-0.5723, -0.7 * off, 0.0]];
-    let wrist = [[0.0, Q, 0.163941], [0.0, -Q + 0.3 * off, 0.1157], [0.0, 0.0, 0.0922]];
-    arm("calibrated", [upper[0], upper[1], upper[2], wrist[0], wrist[1], wrist[2]])
-}
-
-pub fn jaco2() -> Robot {
-    let arm_rows = [[0.0, Q, 0.2755], [0.41, PI, 0.0], [0.0, Q, -0.0098]];
-    let wrist = [[0.0, FRAC_PI_3, -0.2501], [0.0, FRAC_PI_3, -0.0856], [0.0, PI, -0.2028]];
-    arm("JACO 2", [arm_rows[0], arm_rows[1], arm_rows[2], wrist[0], wrist[1], wrist[2]])
-}
 
 /// Panda with its last joint fixed: its first three axes intersect.
 fn panda_without_7() -> Robot {
@@ -297,23 +271,6 @@ fn base_and_tool_far_away_change_nothing() {
         let target = Target::from(&(plain.fk(&q).unwrap() * tool));
         assert_among(&solve_all(&plain, &target, &options, &mut Unattended).unwrap(), &q);
     }
-}
-
-/// UR10 with joint 3 geared by `scale` from `offset`; with `twice`, it drives another axis too.
-pub fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
-    let links = [[0.0, Q, 0.1273], [-0.612, 0.0, 0.0], [-0.5723, 0.0, 0.0], [0.0, Q, 0.1639], [0.0, -Q, 0.1157]];
-    let mut chain = ChainBuilder::new("geared", "base");
-    for (k, [a, alpha, d]) in links.into_iter().chain([[0.0, 0.0, 0.0922]]).enumerate() {
-        let joint = chain.add_joint(Joint::new(format!("j{}", k + 1), JointKind::Revolute).with_range(-PI, PI));
-        let drive = if k == 2 { Drive { scale, offset } } else { Drive::DIRECT };
-        chain.moving(joint, JointKind::Revolute, Vector3::z(), drive);
-        chain.fixed(pose::translation(a, 0.0, d) * pose::from_rpy([alpha, 0.0, 0.0], [0.0; 3]));
-        chain.link(format!("l{}", k + 1));
-    }
-    if twice {
-        chain.moving(0, JointKind::Revolute, Vector3::x(), Drive::DIRECT);
-    }
-    chain.build().unwrap()
 }
 
 #[test]

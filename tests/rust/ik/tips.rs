@@ -1,9 +1,9 @@
 //! Robots with several tips: chains over one joint vector, targets of tips and pairs, starts, obstacles between the arms, and
 //! errors.
 
-use std::fmt::Write as _;
 use std::sync::LazyLock;
 
+use crate::common::arms::two_arms;
 use ikcore::batch::{BatchOptions, Targets, solve_batch};
 use ikcore::error::Error;
 use ikcore::ik::{AllOptions, Prefer, SolveOptions, solve, solve_all_tips, solve_tips, tip_errors};
@@ -17,42 +17,6 @@ use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Goal, NamedTask, Subject, Target, Task, TaskKind, Tolerance};
-
-/// Lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
-pub fn two_arms() -> String {
-    let mut urdf = String::from(
-        r#"<robot name="pair"><link name="floor"/><link name="chest"/><link name="camera"/>
-        <joint name="lift" type="prismatic"><parent link="floor"/><child link="chest"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
-        <limit lower="0" upper="0.4" velocity="0.2"/></joint>
-        <joint name="neck" type="fixed"><parent link="chest"/><child link="camera"/><origin xyz="0 0 0.5"/></joint>"#,
-    );
-    let axes = ["0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1"];
-    let offsets = [0.1, 0.1, 0.2, 0.2, 0.2, 0.2, 0.0];
-    for (side, y) in [("left", 0.3), ("right", -0.3)] {
-        let mut parent = String::from("chest");
-        for (i, (axis, z)) in axes.iter().zip(offsets).enumerate() {
-            let (link, y) = (format!("{side}_{i}"), if i == 0 { y } else { 0.0 });
-            let capsule = if i % 2 == 1 {
-                r#"<collision><origin xyz="0 0 0.1"/><geometry><capsule radius="0.05" length="0.2"/></geometry></collision>"#
-            } else {
-                ""
-            };
-            _ = write!(
-                urdf,
-                r#"<link name="{link}">{capsule}</link><joint name="{side}_joint_{i}" type="revolute"><parent link="{parent}"/>
-                <child link="{link}"/><origin xyz="0 {y} {z}"/><axis xyz="{axis}"/><limit lower="-2.8" upper="2.8" velocity="2"/></joint>"#
-            );
-            parent = link;
-        }
-        _ = write!(
-            urdf,
-            r#"<link name="{side}_tool"/><joint name="{side}_mount" type="fixed"><parent link="{parent}"/><child link="{side}_tool"/>
-            <origin xyz="0 0 0.1"/></joint><link name="{side}_badge"/><joint name="{side}_pin" type="fixed"><parent link="{parent}"/>
-            <child link="{side}_badge"/></joint>"#
-        );
-    }
-    urdf + "</robot>"
-}
 
 static PAIR: LazyLock<Robot> = LazyLock::new(|| load(&["left_tool", "right_tool"]).unwrap());
 

@@ -1,6 +1,6 @@
 //! Tracking under acceleration and jerk limits: limits kept, noise, streams and stops.
 
-use crate::common::robot;
+use crate::common::{hostile, robot};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
 use ikcore::math::Frame;
 use ikcore::math::so3::{norm, rotated, rotation_between};
@@ -161,18 +161,6 @@ fn a_falling_velocity_limit_is_braked_for() {
             assert!(velocity <= limit * (1.0 + 1e-9), "tick {tick}: {velocity} > {limit}");
         }
         before = session.q().to_vec();
-    }
-}
-
-/// Targets that no arm can follow.
-fn hostile(kind: usize, tick: usize, from: [f64; 3], draws: &mut LazyRng) -> [f64; 3] {
-    let mut shifted = |size: f64| from.map(|x| x + size * draws.uniform_in(-1.0, 1.0));
-    match (kind, tick % 97) {
-        (0, 0) | (1, 0..20) => shifted(1.5),
-        (2, _) => shifted(0.003),
-        (3, phase) => [from[0] + if phase < 40 { 3.0 } else { -3.0 }, from[1], from[2]],
-        (4, _) => [0.0, 0.0, 0.333],
-        _ => from,
     }
 }
 

@@ -1,5 +1,5 @@
 //! Error messages: wrong input of every kind, and the exact sentence for it. (URDF files, curves, samples and DH tables have
-//! theirs in `urdf.rs`, `path.rs` and `robots.rs`.)
+//! theirs in `load` and `path`.)
 
 use std::f64::consts::PI;
 

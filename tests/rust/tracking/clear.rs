@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::common::executed_curve::ExecutedCurve;
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::math::Pose;
 use ikcore::obstacle::{Scene, Surroundings};
@@ -13,22 +14,22 @@ use ikcore::solver::{Status, Unattended};
 use ikcore::task::Target;
 use ikcore::tracking::{Session, TrackOptions, track};
 
-const START: [f64; 7] = [0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78];
-const MARGIN: f64 = 0.005;
+pub(super) const START: [f64; 7] = [0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78];
+pub(super) const MARGIN: f64 = 0.005;
 
 /// Rounding of a distance in the middle of a tick (m).
 const ROUNDING: f64 = 1e-9;
 
-fn panda() -> Robot {
+pub(super) fn panda() -> Robot {
     Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap()
 }
 
-fn surroundings(obstacles: Vec<Shape>) -> Surroundings {
+pub(super) fn surroundings(obstacles: Vec<Shape>) -> Surroundings {
     Surroundings { obstacles: Some(obstacles.into()), margin: Some(MARGIN), self_collision: None }
 }
 
 /// Shapes of several kinds that are clear of the start.
-fn random_obstacles(robot: &Robot, rng: &mut LazyRng) -> Vec<Shape> {
+pub(super) fn random_obstacles(robot: &Robot, rng: &mut LazyRng) -> Vec<Shape> {
     let mut obstacles = vec![];
     while obstacles.len() < 10 {
         let center = [rng.uniform_in(0.1, 0.8), rng.uniform_in(-0.6, 0.6), rng.uniform_in(0.0, 0.9)];
@@ -57,12 +58,12 @@ fn limits(robot: &Robot, acceleration: Option<f64>, jerk: Option<f64>) -> Limits
 }
 
 /// Limits on velocity alone, with acceleration, and with jerk.
-fn all_limits(robot: &Robot) -> [Limits; 3] {
+pub(super) fn all_limits(robot: &Robot) -> [Limits; 3] {
     [limits(robot, None, None), limits(robot, Some(5.0), None), limits(robot, Some(5.0), Some(50.0))]
 }
 
 /// Target on a circle, or one that jumps twice a second.
-fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
+pub(super) fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
     let mut pose: Pose = robot.fk(&START).unwrap();
     let time = tick as f64 * dt;
     let moved = match jumps {
@@ -71,12 +72,6 @@ fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
     };
     (0..3).for_each(|k| pose.translation.vector[k] += moved[k]);
     Target::from(&pose)
-}
-
-/// Smallest distance at several configurations from one tick to the next.
-fn least_between(scene: &Scene<'_>, from: &[f64], to: &[f64]) -> f64 {
-    let at = |fraction: f64| from.iter().zip(to).map(|(from, to)| from + fraction * (to - from)).collect::<Vec<f64>>();
-    (1..=4).map(|i| scene.clearance(&at(0.25 * f64::from(i))).unwrap()).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
@@ -93,8 +88,8 @@ fn no_tick_comes_nearer_than_the_margin_and_every_stop_is_clear() {
             let surroundings = surroundings(obstacles.clone());
             let options = TrackOptions { limits: Some(limits), surroundings, ..TrackOptions::default() };
             let mut session = Session::new(&robot, &START, dt, &options).unwrap();
+            let mut curve = ExecutedCurve::of(&session);
             for tick in 0..(2.0 / dt) as usize {
-                let before = session.q().to_vec();
                 let stops = tick % 100 > 70;
                 let status = if stops {
                     if tick % 100 == 71 {
@@ -104,8 +99,10 @@ fn no_tick_comes_nearer_than_the_margin_and_every_stop_is_clear() {
                 } else {
                     session.step(&target(&robot, tick, dt, &jumps), &mut Unattended).unwrap().status
                 };
-                let least = least_between(&scene, &before, session.q());
-                assert!(least >= MARGIN - ROUNDING, "trial {trial}, tick {tick}, stops {stops}: {least}");
+                for (at, q) in curve.after(session.q()) {
+                    let distance = scene.clearance(&q).unwrap();
+                    assert!(distance >= MARGIN - ROUNDING, "trial {trial}, tick {at}, stops {stops}: {distance}");
+                }
                 assert_ne!(status, Status::InCollision);
                 solved += usize::from(status == Status::Solved);
                 held += usize::from(status == Status::HeldByObstacle);
@@ -262,6 +259,7 @@ fn an_arm_between_a_wall_and_a_sphere_that_comes_gets_aside() {
             let surroundings = Surroundings { margin: Some(margin), ..surroundings(vec![wall.clone()]) };
             let options = TrackOptions { limits: Some(limits.clone()), surroundings, ..TrackOptions::default() };
             let mut session = Session::new(&robot, &START, dt, &options).unwrap();
+            let mut curve = ExecutedCurve::of(&session);
             // Straight at the hand: ahead of it there is the wall.
             let sphere =
                 |time: f64| Shape::sphere([tip[0] + x, tip[1] - 0.5 + speed * time, tip[2] + z], 0.08).unwrap();
@@ -270,9 +268,11 @@ fn an_arm_between_a_wall_and_a_sphere_that_comes_gets_aside() {
                 let now = vec![wall.clone(), sphere(time)];
                 session.set_obstacles(Some(now.into()), vec![[0.0; 3], [0.0, speed, 0.0]]).unwrap();
                 session.step(&target(&robot, 0, dt, &[[0.0; 3]]), &mut Unattended).unwrap();
-                let then = [wall.clone(), sphere(time + dt)];
-                let clear = Scene::new(&robot, &then).unwrap().clearance(session.q()).unwrap();
-                assert!(clear >= margin - ROUNDING, "{x} {z}, {speed} m/s, tick {tick}: {clear}");
+                for (at, q) in curve.after(session.q()) {
+                    let then = [wall.clone(), sphere(dt * at)];
+                    let clear = Scene::new(&robot, &then).unwrap().clearance(&q).unwrap();
+                    assert!(clear >= margin - ROUNDING, "{x} {z}, {speed} m/s, tick {at}: {clear}");
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::closed_form::{arm, calibrated_ur10};
+use crate::common::arms::{arm, calibrated_ur10};
 use crate::common::{pose_at, robot};
 use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::math::Frame;

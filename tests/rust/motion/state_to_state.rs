@@ -79,6 +79,16 @@ fn durations_are_those_of_ruckig() {
     }
 }
 
+/// Issue 14 of rsruckig, which ruckig 0.19.4 fails on too; beside it, at a velocity of 0.3477303818, it computes 2.313557098 s.
+#[test]
+fn a_motion_that_ruckig_does_not_find_is_found() {
+    let from = state([&[1.1032599505208334], &[0.363378125], &[0.8525]]);
+    let to = state([&[2.9033375720687795], &[0.3477303818980908], &[-0.833942902]]);
+    let found = state_to_state(&from, &to, &up_to_jerk([&[1.0], &[1.0], &[1.0]])).unwrap();
+    assert!((found.duration() - 2.313557098).abs() < 1e-8, "{}", found.duration());
+    assert!(largest_difference(&at(&found, found.duration()), &to) < 1e-12);
+}
+
 #[test]
 fn a_motion_from_rest_takes_the_time_of_its_formula() {
     // With jerk alone, four phases of (d / 2 J)^(1/3); with acceleration alone, 2 sqrt(d / A); with velocity alone, d / V.
