@@ -270,12 +270,12 @@ fn mistakes_along_a_path_are_named() {
     let lonely = Surroundings { margin: Some(0.1), ..Surroundings::default() };
     assert_eq!(
         refused(&robot, &tip_path, &AlongPathOptions { surroundings: lonely, ..options(&robot, vec![]) }),
-        "margin= needs obstacles= (a list, which may be empty) or self_collision=True"
+        "a margin needs obstacles (perhaps none) or self-collision"
     );
     let by_swarm = AlongPathOptions { method: Tpbso::default().into(), ..options(&robot, vec![]) };
     assert_eq!(
         refused(&robot, &tip_path, &by_swarm),
-        "along a path task=, obstacles= and self_collision= need method=\"timed\""
+        "along a path a task, obstacles and self-collision need the method 'timed'"
     );
 }
 

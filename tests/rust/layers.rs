@@ -1,18 +1,19 @@
 //! The rooms of the core: a file uses its own module and lower ones, files do not import one another in circles, and
 //! a name is given once.
 
-mod imports;
+pub mod imports;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["message", "error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("error", &[]),
+    ("message", &[]),
+    ("error", &["message"]),
     ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
@@ -254,7 +255,8 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
         .into_iter()
         .filter(|(_, used)| {
             let used = used.as_str();
-            let foundation = FOUNDATION.contains(&used) && (used == "error" || !FOUNDATION.contains(&module.as_str()));
+            let foundation = FOUNDATION.contains(&used)
+                && (["message", "error"].contains(&used) || !FOUNDATION.contains(&module.as_str()));
             used != module && !foundation && !allowed.contains(&used)
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))

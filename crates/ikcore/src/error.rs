@@ -3,6 +3,8 @@
 
 use thiserror::Error;
 
+use crate::message::{Message, Setting, message};
+
 /// `Result` with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -20,17 +22,17 @@ pub enum Error {
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {
         /// The argument, such as "joint angles".
-        what: String,
+        what: Message,
         /// The entry, such as "entry 2" or "joint 'elbow'".
         place: String,
         /// The offending number.
         value: f64,
     },
-    /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
+    /// An array has the wrong length.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
         /// The argument and its robot, such as "joint angles of robot 'iiwa14'".
-        what: String,
+        what: Message,
         /// The expected length, such as "7 joints".
         expected: String,
         /// The value that was given.
@@ -40,9 +42,9 @@ pub enum Error {
     #[error("{what} must be {requirement}, got {value}")]
     OutOfRange {
         /// The name of the argument.
-        what: String,
+        what: Message,
         /// The allowed range in words, such as "positive".
-        requirement: String,
+        requirement: Message,
         /// The offending number.
         value: f64,
     },
@@ -91,12 +93,14 @@ pub enum Error {
         known: String,
     },
     /// A call that takes robots with one tip got one with several.
-    #[error("{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip=")]
+    #[error("{call} takes robots with one tip; this one has {tips}: {remedy}")]
     SeveralTips {
         /// The call.
-        call: String,
+        call: Message,
         /// The tips.
         tips: String,
+        /// The remedy.
+        remedy: Message,
     },
     /// No joint that the robot holds has this name.
     #[error("robot '{robot}' holds no joint '{name}'{problem}; joints that it holds: {}", if .held.is_empty() { "none" } else { .held })]
@@ -126,7 +130,7 @@ pub enum Error {
         /// The robot's name.
         robot: String,
         /// The problem, and what would be right.
-        problem: String,
+        problem: Message,
     },
     /// A URDF that cannot be read.
     #[error("URDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
@@ -134,7 +138,7 @@ pub enum Error {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
         /// The problem, and what would be right.
-        problem: String,
+        problem: Message,
     },
     /// An SRDF that cannot be read, or one of another robot.
     #[error("SRDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
@@ -142,7 +146,7 @@ pub enum Error {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
         /// The problem, and what would be right.
-        problem: String,
+        problem: Message,
     },
     /// A file that cannot be read.
     #[error("cannot read '{path}': {problem}")]
@@ -198,7 +202,7 @@ pub enum Error {
         /// The end, such as "start".
         what: String,
         /// The distance to it, and what would be right.
-        problem: String,
+        problem: Message,
     },
     /// A search found nothing, which proves nothing.
     #[error("{what} was not found: {problem}")]
@@ -206,7 +210,7 @@ pub enum Error {
         /// What was looked for, such as "a motion past point 3 of the path".
         what: String,
         /// How near the search came, and what to try.
-        problem: String,
+        problem: Message,
     },
     /// Several ends were given for a motion, and none of them can be used.
     #[error("none of the {count} ends can be reached: {problems}")]
@@ -214,7 +218,7 @@ pub enum Error {
         /// The number of ends.
         count: usize,
         /// What is wrong with each, separated by semicolons.
-        problems: String,
+        problems: Message,
     },
     /// A limit that is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
@@ -234,15 +238,15 @@ pub enum Error {
         /// The field of the limits, such as "acceleration".
         field: String,
         /// The method.
-        method: String,
+        method: Message,
         /// The remedy.
-        remedy: String,
+        remedy: Message,
     },
     /// No motion satisfies the request.
     #[error("infeasible: {problem}")]
     Infeasible {
         /// The conflicting requirements.
-        problem: String,
+        problem: Message,
     },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
@@ -262,7 +266,7 @@ pub enum Error {
     #[error("{problem}")]
     Contradiction {
         /// Which options, and what would be right.
-        problem: String,
+        problem: Message,
     },
     /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
@@ -278,7 +282,7 @@ pub enum Error {
         /// The problem, and the remedy.
         problem: String,
         /// How to give it capsules.
-        remedy: String,
+        remedy: Message,
     },
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}{remedy}")]
@@ -292,16 +296,17 @@ pub enum Error {
         /// The penetration, such as "0.02 m inside".
         depth: String,
         /// How to allow it, after a semicolon; empty if a joint moves the link.
-        remedy: String,
+        remedy: Message,
     },
     /// A joint with neither a velocity nor an acceleration limit.
     #[error(
-        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
-         limits=Limits(velocity=...)"
+        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: {remedy}"
     )]
     NoPace {
         /// The joint's name.
         joint: String,
+        /// The remedy.
+        remedy: Message,
     },
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
@@ -344,7 +349,7 @@ pub enum Error {
         error: Box<Error>,
     },
     /// The operating system cannot start this many threads.
-    #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
+    #[error("cannot start {threads} threads ({problem}): ask for fewer; a single one needs none")]
     NoThreads {
         /// The number of threads requested.
         threads: usize,
@@ -382,14 +387,52 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
+    /// Shorthand for [`Error::NoPace`].
+    pub(crate) fn no_pace(joint: &str) -> Self {
+        Self::NoPace { joint: joint.into(), remedy: message!["give ", Setting::Limit("velocity")] }
+    }
+
+    /// The error with these words in place of the plain ones of each setting in its messages.
+    pub fn worded(mut self, words: impl Fn(&Setting) -> String + Copy) -> Self {
+        if let Self::InRow { error, .. } | Self::InProblem { error, .. } = &mut self {
+            **error = error.clone().worded(words);
+        }
+        for message in self.messages() {
+            *message = message.worded(words).into();
+        }
+        self
+    }
+
+    /// The parts that may name settings.
+    fn messages(&mut self) -> Vec<&mut Message> {
+        match self {
+            Self::NotFinite { what, .. } | Self::WrongLength { what, .. } => vec![what],
+            Self::OutOfRange { what, requirement, .. } => vec![what, requirement],
+            Self::SeveralTips { call, remedy, .. } => vec![call, remedy],
+            Self::UnsupportedLimit { method, remedy, .. } => vec![method, remedy],
+            Self::NoCapsules { remedy, .. } | Self::InCollision { remedy, .. } | Self::NoPace { remedy, .. } => {
+                vec![remedy]
+            }
+            Self::InvalidRobot { problem, .. }
+            | Self::Urdf { problem, .. }
+            | Self::Srdf { problem, .. }
+            | Self::Unreachable { problem, .. }
+            | Self::NotFound { problem, .. }
+            | Self::NoUsableEnd { problems: problem, .. }
+            | Self::Infeasible { problem }
+            | Self::Contradiction { problem } => vec![problem],
+            _ => vec![],
+        }
+    }
+
     /// Shorthand for [`Error::OutOfRange`].
-    pub(crate) fn out_of_range(what: impl Into<String>, requirement: &str, value: f64) -> Self {
+    pub(crate) fn out_of_range(what: impl Into<Message>, requirement: impl Into<Message>, value: f64) -> Self {
         Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
     }
 }
 
 /// Checks that every entry is finite; `name(i)` says which one is not.
-pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
+pub(crate) fn require_finite(what: impl Into<Message>, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(i) => Err(Error::NotFinite { what: what.into(), place: name(i), value: values[i] }),

@@ -9,6 +9,7 @@ use super::piece_space::PieceSpace;
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
 use crate::free_path;
+use crate::message::Setting;
 use crate::obstacle::{ClearanceSweep, kept_margin};
 use crate::plan::{
     EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at, joined,
@@ -27,7 +28,7 @@ const LINES_OF_EACH: usize = 2;
 /// Lines that take longer than the quickest by this factor are left out.
 const SLOWEST: f64 = 2.0;
 
-const METHOD: &str = "method=\"minmax\"";
+const METHOD: Setting = Setting::Method("minmax");
 
 /// Plans with the pieces that the options ask for.
 pub(crate) fn composed(

@@ -6,6 +6,7 @@ use super::clear_space::ClearSpace;
 use super::obstacles::Obstacles;
 use super::scene::Scene;
 use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::robot::Robot;
 
 /// Distance kept where none is given (m).
@@ -41,7 +42,7 @@ impl Surroundings {
     pub fn clear_space<'a>(&'a self, robot: &'a Robot) -> Result<Option<ClearSpace<'a>>> {
         let margin = kept_margin(self.margin)?;
         if !self.is_given() {
-            let problem = "margin= needs obstacles= (a list, which may be empty) or self_collision=True".into();
+            let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
             return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
         }
         let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;

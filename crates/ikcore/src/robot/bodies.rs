@@ -7,6 +7,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
+use crate::message::Setting;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -63,7 +64,7 @@ impl Robot {
     /// [`Error::SeveralTips`].
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
-        self.require_one_tip("with_capsules(radius=...)")?;
+        self.require_one_tip(Setting::CapsulesAlongLinks)?;
         let chain = self.chain();
         let moving = chain.moving;
         let mut capsules = vec![];
@@ -96,7 +97,7 @@ impl Robot {
             body,
             body + 1
         );
-        Error::InvalidRobot { robot: self.name().into(), problem }
+        Error::InvalidRobot { robot: self.name().into(), problem: problem.into() }
     }
 }
 

@@ -141,7 +141,8 @@ fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),
     };
-    let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
+    let unreachable =
+        |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem: problem.into() };
     let beside = || unreachable("it lies beside the plane that the arm moves in".into());
     let place = arm.planar_target(&target).ok_or_else(beside)?;
     let held = usize::from(place.orientation.is_some());

@@ -114,7 +114,7 @@ fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
             "self_motion needs one joint more than the target: robot '{}' has {} joints, and this target takes {needed}",
             robot.name(),
             robot.dof()
-        ),
+        ).into(),
     })
 }
 
