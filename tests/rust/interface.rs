@@ -53,7 +53,7 @@ fn paths_and_signatures_of_public_items_are_listed() {
 }
 
 /// One line for each public item, method and implemented trait.
-fn interface(sources: &Sources) -> Vec<String> {
+pub fn interface(sources: &Sources) -> Vec<String> {
     let mut paths: BTreeMap<(&str, String), Vec<String>> = BTreeMap::new();
     let mut open = vec![""];
     while let Some(module) = open.pop() {
@@ -110,13 +110,9 @@ fn declarations(code: &str) -> Vec<(Option<String>, String)> {
 fn members(code: &str) -> Vec<(String, String)> {
     let mut found = vec![];
     for block in blocks(code).into_iter().filter(|block| block[0].starts_with("impl")) {
-        let head = signature(&block);
-        let head = head.split(" where ").next().unwrap_or_default();
-        let rest = after_generics(head.trim_start_matches("impl")).trim();
-        let (of_trait, of_type) = rest.rsplit_once(" for ").map_or((None, rest), |(name, of)| (Some(name), of));
-        let Some(name) = name_of(&format!("type {of_type}")) else { continue };
+        let Some((of_trait, name)) = implementation(&signature(&block)) else { continue };
         if let Some(of_trait) = of_trait {
-            found.push((name, of_trait.to_owned()));
+            found.push((name, of_trait));
             continue;
         }
         let inner: String =
@@ -124,6 +120,19 @@ fn members(code: &str) -> Vec<(String, String)> {
         found.extend(declarations(&inner).into_iter().map(|(_, item)| (name.clone(), item)));
     }
     found
+}
+
+/// The trait, if it is one's, and the type of an `impl`.
+fn implementation(head: &str) -> Option<(Option<String>, String)> {
+    let head = head.split(" where ").next().unwrap_or_default();
+    let rest = after_generics(head.trim_start_matches("impl")).trim();
+    let (of_trait, of_type) = rest.rsplit_once(" for ").map_or((None, rest), |(name, of)| (Some(name.to_owned()), of));
+    name_of(&format!("type {of_type}")).map(|name| (of_trait, name))
+}
+
+/// The type of an `impl` that begins with this line.
+pub fn type_of(line: &str) -> Option<String> {
+    implementation(line).map(|(_, name)| name)
 }
 
 /// Text after the parameters `<...>` that it begins with.

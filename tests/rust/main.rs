@@ -40,6 +40,7 @@ mod plan_batch;
 mod planning;
 mod point_to_point;
 mod polynomial;
+mod promised_errors;
 mod readers;
 mod redundancy;
 mod region;

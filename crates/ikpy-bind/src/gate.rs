@@ -3,6 +3,9 @@
 //! PyO3 reads arguments before a function of ours runs. Its errors ("'bool' object is not an instance of 'str'") lack the argument
 //! and the value, and it has no hook for others. So each function, method and constructor of the module stands behind one that
 //! calls it and, where arguments did not fit, lets `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
+//!
+//! A wrapper in Python around each call would need no C, but costs 110 ns, a third of `fk`; types of arguments that word their own
+//! errors do not learn the argument's name, and see neither unknown nor missing ones.
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 

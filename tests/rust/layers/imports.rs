@@ -63,6 +63,8 @@ impl Sources {
         let origin = |path: Segments| {
             let name = path.last()?.clone();
             let start = if path[0] == "crate" { vec![] } else { vec!["self".to_owned()] };
+            let child = if module.is_empty() { path[0].clone() } else { format!("{module}::{}", path[0]) };
+            self.known(&child).filter(|_| path.len() > 1).or_else(|| (path[0] == "crate").then_some(module))?;
             Some((self.resolve(module, &[start, path].concat())?, name))
         };
         exported.filter_map(origin).collect()
@@ -152,7 +154,7 @@ fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>, from: &str) -> BT
 
 /// `text` without comments, and without the unit tests at its end. Lines keep their numbers.
 pub fn code_of(text: &str) -> String {
-    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     code.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 

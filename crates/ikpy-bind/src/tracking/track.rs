@@ -224,7 +224,8 @@ impl PyTrackResult {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
 ///     LimitError: a start outside its limits, or a negative limit.
-///     UnsupportedLimit: jerk limits, which this tracker does not keep.
+///     UnsupportedLimit: limits that vary in time among obstacles, but for those of velocity; acceleration or jerk limits for a task
+///         with a region.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
