@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 
 use crate::wording::spelt;
 
-/// The exception classes, made once. Several have two bases, which pyo3's macro does not support.
+/// Exception classes, created once. Several have two bases, which pyo3's macro does not support.
 struct Classes {
     base: Py<PyType>,
     invalid_input: Py<PyType>,
@@ -124,7 +124,7 @@ pub fn raise(error: Error) -> PyErr {
     })
 }
 
-/// What a caller of Python can do about an error.
+/// Returns advice for Python callers, which is appended to the message of an error.
 fn remedy(error: &Error) -> &'static str {
     match error {
         Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),

@@ -2,12 +2,12 @@
 
 use ikcore::message::{Message, Setting};
 
-/// A message for Python.
+/// Returns a message in the words of Python.
 pub fn said(message: &Message) -> String {
     message.worded(spelt)
 }
 
-/// How a setting is written in Python.
+/// Returns the spelling of a setting in Python.
 pub fn spelt(setting: &Setting) -> String {
     let words = match setting {
         Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),

@@ -1,4 +1,4 @@
-//! Sentences for people: what happened, and what to try.
+//! Messages for people: the outcome of a call, and advice.
 //!
 //! The core speaks of robots. Options that a sentence names are [`Setting`]s in it, with plain words, so that each interface puts its
 //! own spelling in their place.
@@ -10,16 +10,16 @@ use std::ops::Deref;
 
 pub use setting::Setting;
 
-/// A sentence, or a part of one. As text it has the plain words of its settings.
+/// Sentence, or a part of one. Its text has the plain words of its settings.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Message {
     plain: String,
-    /// The settings in it, each with the byte at which its plain words begin.
+    /// Settings in it, each with the byte at which its plain words begin.
     settings: Vec<(usize, Setting)>,
 }
 
 impl Message {
-    /// The sentence with these words in place of the plain ones of each term.
+    /// Returns the sentence with these words in place of the plain ones of each setting.
     pub fn worded(&self, words: impl Fn(&Setting) -> String) -> String {
         let (mut text, mut done) = (String::new(), 0);
         for (begin, setting) in &self.settings {
@@ -30,7 +30,7 @@ impl Message {
         text + &self.plain[done..]
     }
 
-    /// The sentence in plain words.
+    /// Returns the sentence in plain words.
     pub fn as_str(&self) -> &str {
         &self.plain
     }

@@ -1,48 +1,48 @@
-//! Options that messages name.
+//! Settings that messages name.
 
 use std::fmt;
 
-/// An option, or what to do with one. It has plain words here; an interface has its own spelling.
+/// Setting of a call, or advice about one. It has plain words here; an interface has its own spelling.
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Setting {
-    /// A limit of this kind: "velocity", "acceleration" or "jerk".
+    /// Limit of this kind: "velocity", "acceleration" or "jerk".
     Limit(&'static str),
-    /// The budget of a search.
+    /// Budget of a search.
     Budget,
-    /// A planner: "minmax", "timed" or "tpbso".
+    /// Planner: "minmax", "timed" or "tpbso".
     Method(&'static str),
-    /// The planner that has a solver of its own.
+    /// Planner that has a solver of its own.
     MethodWithSolver,
-    /// The tip of a robot that has several.
+    /// Tip of a robot that has several.
     Tip,
-    /// One task for all tips.
+    /// Common task of all tips.
     OneTask,
-    /// A task for each of several tips.
+    /// Tasks of each of several tips.
     TaskOfEachTip,
-    /// Which solution is preferred: "nearest" or "best".
+    /// Preferred solution: "nearest" or "best".
     Prefer(&'static str),
-    /// Each solution at all whole turns.
+    /// Solutions at all whole turns.
     AllTurns,
-    /// An error for an invalid item of a batch.
+    /// Error for an invalid item of a batch.
     RaiseInvalid,
-    /// The approach from rest to a moving path.
+    /// Approach from rest to a moving path.
     Ease,
-    /// A motion out of a contact first.
+    /// Motion out of a contact first.
     FreeStart,
-    /// The joint velocity at the start.
+    /// Joint velocity at the start.
     StartVelocity,
-    /// The configuration at the start.
+    /// Configuration at the start.
     StartConfiguration,
-    /// A new timing of a plan.
+    /// New timing of a plan.
     Retime,
-    /// The distance to keep.
+    /// Distance to keep.
     Margin,
-    /// What a margin is kept from.
+    /// Bodies that a margin is kept from.
     Surroundings,
-    /// The region of a map.
+    /// Region of a map.
     Region,
-    /// A task that a map can have: of a position, and perhaps of a direction.
+    /// Task of a map: of a position, and perhaps of a direction.
     MapTask {
         /// Whether a direction is possible.
         pointing: bool,
@@ -55,9 +55,9 @@ pub enum Setting {
     Fitted,
     /// Capsules along links or at ends that are given.
     GiveCapsules,
-    /// The capsules that the robot has, and no other shapes.
+    /// Capsules that the robot has, and no other shapes.
     CapsulesAlone,
-    /// More capsules.
+    /// Further capsules.
     MoreCapsules,
     /// Capsules of one radius along the links.
     CapsulesAlongLinks,
