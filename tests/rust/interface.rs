@@ -30,7 +30,7 @@ fn the_public_interface_is_as_agreed() {
 #[test]
 fn paths_and_signatures_of_public_items_are_listed() {
     let files = [
-        ("lib.rs", "pub mod arm;\nmod parts;\npub use arm::Arm as Robot;\n"),
+        ("lib.rs", "pub mod arm;\nmod parts;\npub use arm::Arm;\n"),
         (
             "arm.rs",
             "pub use crate::parts::{Link, span};\npub(crate) use crate::parts::Hidden;\npub struct Arm {\n    pub q: f64,\n    own: f64,\n}\nimpl Arm {\n    pub fn new(\n        q: f64,\n    ) -> Self {\n        pub fn not() {}\n    }\n    fn own(&self) {}\n}\n",
@@ -42,8 +42,8 @@ fn paths_and_signatures_of_public_items_are_listed() {
     ];
     let sources = Sources::of(files.map(|(path, text)| (PathBuf::from(path), text.to_owned())));
     let expected = [
-        "arm::Arm: struct Arm { pub q: f64 }",
-        "arm::Arm: fn new(q: f64) -> Self",
+        "Arm, arm::Arm: struct Arm { pub q: f64 }",
+        "Arm, arm::Arm: fn new(q: f64) -> Self",
         "arm::Link: Copy",
         "arm::Link: enum Link { Fixed, Moving { axis: f64 } }",
         "arm::span: fn span<T>(t: T) -> f64 where T: Copy",
@@ -159,7 +159,10 @@ fn blocks(code: &str) -> Vec<Vec<&str>> {
     for line in code.lines().map(str::trim_end).filter(|line| !line.is_empty()) {
         let begins = ["pub ", "impl"].iter().any(|start| line.starts_with(start));
         match blocks.last_mut() {
-            Some(block) if !begins && !line.starts_with(|c: char| c.is_alphabetic() && c != 'w' || c == '#') => {
+            Some(block)
+                if !begins
+                    && (line.starts_with("where") || !line.starts_with(|c: char| c.is_alphabetic() || c == '#')) =>
+            {
                 block.push(line)
             }
             _ if begins => blocks.push(vec![line]),
@@ -172,12 +175,19 @@ fn blocks(code: &str) -> Vec<Vec<&str>> {
 
 /// The lines of a type or trait that its users see.
 fn visible<'a>(kind: &str, block: &[&'a str]) -> Vec<&'a str> {
+    let mut in_attribute = false;
+    let plain = block.iter().filter(|line| {
+        in_attribute |= line.trim_start().starts_with("#[");
+        let hidden = in_attribute;
+        in_attribute &= !line.ends_with(']');
+        !hidden
+    });
     let kept = |line: &&&str| match kind {
         "struct" => line.starts_with("    pub ") || !line.starts_with("    "),
-        "enum" => !line.trim_start().starts_with('#'),
-        _ => !line.starts_with("        ") && !line.trim_start().starts_with('#') && line.trim() != "}",
+        "enum" => true,
+        _ => !line.starts_with("        ") && line.trim() != "}",
     };
-    block.iter().filter(kept).copied().collect()
+    plain.filter(kept).copied().collect()
 }
 
 /// A declaration up to its body or value.

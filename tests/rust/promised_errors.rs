@@ -10,18 +10,19 @@ use crate::interface::{interface, type_of};
 use crate::layers::imports::{Sources, rust_files};
 use crate::tips::two_arms;
 use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, solve_batch};
-use ikcore::ik::{AllOptions, SelfMotionOptions, SolveOptions, self_motion, solve_all};
+use ikcore::ik::{AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_tips};
+use ikcore::interrupt::{checkpoint, interruptible};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
-use ikcore::load::read_mesh;
+use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};
 use ikcore::manipulability::{Motion, manipulability, manipulability_all};
 use ikcore::map::{MapGrid, MapLayout, MapOptions};
 use ikcore::math::ticks::{ticks, ticks_of_path};
 use ikcore::math::{Knots, Pose, pose};
 use ikcore::motion::{ArmState, state_to_state, stop};
-use ikcore::nalgebra::{Matrix3, Matrix4, Vector3};
+use ikcore::nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 use ikcore::objective::Bounds;
 use ikcore::obstacle::{Scene, Surroundings};
-use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
+use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds, StraightLine,
     TimingLimits, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
@@ -29,18 +30,21 @@ use ikcore::planning::{
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;
 use ikcore::robot::{BaseLimits, ChainBuilder, Drive, Joint, JointKind, LinkCapsule, MobileBase, Robot};
-use ikcore::shape::Shape;
+use ikcore::shape::{Cover, Geometry, Shape};
 use ikcore::solver::{
     Algorithm, AnySolver, Apps, Bas, BeeColony, BeetleSwarm, BroydenBas, DerivativeFree, DifferentialEvolution,
-    Firefly, Genetic, LevenbergMarquardt, NewtonRaphson, Pso, PsoForm, Qpso, Stop, Unattended,
+    Firefly, Genetic, JacobianTranspose, LevenbergMarquardt, MultiStart, NewtonRaphson, Pso, PsoForm, Qpso,
+    RestartRule, Schedule, StepSize, Stop, Unattended,
 };
-use ikcore::task::{Goal, Region, Target, Task, TaskKind, Tolerance};
+use ikcore::stored;
+use ikcore::task::{Components, Criterion, Goal, NamedTask, Region, Subject, Target, Task, TaskKind, Tolerance};
 use ikcore::tracking::{
-    ControlSession, Controller, Fault, KinematicPlant, ModelFreeOptions, Plant, Session, TargetFilter, TickRule,
-    TipPaths, TipPose, TrackOptions, Znnbas, track, track_model_free, track_tips,
+    Antenna, Arrival, ControlSession, Controller, Fault, KinematicPlant, LowPass, ModelFreeOptions, Plant, Session,
+    TargetFilter, TickRule, TipPaths, TipPose, TrackOptions, Znnbas, track, track_model_free, track_tips,
 };
 use ikcore::trajectory::Trajectory;
 use ikcore::{Error, Result};
+use serde::ser::SerializeTuple;
 
 const NAN: f64 = f64::NAN;
 const HALVES: [[f64; 3]; 2] = [[0.0; 3], [1.0, 0.0, 0.0]];
@@ -181,6 +185,149 @@ fn line() -> StraightLine {
     StraightLine { distance: 0.1, direction: None, frame: LineFrame::Tip, touch: vec![] }
 }
 
+/// A curve of a user.
+#[derive(Debug)]
+struct Own;
+
+impl Curve for Own {
+    fn duration(&self) -> f64 {
+        1.0
+    }
+
+    fn position(&self, _: f64) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    fn velocity(&self, _: f64) -> [f64; 3] {
+        [0.0; 3]
+    }
+}
+
+struct Unwritable;
+
+impl serde::Serialize for Unwritable {
+    fn serialize<S: serde::Serializer>(&self, _: S) -> std::result::Result<S::Ok, S::Error> {
+        Err(serde::ser::Error::custom("no"))
+    }
+}
+
+/// Bytes as they are.
+struct Raw(Vec<u8>);
+
+impl serde::Serialize for Raw {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut bytes = serializer.serialize_tuple(self.0.len())?;
+        self.0.iter().try_for_each(|byte| bytes.serialize_element(byte))?;
+        bytes.end()
+    }
+}
+
+/// Bytes before those of a stored value: the format and a checksum.
+const HEADER: usize = 9;
+
+/// A stored circle with one of its numbers replaced.
+fn spoiled_circle(number: f64, instead: f64) -> Result<Path> {
+    let circle = Circle::new(Plane::xy([0.1234, 0.0, 0.0]).unwrap(), 0.7317, 1.7).unwrap();
+    let turned =
+        Path::new(circle).with_orientation(*Rotation3::from_axis_angle(&Vector3::z_axis(), 0.5).matrix()).unwrap();
+    let mut payload = turned.to_bytes().unwrap().split_off(HEADER);
+    let at = payload.windows(8).position(|window| window == number.to_le_bytes()).expect("the number");
+    payload[at..at + 8].copy_from_slice(&instead.to_le_bytes());
+    Path::from_bytes(&stored::to_bytes("path", &Raw(payload)).unwrap())
+}
+
+fn lost() -> Pose {
+    pose::translation(NAN, 0.0, 0.0)
+}
+
+fn scaled() -> Pose {
+    Pose::from_parts(Vector3::zeros().into(), Rotation3::from_matrix_unchecked(twisted()))
+}
+
+fn table() -> DhTable {
+    DhTable::new(Dh::Standard, vec![0.1], vec![0.0], vec![0.0])
+}
+
+fn nameless() -> Robot {
+    let mut chain = ChainBuilder::new("nameless", "base");
+    for name in ["one", "two"] {
+        let index = chain.add_joint(Joint::new(name, JointKind::Revolute));
+        chain.moving(index, JointKind::Revolute, Vector3::z(), Drive::DIRECT);
+        chain.fixed(pose::translation(1.0, 0.0, 0.0));
+    }
+    chain.link("tip");
+    chain.build().unwrap()
+}
+
+fn adrift() -> Result<Robot> {
+    let mut chain = ChainBuilder::new("adrift", "base");
+    chain.fixed(lost());
+    let index = chain.add_joint(leaf());
+    chain.moving(index, JointKind::Revolute, Vector3::z(), Drive::DIRECT);
+    chain.build()
+}
+
+fn huge_cover() -> Result<Cover> {
+    let far = 1e200;
+    let corners = vec![[0.0; 3], [far, 0.0, 0.0], [0.0, far, 0.0], [0.0, 0.0, far]];
+    let shape = Shape::mesh(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+    let Geometry::Mesh(mesh) = shape.geometry() else { panic!("no mesh") };
+    mesh.cover(4)
+}
+
+fn held() -> Robot {
+    let joint = |name: &str, child: &str| {
+        format!(
+            r#"<link name="{child}"/><joint name="{name}" type="revolute"><parent link="base"/><child link="{child}"/>
+            <limit lower="-1" upper="1" velocity="1" effort="1"/></joint>"#
+        )
+    };
+    let urdf =
+        format!(r#"<robot name="held"><link name="base"/>{}{}</robot>"#, joint("j", "arm"), joint("side", "flap"));
+    Robot::from_urdf(&urdf, None, Some("arm")).unwrap()
+}
+
+fn on_wheels(far: f64) -> BaseLimits {
+    BaseLimits { lower: vec![-far; 3], upper: vec![far; 3], velocity: vec![1.0; 3], acceleration: vec![1.0; 3] }
+}
+
+fn antennae() -> Znnbas {
+    Znnbas { antenna: Antenna::Constant(vec![0.1; 3]), ..Znnbas::default() }
+}
+
+fn answered() -> ControlSession {
+    let mut session = commanded();
+    session.observe(&[1.0, 0.0, 0.0].into()).unwrap();
+    session
+}
+
+fn posed() -> ControlSession {
+    let mut session = control();
+    session.command(&TipPose::from(&Pose::identity())).unwrap();
+    session
+}
+
+fn turning() -> Session {
+    let task = Task::new(TaskKind::Orientation, None, None, None).unwrap();
+    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { task: Some(task), ..TrackOptions::default() }).unwrap()
+}
+
+fn stamped(stamp: f64) -> Arrival {
+    Arrival { stamp: Some(stamp), ..Target::Position([1.5, 0.5, 0.0]).into() }
+}
+
+/// Targets of both tips and of the pair, which contradict each other.
+fn twice() -> Result<Solution> {
+    let arms = arms();
+    let tips = [Subject::Tip(0), Subject::Tip(0)].map(|subject| NamedTask {
+        subject,
+        task: None,
+        tolerance: Tolerance::default(),
+    });
+    let targets = [Target::Position([0.5, 0.0, 0.5]), Target::Position([0.5, 0.0, 0.6])];
+    solve_tips(&arms, &targets, &SolveOptions { tips: tips.to_vec(), ..SolveOptions::default() }, &mut Unattended)
+}
+
 fn paths_and_trajectories() -> Vec<Row> {
     let polyline = |waypoints: &[f64]| JointPath::polyline(names(2), waypoints, 0.1);
     let spline =
@@ -273,6 +420,12 @@ fn paths_and_trajectories() -> Vec<Row> {
         "state_to_state" Infeasible: state_to_state(&moving(&[0.4; 2], &[1.0; 2]), &state(&[0.2; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: joint '0' would get to 0.6500, beyond its upper limit 0.5000: begin or end it slower, or farther from its limit";
         "state_to_state" InvalidTrajectory: state_to_state(&state(&[0.0; 2]), &state(&[0.0; 2]), &rated()), "trajectory: q0 and q1, with their velocities and accelerations, are the same state: nothing moves";
         "stop" InvalidTrajectory: stop(&state(&[0.0; 2]), &rated()), "trajectory: the arm is at rest: nothing has to stop";
+        "Path::to_bytes" InvalidPath: Path::new(Own).to_bytes(), "path: a curve of your own cannot be stored; store its samples";
+        "Path::from_bytes" OutOfRange: spoiled_circle(1.7, -1.0), "duration of the stored path must be positive and finite, got -1";
+        "Path::from_bytes" NotFinite: spoiled_circle(0.1234, NAN), "stored path must be finite, but x at t = 0 s is NaN";
+        "Path::from_bytes" NotRigid: spoiled_circle(0.5_f64.sin(), 2.0), "orientation of the stored path is not a rigid transform: R'R differs from the identity by 3.770e0";
+        "Samples::from_poses" NotRigid: Samples::from_poses(vec![0.0, 1.0], &[Pose::identity(), scaled()]), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "checked" NotFinite: pose::checked("tool", lost()), "tool must be finite, but entry (0, 3) is NaN";
     }
 }
 
@@ -351,6 +504,32 @@ fn robots_and_shapes() -> Vec<Row> {
         "Shape::point_cloud" NotFinite: Shape::point_cloud(vec![[NAN; 3]], 0.1), "points of the point cloud must be finite, but coordinate x of point 0 is NaN";
         "Shape::point_cloud" OutOfRange: Shape::point_cloud(vec![[0.0; 3]], -0.1), "radius of the point cloud must be zero or more and finite, got -0.1";
         "Shape::point_cloud" InvalidObstacle: Shape::point_cloud(vec![], 0.1), "a point cloud needs at least one point, got none";
+        "Robot::from_dh" WrongLength: Robot::from_dh("arm", &DhTable { d: vec![], ..table() }), "d in the DH table of robot 'arm': expected 1 entries, as in a, got 0";
+        "Robot::from_dh" NotFinite: Robot::from_dh("arm", &DhTable { alpha: vec![NAN], ..table() }), "alpha in the DH table of robot 'arm' must be finite, but entry 0 is NaN";
+        "Robot::with_base" NotFinite: panda.with_base(lost()), "base must be finite, but entry (0, 3) is NaN";
+        "Robot::with_tool" NotFinite: panda.with_tool(lost()), "tool must be finite, but entry (0, 3) is NaN";
+        "Robot::with_capsules_along_links" InvalidRobot: nameless().with_capsules_along_links(0.1), "robot 'nameless': no link is named between moving elements 1 and 2, so that none can carry a capsule: name one there";
+        "ChainBuilder::build" NotFinite: adrift(), "fixed transform must be finite, but entry (0, 3) is NaN";
+        "Robot::with_held" NotFinite: held().with_held([("side", NAN)]), "held joints must be finite, but joint 'side' is NaN";
+        "Robot::with_held" OutsideLimits: held().with_held([("side", 2.0)]), "hold: joint 'side' at 2 is outside its limits [-1, 1]";
+        "Robot::with_mobile_base" OutOfRange: panda.with_mobile_base(MobileBase::Planar, &on_wheels(f64::INFINITY)), "lower limit of joint 'base_x' must be finite: configurations are drawn from the range, got -inf";
+        "Robot::with_mobile_base" InvalidRobot: panda.with_mobile_base(MobileBase::Planar, &on_wheels(1.0)).unwrap().with_mobile_base(MobileBase::Planar, &on_wheels(1.0)), "robot 'panda': two joints are named 'base_x'";
+        "Mesh::cover" OutOfRange: huge_cover(), "radius of the capsule must be positive and finite, got inf";
+        "covered_mesh" Unreadable: covered_mesh(FilePath::new("none.stl"), [1.0; 3], 4), "cannot read 'none.stl': No such file or directory (os error 2)";
+        "Shape::cuboid" NotFinite: Shape::cuboid([NAN; 3], [1.0; 3], None), "center must be finite, but coordinate x is NaN";
+        "Shape::cuboid" OutOfRange: Shape::cuboid([0.0; 3], [0.0; 3], None), "size of the box along x must be positive and finite, got 0";
+        "Shape::cuboid" NotRigid: Shape::cuboid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Shape::ellipsoid" NotFinite: Shape::ellipsoid([NAN; 3], [1.0; 3], None), "center must be finite, but coordinate x is NaN";
+        "Shape::ellipsoid" OutOfRange: Shape::ellipsoid([0.0; 3], [0.0; 3], None), "semi-axes of the ellipsoid along x must be positive and finite, got 0";
+        "Shape::ellipsoid" NotRigid: Shape::ellipsoid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Shape::ellipse" NotFinite: Shape::ellipse([NAN; 2], [1.0; 2], 0.0), "center must be finite, but coordinate x is NaN";
+        "Shape::ellipse" OutOfRange: Shape::ellipse([0.0; 2], [0.0; 2], 0.0), "semi-axes of the ellipse along x must be positive and finite, got 0";
+        "Shape::grid" NotFinite: Shape::grid([NAN; 3], 0.1, [1; 3], vec![true]), "origin must be finite, but coordinate x is NaN";
+        "Shape::grid" OutOfRange: Shape::grid([0.0; 3], 0.0, [1; 3], vec![true]), "voxel of the grid must be positive and finite, got 0";
+        "Shape::grid" WrongLength: Shape::grid([0.0; 3], 0.1, [1; 3], vec![]), "occupied voxels: expected 1 x 1 x 1 voxels, got 0";
+        "Shape::grid" InvalidObstacle: Shape::grid([0.0; 3], 0.1, [1; 3], vec![false]), "a grid needs at least one occupied voxel, got none";
+        "to_bytes" Corrupt: stored::to_bytes("thing", &Unwritable), "cannot restore thing: Serde Serialization Error";
+        "from_bytes" Corrupt: stored::from_bytes::<u8>("thing", &[]), "cannot restore thing: no bytes";
     }
 }
 
@@ -404,6 +583,14 @@ fn tasks_limits_and_solvers() -> Vec<Row> {
         "TickRule::validate" OutOfRange: TickRule::Solver(AnySolver::Single(Algorithm::from(NewtonRaphson { step_fraction: 0.0 }))).validate(), "step_fraction must be above 0 and at most 1, got 0";
         "StraightLine::validate" OutOfRange: StraightLine { distance: 0.0, ..line() }.validate("approach"), "distance of approach must be positive and finite, got 0";
         "StraightLine::validate" NotFinite: StraightLine { direction: Some([NAN; 3]), ..line() }.validate("approach"), "direction of approach must be finite, but entry 0 is NaN";
+        "Components::validate" OutOfRange: Components { weights: [-1.0; 6], tolerance: None }.validate(), "weights[0] must be zero or more, and finite, got -1";
+        "Criterion::validate" OutOfRange: Criterion::from(Tolerance { position: -1.0, rotation: 1.0 }).validate(), "position_tolerance must be positive, got -1";
+        "JacobianTranspose::validate" OutOfRange: JacobianTranspose { step_size: StepSize::Fixed(0.0) }.validate(), "step_size must be positive and finite, got 0";
+        "MultiStart::validate" OutOfRange: MultiStart { solver: NewtonRaphson::default(), rule: RestartRule { max_starts: 0, patience: 1, min_reduction: 0.1 } }.validate(), "max_starts must be at least 1, got 0";
+        "Schedule::validate" OutOfRange: Schedule { population: 0, ..Pso::default().schedule }.validate(1), "population must be between 1 and 1000000, got 0";
+        "TargetFilter::validate" OutOfRange: TargetFilter::LowPass(LowPass { cutoff: 0.0 }).validate(), "cutoff must be positive and finite, got 0";
+        "Znnbas::validate" WrongLength: antennae().validate(2), "antenna_length: expected one number, or 2 (one per joint), got 3";
+        "Controller::validate" WrongLength: Controller::Znnbas(antennae()).validate(2), "antenna_length: expected one number, or 2 (one per joint), got 3";
     }
 }
 
@@ -464,11 +651,23 @@ fn calls() -> Vec<Row> {
         "Session::step" NotFinite: session().step(&Target::Position([NAN; 3]), &mut Unattended), "target must be finite, but coordinate x is NaN";
         "Session::reset_moving" Contradiction: eased_session().reset_moving(&[0.55; 2], Some(&[1.0; 2]), None), "joint '0' at 0.5500 with velocity 1.000 and acceleration 0 cannot stop inside its limits; start slower or farther inside";
         "track_tips" WrongLength: track_tips(&two(), &TipPaths { tips: &[], paths: &[reference(4), reference(5)] }, None, &options, &mut Unattended), "a path of several: expected 4 samples of 0.1 s, as the first path has, got 5";
+        "ControlSession::command" Contradiction: answered().command(&TipPose::from(&Pose::identity())), "target: expected a position (3,), as before, got a pose (4, 4)";
+        "ControlSession::observe" Contradiction: posed().observe(&[0.0; 3].into()), "position: expected a pose (4, 4), like the target, got a position (3,)";
+        "Session::step" WrongTarget: turning().step(&Target::Position([1.0, 0.0, 0.0]), &mut Unattended), "task Orientation needs a target pose (4, 4), got a position (3,)";
+        "Session::advance" OutOfRange: eased_session().advance(Some(stamped(1.0)), &mut Unattended), "stamp must be at most 0.1, the end of the tick (s), got 1";
+        "Session::advance" Contradiction: session().advance(Some(stamped(0.0)), &mut Unattended), "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or leave stamp out";
+        "plan_batch" Unreachable: plan_batch(&two(), &[PlanProblem { ends: vec![far()], ..problem(&[0.0; 2]) }], Some(1), &mut Unattended).unwrap().remove(0), "end cannot be reached: the nearest configuration found stays 7.000 m away";
+        "solve_tips" Contradiction: twice(), "tip 'left_tool' has two targets";
+        "checkpoint" Interrupted: interruptible(|| false, checkpoint), "interrupted before the end";
     }
 }
 
 /// Errors whose exact words other files of tests hold, as they need more than a call.
-const ELSEWHERE: &[(&str, &[(&str, &str)])] = &[];
+const ELSEWHERE: &[(&str, &[(&str, &str)])] = &[
+    ("along_path_reach.rs", &[("plan_along_path", "NotFound")]),
+    ("map.rs", &[("map_chunks", "Interrupted")]),
+    ("a machine without threads", &[("plan_batch", "NoThreads")]),
+];
 
 #[test]
 fn promised_errors_are_returned_in_exact_words() {

@@ -21,7 +21,7 @@ macro_rules! statuses {
             /// All statuses in the order of their numbers.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
-            /// Name in Python.
+            /// Name of the status.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)+

@@ -43,7 +43,7 @@ pub struct Task {
 }
 
 impl TaskKind {
-    /// Name in Python.
+    /// Name of the kind.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pose => "Pose",
