@@ -73,7 +73,7 @@ pub fn interface(sources: &Sources) -> Vec<String> {
     }
     let path_of = |module: &str, name: &str| paths.get(&(module, name.to_owned())).map(|all| all.join(", "));
     let mut types: BTreeMap<&str, String> = BTreeMap::new();
-    for ((module, name), _) in &paths {
+    for (module, name) in paths.keys() {
         if name.starts_with(char::is_uppercase) {
             types.insert(name, path_of(module, name).unwrap_or_default());
         }
@@ -96,7 +96,7 @@ fn declarations(code: &str) -> Vec<(Option<String>, String)> {
     let blocks = blocks(code).into_iter().filter_map(|block| {
         let item = block[0].strip_prefix("pub ")?;
         let kind = item.split(' ').next()?;
-        KINDS.contains(&kind).then(|| (kind, item, block))
+        KINDS.contains(&kind).then_some((kind, item, block))
     });
     let described = blocks.map(|(kind, item, block)| match kind {
         "struct" | "enum" | "trait" if block.len() > 1 => (name_of(item), joined(&visible(kind, &block))),
@@ -149,8 +149,8 @@ fn after_generics(text: &str) -> &str {
 
 /// The name that a declaration gives.
 fn name_of(item: &str) -> Option<String> {
-    let words = item.split(|c: char| !(c.is_alphanumeric() || c == '_'));
-    words.skip_while(|word| KINDS.contains(word) || word.is_empty()).next().map(str::to_owned)
+    let mut words = item.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+    words.find(|word| !(KINDS.contains(word) || word.is_empty())).map(str::to_owned)
 }
 
 /// Items that begin at the first column, each as its lines.

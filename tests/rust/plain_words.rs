@@ -102,8 +102,8 @@ fn literals(code: &str) -> Vec<String> {
             here.find("\"#").map_or(here.len(), |end| end + 2)
         } else if here.starts_with('"') {
             quoted(here)
-        } else if here.starts_with("'\\") {
-            2 + here[2..].find('\'').map_or(0, |end| end + 1)
+        } else if let Some(escaped) = here.strip_prefix("'\\") {
+            2 + escaped.find('\'').map_or(0, |end| end + 1)
         } else if here.starts_with('\'') && here.chars().nth(2) == Some('\'') {
             here.char_indices().nth(3).map_or(here.len(), |(end, _)| end)
         } else {

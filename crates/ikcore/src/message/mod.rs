@@ -12,35 +12,39 @@ pub use setting::Setting;
 
 /// Sentence, or a part of one. Its text has the plain words of its settings.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Message {
+pub struct Message(Box<Content>);
+
+/// Text, and the settings in it, each with the byte at which its plain words begin. In a box, which keeps errors small.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Content {
     plain: String,
-    /// Settings in it, each with the byte at which its plain words begin.
     settings: Vec<(usize, Setting)>,
 }
 
 impl Message {
     /// Returns the sentence with these words in place of the plain ones of each setting.
     pub fn worded(&self, words: impl Fn(&Setting) -> String) -> String {
+        let Content { plain, settings } = &*self.0;
         let (mut text, mut done) = (String::new(), 0);
-        for (begin, setting) in &self.settings {
-            text += &self.plain[done..*begin];
+        for (begin, setting) in settings {
+            text += &plain[done..*begin];
             text += &words(setting);
             done = begin + setting.to_string().len();
         }
-        text + &self.plain[done..]
+        text + &plain[done..]
     }
 
     /// Returns the sentence in plain words.
     pub fn as_str(&self) -> &str {
-        &self.plain
+        &self.0.plain
     }
 
     /// Appends a part.
     pub(crate) fn push(&mut self, part: impl Into<Self>) {
-        let part = part.into();
-        let begin = self.plain.len();
-        self.plain += &part.plain;
-        self.settings.extend(part.settings.into_iter().map(|(at, setting)| (begin + at, setting)));
+        let part = *part.into().0;
+        let begin = self.0.plain.len();
+        self.0.plain += &part.plain;
+        self.0.settings.extend(part.settings.into_iter().map(|(at, setting)| (begin + at, setting)));
     }
 
     /// Joins parts by a separator.
@@ -69,13 +73,13 @@ impl Deref for Message {
     type Target = str;
 
     fn deref(&self) -> &str {
-        &self.plain
+        &self.0.plain
     }
 }
 
 impl fmt::Display for Message {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(&self.plain)
+        f.pad(self)
     }
 }
 
@@ -99,31 +103,31 @@ impl From<&String> for Message {
 
 impl From<String> for Message {
     fn from(plain: String) -> Self {
-        Self { plain, settings: vec![] }
+        Self(Box::new(Content { plain, settings: vec![] }))
     }
 }
 
 impl From<Setting> for Message {
     fn from(named: Setting) -> Self {
-        Self { plain: named.to_string(), settings: vec![(0, named)] }
+        Self(Box::new(Content { plain: named.to_string(), settings: vec![(0, named)] }))
     }
 }
 
 impl PartialEq<str> for Message {
     fn eq(&self, text: &str) -> bool {
-        self.plain == text
+        self.0.plain == text
     }
 }
 
 impl PartialEq<&str> for Message {
     fn eq(&self, text: &&str) -> bool {
-        self.plain == *text
+        self.0.plain == *text
     }
 }
 
 impl PartialEq<String> for Message {
     fn eq(&self, text: &String) -> bool {
-        self.plain == *text
+        self.0.plain == *text
     }
 }
 

@@ -31,7 +31,7 @@ impl ArmState {
                 };
                 return Err(Error::WrongLength { what: format!("{what}{end}").into(), expected, got: values.len() });
             }
-            require_finite(&format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
+            require_finite(format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
         }
         Ok(())
     }

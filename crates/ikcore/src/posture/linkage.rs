@@ -81,7 +81,7 @@ impl Linkage {
         if !((target[2] - height).abs() < 1e-9) {
             return Err(Error::out_of_range(
                 "z of the target",
-                &format!("that of the arm's plane, {height}"),
+                format!("that of the arm's plane, {height}"),
                 target[2],
             ));
         }

@@ -47,7 +47,7 @@ impl Robot {
         for (i, capsule) in capsules.iter().enumerate() {
             self.link_number(&capsule.link)?;
             let ends = [capsule.a, capsule.b];
-            require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
+            require_finite(format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
                 format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
