@@ -344,7 +344,7 @@ fn wrong_surroundings_are_refused() {
     let options = SolveOptions { goals, ..SolveOptions::default() };
     assert_eq!(
         solve(&robot, &target, &options, &mut Unattended).unwrap_err().to_string(),
-        "the goal Clearance is for calls with obstacles= (a list, which may be empty) or self_collision=True"
+        "the goal Clearance is for calls with obstacles (perhaps none) or self-collision"
     );
 }
 

@@ -100,7 +100,10 @@ fn declarations(code: &str) -> Vec<(Option<String>, String)> {
     });
     let described = blocks.map(|(kind, item, block)| match kind {
         "struct" | "enum" | "trait" if block.len() > 1 => (name_of(item), joined(&visible(kind, &block))),
-        "struct" => (name_of(item), item.trim_end_matches(';').to_owned()),
+        "struct" => (
+            name_of(item),
+            item.split(if item.contains("(pub ") { ';' } else { '(' }).next().unwrap_or_default().trim_end_matches(';').to_owned(),
+        ),
         _ => (name_of(item), signature(&block)),
     });
     described.map(|(name, item)| (name, item.strip_prefix("pub ").map_or(item.clone(), str::to_owned))).collect()

@@ -672,7 +672,7 @@ fn packages_are_found_in_given_folders() {
     assert!(fitted(&beside, vec![]).is_ok());
     let message = fitted(&file, vec![]).unwrap_err().to_string();
     let says = "URDF: the mesh 'package://arms/meshes/cube.stl' of link 'hand' is not found: give package_dirs, or \
-                collision=\"primitives\" to do without; looked for ";
+                primitive shapes alone to do without; looked for ";
     assert!(message.starts_with(says), "{message}");
     // Nobody needs it otherwise.
     let robot = Robot::from_urdf(&file, None, None).unwrap();

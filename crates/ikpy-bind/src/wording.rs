@@ -30,7 +30,6 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::Region => "region=(corner, corner)",
         Setting::MapTask { pointing: true } => "task=tasks.Pointing() or tasks.Position()",
         Setting::MapTask { pointing: false } => "task=tasks.Position()",
-        Setting::PackageFolders => "package_dirs",
         Setting::Primitives => "collision=\"primitives\"",
         Setting::Fitted => "collision=\"fit\"",
         Setting::GiveCapsules => {

@@ -47,8 +47,6 @@ pub enum Setting {
         /// Whether a direction is possible.
         pointing: bool,
     },
-    /// Folders that hold the packages of meshes.
-    PackageFolders,
     /// Collision shapes without meshes.
     Primitives,
     /// Collision shapes that are fitted to meshes.
@@ -89,7 +87,6 @@ impl fmt::Display for Setting {
             Self::Region => "a region",
             Self::MapTask { pointing: true } => "a pointing or a position task",
             Self::MapTask { pointing: false } => "a position task",
-            Self::PackageFolders => "the folders of its package",
             Self::Primitives => "primitive shapes alone",
             Self::Fitted => "shapes fitted to its meshes",
             Self::GiveCapsules => "give it capsules",

@@ -115,9 +115,7 @@ fn found(mesh: &UrdfMesh, packages: &Packages) -> Result<PathBuf> {
         let places = looked.iter().map(|place| place.display().to_string()).take(3).collect::<Vec<_>>().join(", ");
         let places = if places.is_empty() { "no folder" } else { &places };
         let problem = message![
-            format!("the mesh '{}' of link '{link}' is not found: give ", shortened(file)),
-            Setting::PackageFolders,
-            ", or ",
+            format!("the mesh '{}' of link '{link}' is not found: give package_dirs, or ", shortened(file)),
             Setting::Primitives,
             format!(" to do without; looked for {places}"),
         ];
