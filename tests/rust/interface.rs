@@ -102,7 +102,11 @@ fn declarations(code: &str) -> Vec<(Option<String>, String)> {
         "struct" | "enum" | "trait" if block.len() > 1 => (name_of(item), joined(&visible(kind, &block))),
         "struct" => (
             name_of(item),
-            item.split(if item.contains("(pub ") { ';' } else { '(' }).next().unwrap_or_default().trim_end_matches(';').to_owned(),
+            item.split(if item.contains("(pub ") { ';' } else { '(' })
+                .next()
+                .unwrap_or_default()
+                .trim_end_matches(';')
+                .to_owned(),
         ),
         _ => (name_of(item), signature(&block)),
     });

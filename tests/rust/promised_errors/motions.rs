@@ -31,7 +31,7 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "Reference::new" InvalidPath: Reference::new(0.1, vec![[0.0; 3]], None), "path: it needs at least 2 points, got 1";
         "Reference::new" WrongLength: Reference::new(0.1, HALVES.to_vec(), Some(vec![Matrix3::identity()])), "path rotations: expected 2, one a position, got 1";
         "Reference::new" NotFinite: Reference::new(0.1, vec![[0.0; 3], [NAN; 3]], None), "path points must be finite, but x of row 1 is NaN";
-        "Reference::new" NotRigid: Reference::new(0.1, HALVES.to_vec(), Some(vec![Matrix3::identity(), twisted()])), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Reference::new" NotRigid: Reference::new(0.1, HALVES.to_vec(), Some(vec![Matrix3::identity(), twisted()])), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "Reference::with_velocities" WrongLength: reference(2).with_velocities(vec![[0.0; 3]]), "path velocities: expected 2, one a position, got 1";
         "Reference::with_velocities" NotFinite: reference(2).with_velocities(vec![[0.0; 3], [NAN; 3]]), "path velocities must be finite, but x of row 1 is NaN";
         "Rose::new" OutOfRange: Rose::new(plane(), 1.0, 0, 1.0), "k must be at least 1 (a rose without petals is a circle), got 0";
@@ -41,14 +41,14 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "Samples::from_positions" OutOfRange: Samples::from_positions(vec![1.0, 2.0], HALVES.to_vec()), "path times: row 0 must be 0, where the clock starts (take the first time from all), got 1";
         "Samples::from_positions" NotIncreasing: Samples::from_positions(vec![0.0, 0.0], HALVES.to_vec()), "path times must increase, but row 1 has 0 after 0";
         "Path::with_orientation" NotFinite: Path::new(Circle::new(plane(), 1.0, 1.0).unwrap()).with_orientation(Matrix3::identity() * NAN), "path orientation must be finite, but entry (0, 0) is NaN";
-        "Path::with_orientation" NotRigid: Path::new(Circle::new(plane(), 1.0, 1.0).unwrap()).with_orientation(twisted()), "path orientation is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Path::with_orientation" NotRigid: Path::new(Circle::new(plane(), 1.0, 1.0).unwrap()).with_orientation(twisted()), "path orientation is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "Path::sample" OutOfRange: Path::new(Circle::new(plane(), 1.0, 1.0).unwrap()).sample(0.0), "dt must be positive and finite, got 0";
         "Path::from_bytes" Corrupt: Path::from_bytes(&[1, 2, 3]), "cannot restore path: it was stored in format 1 by an earlier version of beetle-ik, and this one reads format 3: make it anew";
         "Plan::from_bytes" Corrupt: Plan::from_bytes(&[1, 2, 3]), "cannot restore plan: it was stored in format 1 by an earlier version of beetle-ik, and this one reads format 3: make it anew";
         "Waypoints::new" InvalidPath: Waypoints::new(vec![[0.0; 3]], None), "path: it needs at least 2 points, got 1";
         "Waypoints::new" WrongLength: Waypoints::new(HALVES.to_vec(), Some(vec![Matrix3::identity()])), "path rotations: expected 2, one a position, got 1";
         "Waypoints::new" NotFinite: Waypoints::new(vec![[0.0; 3], [NAN; 3]], None), "path points must be finite, but x of row 1 is NaN";
-        "Waypoints::new" NotRigid: Waypoints::new(HALVES.to_vec(), Some(vec![Matrix3::identity(), twisted()])), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Waypoints::new" NotRigid: Waypoints::new(HALVES.to_vec(), Some(vec![Matrix3::identity(), twisted()])), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "TipPath::through" InvalidPath: TipPath::through(&Waypoints::new(vec![[0.0; 3]; 2], None).unwrap()), "path: point 1 repeats point 0: leave it out";
         "TipPath::sampled" InvalidPath: TipPath::sampled(vec![0.0, 1.0], vec![[0.0; 3]; 2], None), "path: it must lead somewhere, but it is 0 m long";
         "JointPath::polyline" WrongLength: polyline(&[0.0, 0.0, 1.0]), "waypoints: expected rows of 2 joints, got 3";
@@ -97,8 +97,8 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "Path::to_bytes" InvalidPath: Path::new(Own).to_bytes(), "path: a curve of your own cannot be stored; store its samples";
         "Path::from_bytes" OutOfRange: spoiled_circle(1.7, -1.0), "duration of the stored path must be positive and finite, got -1";
         "Path::from_bytes" NotFinite: spoiled_circle(0.1234, NAN), "stored path must be finite, but x at t = 0 s is NaN";
-        "Path::from_bytes" NotRigid: spoiled_circle(0.5_f64.sin(), 2.0), "orientation of the stored path is not a rigid transform: R'R differs from the identity by 3.770e0";
-        "Samples::from_poses" NotRigid: Samples::from_poses(vec![0.0, 1.0], &[Pose::identity(), scaled()]), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Path::from_bytes" NotRigid: spoiled_circle(0.5_f64.sin(), 2.0), "orientation of the stored path is not a rigid transform: R'R differs from the identity by 3.770e0; the nearest rotation is U V' of its singular value decomposition U S V'";
+        "Samples::from_poses" NotRigid: Samples::from_poses(vec![0.0, 1.0], &[Pose::identity(), scaled()]), "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "checked" NotFinite: pose::checked("tool", lost()), "tool must be finite, but entry (0, 3) is NaN";
     }
 }

@@ -91,10 +91,10 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "covered_mesh" Unreadable: covered_mesh(FilePath::new("none.stl"), [1.0; 3], 4), "cannot read 'none.stl': No such file or directory (os error 2)";
         "Shape::cuboid" NotFinite: Shape::cuboid([NAN; 3], [1.0; 3], None), "center must be finite, but coordinate x is NaN";
         "Shape::cuboid" OutOfRange: Shape::cuboid([0.0; 3], [0.0; 3], None), "size of the box along x must be positive and finite, got 0";
-        "Shape::cuboid" NotRigid: Shape::cuboid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Shape::cuboid" NotRigid: Shape::cuboid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "Shape::ellipsoid" NotFinite: Shape::ellipsoid([NAN; 3], [1.0; 3], None), "center must be finite, but coordinate x is NaN";
         "Shape::ellipsoid" OutOfRange: Shape::ellipsoid([0.0; 3], [0.0; 3], None), "semi-axes of the ellipsoid along x must be positive and finite, got 0";
-        "Shape::ellipsoid" NotRigid: Shape::ellipsoid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0";
+        "Shape::ellipsoid" NotRigid: Shape::ellipsoid([0.0; 3], [1.0; 3], Some(twisted())), "rotation is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
         "Shape::ellipse" NotFinite: Shape::ellipse([NAN; 2], [1.0; 2], 0.0), "center must be finite, but coordinate x is NaN";
         "Shape::ellipse" OutOfRange: Shape::ellipse([0.0; 2], [0.0; 2], 0.0), "semi-axes of the ellipse along x must be positive and finite, got 0";
         "Shape::grid" NotFinite: Shape::grid([NAN; 3], 0.1, [1; 3], vec![true]), "origin must be finite, but coordinate x is NaN";
