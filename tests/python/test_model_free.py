@@ -75,7 +75,9 @@ def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
 
     lost = track(late(), SHORT, dt=0.05, limits=LIMITS, position_tolerance=1e-4)
     assert not lost.success
-    assert "the sensor is 1 measurement late; give the controller sensor_delay=1. Over" in lost.message, lost.message
+    assert "the sensor is 1 measurement late; give the controller a sensor_delay of 1. Over" in lost.message, (
+        lost.message
+    )
     controller = bik.BroydenBAS(sensor_delay=1)
     followed = track(late(), SHORT, dt=0.05, limits=LIMITS, position_tolerance=1e-4, controller=controller)
     assert followed.success, followed.message

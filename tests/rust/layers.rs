@@ -1,19 +1,20 @@
 //! Layers of the core: a file uses its own module and lower ones, files do not import one another in circles, and a name is
 //! declared once.
 
-mod imports;
+pub mod imports;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["message", "error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Modules that each module may use, besides itself and those of [`FOUNDATION`]. Solvers do not depend on robots, nor robots on
 /// solvers.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("error", &[]),
+    ("message", &[]),
+    ("error", &["message"]),
     ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
@@ -266,7 +267,8 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
         .into_iter()
         .filter(|(_, used)| {
             let used = used.as_str();
-            let foundation = FOUNDATION.contains(&used) && (used == "error" || !FOUNDATION.contains(&module.as_str()));
+            let foundation = FOUNDATION.contains(&used)
+                && (["message", "error"].contains(&used) || !FOUNDATION.contains(&module.as_str()));
             used != module && !foundation && !allowed.contains(&used)
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))

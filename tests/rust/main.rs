@@ -4,7 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on should say so")]
 
 mod common;
+mod interface;
 mod layers;
+mod plain_words;
+mod promised_errors;
 
 mod along_path {
     mod clear;
@@ -34,7 +37,7 @@ mod ik {
     mod round_poses;
     mod self_motion;
     mod solve;
-    mod tips;
+    pub mod tips;
 }
 mod kinematics {
     mod chains;

@@ -46,7 +46,7 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
+//! | 0 | [`message`], [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form`, `bodies` |
 //! | 3 | [`robot`] |
@@ -81,6 +81,7 @@ pub mod load;
 pub mod manipulability;
 pub mod map;
 pub mod math;
+pub mod message;
 pub mod minimize;
 pub mod motion;
 pub mod objective;

@@ -111,7 +111,7 @@ impl PySolution {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Solution {}: {}>", self.core.status.name(), self.whole().message())
+        format!("<Solution {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -52,7 +52,8 @@ pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted
 }
 
 /// Logs a long call at level INFO under "beetle_ik".
-pub fn log(py: Python<'_>, message: String) -> PyResult<()> {
+pub fn log(py: Python<'_>, function: &str, message: &str) -> PyResult<()> {
+    let message = format!("{function}: {message}");
     call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
 }
 

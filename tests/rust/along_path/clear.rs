@@ -229,7 +229,7 @@ fn what_is_in_the_way_is_named() {
         plan.message()
     };
     let on_path = tip_path.positions()[12];
-    let advice = "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
+    let advice = "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
     let hand = said(vec![Shape::sphere(on_path, 0.04).unwrap()], 0.0);
     assert!(hand.starts_with("no clear plan for ") && hand.ends_with(advice), "{hand}");
     assert!(
@@ -268,12 +268,12 @@ fn mistakes_along_a_path_are_named() {
     let lonely = Surroundings { margin: Some(0.1), ..Surroundings::default() };
     assert_eq!(
         refused(&robot, &tip_path, &AlongPathOptions { surroundings: lonely, ..options(&robot, vec![]) }),
-        "margin= needs obstacles= (a list, which may be empty) or self_collision=True"
+        "a margin needs obstacles (perhaps none) or self-collision"
     );
     let by_swarm = AlongPathOptions { method: Tpbso::default().into(), ..options(&robot, vec![]) };
     assert_eq!(
         refused(&robot, &tip_path, &by_swarm),
-        "along a path task=, obstacles= and self_collision= need method=\"timed\""
+        "along a path a task, obstacles and self-collision need the method 'timed'"
     );
 }
 

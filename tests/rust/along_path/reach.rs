@@ -42,7 +42,7 @@ fn options(robot: &Robot) -> AlongPathOptions {
 
 fn planned(robot: &Robot, tip_path: &TipPath, options: &AlongPathOptions) -> Result<Plan, String> {
     let plan = plan_along_path(robot, tip_path, options, &mut Unattended).map_err(|error| error.to_string())?;
-    if plan.status == Status::Solved { Ok(plan) } else { Err(plan.message()) }
+    if plan.status == Status::Solved { Ok(plan) } else { Err(plan.message().to_string()) }
 }
 
 fn followed(name: &str, first: &[f64], last: &[f64]) {

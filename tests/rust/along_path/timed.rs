@@ -177,7 +177,7 @@ fn along_a_path_tpbso_has_one_elbow_and_a_search_of_its_own() {
     let solver = Some(AnySolver::Single(Pso::default().into()));
     assert_eq!(
         refused(AlongPathOptions { method: Tpbso::default().into(), solver, ..Default::default() }),
-        "solver is the search of method=\"timed\": give method=TPBSO(solver=...) its own"
+        "solver is the search of the method 'timed': give the method 'tpbso' its own"
     );
 }
 

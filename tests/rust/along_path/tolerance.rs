@@ -220,7 +220,7 @@ fn what_cannot_be_asked_for_is_named() {
     let within = Task::from(TaskKind::Pose).within(region).unwrap();
     assert_eq!(
         refused(&robot, &poses, &options(&robot, within)),
-        "along a path the task takes no region: weights= and tolerance= say how far the tip may be off"
+        "along a path the task takes no region: its weights and tolerance say how far the tip may be off"
     );
     let narrow = task(TaskKind::Position, &[0.01, 1e-4, 0.01]);
     let coarse = AlongPathOptions { accuracy: Some(1e-3), ..options(&robot, narrow) };

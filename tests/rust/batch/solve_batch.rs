@@ -270,8 +270,8 @@ fn wrong_rows_are_skipped_on_demand_and_nothing_else_is_lost() {
                 assert_eq!(found, expected[i]);
             }
         }
-        assert_eq!(batch.message(), "3 of 6 solved; 3 INVALID: use on_invalid=\"raise\" to see what is wrong");
-        let says = "not solved: use on_invalid=\"raise\" to see what is wrong";
+        assert_eq!(batch.message(), "3 of 6 solved; 3 INVALID: make invalid items an error to see what is wrong");
+        let says = "not solved: make invalid items an error to see what is wrong";
         assert_eq!(batch.solution(3).unwrap().message(), says);
     }
 }

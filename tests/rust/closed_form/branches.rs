@@ -181,7 +181,8 @@ fn whole_turns_inside_the_limits_on_request() {
     let wide = robot.with_limits(|_, joint| (joint.lower, joint.upper) = (-60.0, 60.0)).unwrap();
     let says = message(solve_all(&wide, &target, &AllOptions { turns: true, ..from(&q) }, &mut Unattended));
     assert!(
-        says.contains("turns=True makes ") && says.ends_with("at most 10000 are allowed: narrow the limits"),
+        says.contains("taking all whole turns makes ")
+            && says.ends_with("at most 10000 are allowed: narrow the limits"),
         "{says}"
     );
 }

@@ -151,12 +151,12 @@ fn a_wrong_end_is_named_by_its_index() {
     let published = PointToPointOptions { method: Tpbso::default().into(), ..options.clone() };
     assert_eq!(
         refused(&robot, &[at(0.1), at(0.2)], &published),
-        "several ends are taken by method=\"minmax\": method=\"tpbso\" plans to one"
+        "several ends are taken by the method 'minmax': the method 'tpbso' plans to one"
     );
     let published = PointToPointOptions { task: Some(TaskKind::Position.into()), ..published };
     assert_eq!(
         refused(&robot, &[at(0.1)], &published),
-        "task is kept by method=\"minmax\": method=\"tpbso\" reaches whole targets"
+        "task is kept by the method 'minmax': the method 'tpbso' reaches whole targets"
     );
     let pointing = PointToPointOptions { task: Some(TaskKind::Pointing { axis: [0.0, 0.0, 1.0] }.into()), ..options };
     assert_eq!(refused(&robot, &[at(0.1)], &pointing), "task Pointing needs a target pose (4, 4), got a position (3,)");

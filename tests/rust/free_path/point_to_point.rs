@@ -337,8 +337,7 @@ fn mistakes_are_named() {
         ..Default::default()
     };
     let ball = Shape::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
-    let advice = "load its URDF with collision=\"fit\", or give it capsules with with_capsules(radius=...) along its links or \
-                  with_capsules([(link, a, b, radius), ...])";
+    let advice = "load its URDF with shapes fitted to its meshes, or give it capsules";
     let bare = Robot::named("panda").unwrap();
     let rest = Endpoint::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(
@@ -347,7 +346,7 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
-        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere); free_start=True moves out first"
+        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere); free_start moves out first"
     );
     assert_eq!(
         refused(&thin, &there, &here, with(vec![ball.clone()], &thin)),
@@ -360,7 +359,7 @@ fn mistakes_are_named() {
     assert_eq!(
         refused(&arm, &here, &there, PointToPointOptions::default()),
         "joint 'joint_1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
-         limits=Limits(velocity=...)"
+         a velocity limit"
     );
     assert_eq!(
         Shape::sphere([0.0; 3], 0.0).unwrap_err().to_string(),

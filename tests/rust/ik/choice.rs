@@ -327,11 +327,11 @@ fn options_that_do_not_go_together_are_told() {
     let target = pose_at(&robot, &[0.1; 7]);
     let says = |options: SolveOptions| message(solve(&robot, &target, &options, &mut Unattended));
     let nearest = SolveOptions { prefer: Prefer::Nearest, ..SolveOptions::default() };
-    assert_eq!(says(nearest), "prefer=\"nearest\" needs a start to measure distances from");
+    assert_eq!(says(nearest), "the preference 'nearest' needs a start to measure distances from");
     let goals = vec![Goal::Centring { weight: 1.0 }];
     assert_eq!(
         says(SolveOptions { goals, ..near(&[0.0; 7]) }),
-        "prefer=\"nearest\" takes no goals: the distance to the start is its goal"
+        "the preference 'nearest' takes no goals: the distance to the start is its goal"
     );
     let goals = vec![Goal::Centring { weight: 0.0 }];
     assert_eq!(

@@ -336,15 +336,15 @@ fn wrong_surroundings_are_refused() {
     assert_eq!(error(&robot, given(Some(-0.1))), "margin must be zero or more and finite, got -0.1");
     assert_eq!(
         error(&robot, Surroundings { margin: Some(0.1), ..Surroundings::default() }),
-        "margin= needs obstacles= (a list, which may be empty) or self_collision=True"
+        "a margin needs obstacles (perhaps none) or self-collision"
     );
     let bare = Robot::named("panda").unwrap();
-    assert!(error(&bare, given(None)).contains("with_capsules(radius=...)"));
+    assert!(error(&bare, given(None)).contains("or give it capsules"));
     let goals = vec![Goal::Clearance { up_to: 0.1, weight: 1.0 }];
     let options = SolveOptions { goals, ..SolveOptions::default() };
     assert_eq!(
         solve(&robot, &target, &options, &mut Unattended).unwrap_err().to_string(),
-        "the goal Clearance is for calls with obstacles= (a list, which may be empty) or self_collision=True"
+        "the goal Clearance is for calls with obstacles (perhaps none) or self-collision"
     );
 }
 

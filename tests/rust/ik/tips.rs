@@ -200,8 +200,8 @@ fn goals_act_on_all_joints_and_manipulability_names_its_tip() {
     let better = solve_tips(&PAIR, &both(&q), &of(Some("right_tool")), &mut Unattended).unwrap();
     assert_eq!(better.status, Status::Solved);
     let error = solve_tips(&PAIR, &both(&q), &of(None), &mut Unattended).unwrap_err().to_string();
-    let expected = "the goal Manipulability without tip= takes robots with one tip; this one has left_tool and right_tool: \
-                    load the robot with one of them as tip=";
+    let expected = "the goal Manipulability without its tip takes robots with one tip; this one has left_tool and right_tool: \
+                    load the robot with one of them as its tip";
     assert_eq!(error, expected);
     let error = solve_tips(&PAIR, &both(&q), &of(Some("rigth_tool")), &mut Unattended).unwrap_err().to_string();
     assert_eq!(

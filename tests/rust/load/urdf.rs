@@ -451,8 +451,8 @@ fn collision_shapes_become_capsules_that_hold_them() {
         message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
     );
     assert!(message.ends_with(
-        ": load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
-         robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+        ": load its URDF with shapes fitted to its meshes, which covers meshes too; giving it the capsules that it has keeps the \
+         shapes that were read and leaves these out; giving it more of them covers them too"
     ));
     let given = robot.with_capsules(vec![cylinder.clone()]).unwrap();
     assert!(
@@ -672,7 +672,7 @@ fn packages_are_found_in_given_folders() {
     assert!(fitted(&beside, vec![]).is_ok());
     let message = fitted(&file, vec![]).unwrap_err().to_string();
     let says = "URDF: the mesh 'package://arms/meshes/cube.stl' of link 'hand' is not found: give package_dirs, or \
-                collision=\"primitives\" to do without; looked for ";
+                primitive shapes alone to do without; looked for ";
     assert!(message.starts_with(says), "{message}");
     // Nobody needs it otherwise.
     let robot = Robot::from_urdf(&file, None, None).unwrap();

@@ -185,7 +185,7 @@ fn a_layout_that_makes_no_map_is_refused() {
     assert_eq!(
         said(&planar, &LAYOUT, &plain),
         "the tip of robot 'planar2' moves in 2 directions, and a map of task Pose needs 3, as it reaches hardly any \
-         voxel's centre otherwise: give task=tasks.Position()"
+         voxel's centre otherwise: give a position task"
     );
     assert!(MapGrid::new(&planar, &LAYOUT, &task(TaskKind::Position)).is_ok());
 }

@@ -179,7 +179,7 @@ fn errors_name_the_joint_and_the_bound() {
     assert_eq!(
         message(&two(&[0.0; 2]), &two(&[1.0, 0.0]), &none.unwrap()),
         "joint '1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
-         limits=Limits(velocity=...)"
+         a velocity limit"
     );
     let still = limits(&[(Field::Velocity, vec![1.0, 0.0])]);
     assert_eq!(

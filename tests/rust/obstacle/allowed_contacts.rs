@@ -135,7 +135,7 @@ fn a_robot_stands_on_a_floor_that_its_base_may_touch() {
         let message = said(touch);
         let expected = format!(
             "but link '{link}' is {depth} m inside obstacle 0 (HalfSpace) whatever the arm does; if the robot stands \
-             there, give the obstacle touch=[\"{link}\"]: "
+             there, put '{link}' into the obstacle's touch: "
         );
         assert!(message.contains(&expected), "{message}");
     }
@@ -145,7 +145,7 @@ fn a_robot_stands_on_a_floor_that_its_base_may_touch() {
     // A floor above the hand stays in the way of the other links.
     let sunk = on_floor(&robot, 0.8, &["link_1", "base"]).unwrap();
     assert_eq!(sunk.status, Status::InCollision);
-    assert!(!sunk.message().contains("touch="), "{}", sunk.message());
+    assert!(!sunk.message().contains("touch"), "{}", sunk.message());
 }
 
 #[test]
@@ -163,8 +163,8 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
     };
     assert_eq!(
         plan(&["link_1"]).unwrap_err().to_string(),
-        "start: link 'base' is 0.08000 m inside obstacle 0 (HalfSpace); if the robot stands there, give the obstacle \
-         touch=[\"base\"]"
+        "start: link 'base' is 0.08000 m inside obstacle 0 (HalfSpace); if the robot stands there, put 'base' \
+         into the obstacle's touch"
     );
     assert!(plan(&["base", "link_1"]).unwrap().violations.is_empty());
 }

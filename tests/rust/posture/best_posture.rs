@@ -201,7 +201,7 @@ fn budgets_are_exact() {
 fn the_best_needs_to_know_for_what() {
     let options = SolveOptions { prefer: Prefer::Best, ..SolveOptions::default() };
     let error = message(solve(&robot("iiwa14"), &Target::Position([0.4, 0.0, 0.5]), &options, &mut Unattended));
-    assert_eq!(error, "prefer=\"best\" needs goals to compare solutions by");
+    assert_eq!(error, "the preference 'best' needs goals to compare solutions by");
 }
 
 #[test]

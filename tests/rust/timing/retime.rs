@@ -242,19 +242,19 @@ fn errors_name_the_reason_and_the_remedy() {
         plan_point_to_point(&robot, &from, &[to], &options, &mut Unattended).unwrap_err().to_string()
     };
     let fields = [(Field::Velocity, 1.0), (Field::Acceleration, 2.0)];
-    assert_eq!(start(vec![0.1], &fields, None), "start_qd: expected 2 joints, got 1");
+    assert_eq!(start(vec![0.1], &fields, None), "start velocity: expected 2 joints, got 1");
     assert_eq!(
         start(vec![0.1, 0.0], &fields[..1], None),
-        "infeasible: without an acceleration or jerk limit the velocity of joint 'joint_1' may jump, and start_qd means \
-         nothing: give limits=Limits(acceleration=...)"
+        "infeasible: without an acceleration or jerk limit the velocity of joint 'joint_1' may jump, and start \
+         velocity means nothing: give an acceleration limit"
     );
     assert_eq!(
         start(vec![0.1, 1.5], &fields, None),
-        "start_qd of joint 'joint_2' must be at most its velocity limit 1, got 1.5"
+        "start velocity of joint 'joint_2' must be at most its velocity limit 1, got 1.5"
     );
     assert_eq!(
         start(vec![0.1, 0.5], &fields, Some(Tpbso::default())),
-        "start_qd is kept by method=\"minmax\": method=\"tpbso\" begins at rest"
+        "start velocity is kept by the method 'minmax': the method 'tpbso' begins at rest"
     );
 }
 

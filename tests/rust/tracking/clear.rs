@@ -314,7 +314,7 @@ fn limits_that_vary_over_time_are_refused() {
     let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Sinusoid(wave)]).unwrap();
     let options = TrackOptions { limits: Some(limits), surroundings: surroundings(vec![]), ..TrackOptions::default() };
     let error = Session::new(&robot, &START, 0.01, &options).unwrap_err().to_string();
-    assert!(error.contains("tracking among obstacles") && error.contains("leave obstacles= out"), "{error}");
+    assert!(error.contains("tracking among obstacles") && error.contains("leave the obstacles out"), "{error}");
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn an_eased_track_meets_its_path_and_stays_on_it() {
 fn without_ease_the_message_says_so() {
     let record = tracked(false, limited).unwrap();
     assert_eq!(record.status, Status::Lost);
-    let advice = "the path moves at its start, where the arm is at rest: ease=True (--ease) begins with an approach \
+    let advice = "the path moves at its start, where the arm is at rest: an eased start begins with an approach \
                   within the limits";
     assert!(record.message().ends_with(advice), "{}", record.message());
 }
@@ -69,8 +69,7 @@ fn a_path_that_no_motion_meets_is_a_status() {
 #[test]
 fn ease_without_acceleration_limits_is_an_error() {
     let error = tracked(true, |limits| limits).unwrap_err().to_string();
-    let expected = "ease=True eases the start under acceleration or jerk limits, and there are none: give \
-                    limits=Limits(acceleration=...)";
+    let expected = "an eased start is an approach under acceleration or jerk limits, and there are none: give an acceleration limit";
     assert_eq!(error, expected);
 }
 

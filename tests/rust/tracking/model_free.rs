@@ -211,8 +211,7 @@ fn an_undeclared_delay_is_named() {
         }
     }
     let record = on_circle(&mut late_plant(2), &options(0));
-    let advice =
-        ": the sensor is 2 measurements late; give the controller sensor_delay=2. Over the second half the error was ";
+    let advice = ": the sensor is 2 measurements late; give the controller a sensor_delay of 2. Over the second half the error was ";
     assert!(record.message().contains(advice), "{}", record.message());
 }
 

@@ -288,7 +288,7 @@ fn messages_say_how_it_went() {
     let advice = "move or turn the target into reach, or move the base";
     let why = "the path is out of reach by at least 4.055 m at t = 1 s";
     let message = format!("never came within 1.000e-6 m (nearest 4.000 m): {why}: {advice}");
-    assert_eq!((record.message(), record.status), (message, Status::Capped));
+    assert_eq!((record.message().to_string(), record.status), (message, Status::Capped));
     let rising = Path::new(Polyline::new(&[[3.0, 0.0, 0.0], [3.0, 1.0, 0.5]], 1.0).unwrap()).sample(DT).unwrap();
     let record = track(&robot("planar5"), &rising, None, &options, &mut Unattended).unwrap();
     let why = "the path is out of reach by at least 0.5000 m, 0.5000 m off the plane that the tip moves in at t = 1 s";

@@ -8,6 +8,7 @@ use super::out_of_contact::{LEEWAY, way_out};
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
 use crate::free_path;
+use crate::message::Setting;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
     EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, configuration_at, joined,
@@ -26,7 +27,7 @@ const LINES_OF_EACH: usize = 2;
 /// Lines that take longer than the quickest by this factor are left out.
 const SLOWEST: f64 = 2.0;
 
-const METHOD: &str = "method=\"minmax\"";
+const METHOD: Setting = Setting::Method("minmax");
 
 /// Plans with the pieces that the options ask for.
 pub(crate) fn composed(

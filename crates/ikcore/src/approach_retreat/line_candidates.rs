@@ -25,8 +25,8 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// The argument.
-    pub(super) fn argument(self) -> &'static str {
+    /// The name of the line.
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Retreat => "retreat",
             Self::Approach => "approach",
@@ -87,8 +87,8 @@ impl LineSearch<'_> {
         }
         if found.is_empty() {
             let Some((_, why)) = hindrance else { return Err(Error::Interrupted) };
-            let (what, argument, distance) = (name.of_target(), self.side.argument(), number(self.line.distance));
-            let problem = format!("no straight line for {argument}={distance}: {why}");
+            let (what, side, distance) = (name.of_target(), self.side.name(), number(self.line.distance));
+            let problem = format!("no straight {side} of {distance} m: {why}").into();
             return Err(Error::Unreachable { what, problem });
         }
         Ok(found)
@@ -117,7 +117,7 @@ impl LineSearch<'_> {
         let set = solve_all(robot, target, &all, monitor)?;
         self.evaluations += set.evaluations;
         if set.solutions.is_empty() {
-            return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set) });
+            return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set).into() });
         }
         Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())
     }
@@ -161,7 +161,7 @@ fn why_none(set: &SolutionSet) -> String {
         (Some(obstruction), _) => obstruction.to_string(),
         (None, Some(miss)) if miss.status == Status::InCollision => miss.obstruction.clone(),
         (None, Some(miss)) => format!("the nearest configuration found stays {} away", miss.error),
-        (None, None) => set.message(),
+        (None, None) => set.message().to_string(),
     }
 }
 

@@ -5,13 +5,14 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::without_obstacles;
 use crate::error::{Error, Result};
 use crate::free_path::{among_obstacles, moving_start};
+use crate::message::Setting;
 use crate::obstacle::ClearSpace;
 use crate::plan::{Deadline, Endpoint, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::timing::MotionLimits;
 
-const METHOD: &str = "method=\"minmax\"";
+const METHOD: Setting = Setting::Method("minmax");
 
 /// Plans from `start` to one of `ends` in `space`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
 pub(crate) fn point_to_point(
@@ -50,6 +51,6 @@ pub(crate) fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
         |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {
         None => Ok(()),
-        Some(j) => Err(Error::NoPace { joint: limits.joint_name(j).into() }),
+        Some(j) => Err(Error::no_pace(limits.joint_name(j))),
     }
 }

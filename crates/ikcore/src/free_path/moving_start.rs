@@ -5,6 +5,7 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
+use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{Endpoint, Plan, PointToPointOptions, certify, joined, least_clearance};
@@ -39,7 +40,11 @@ pub(super) fn begin(
 ) -> Result<Beginning> {
     let Endpoint::Configuration(q) = search.start else {
         return Err(Error::Contradiction {
-            problem: "start_qd needs the configuration of the start: give start_q".into(),
+            problem: message![
+                Setting::StartVelocity,
+                " needs the configuration of the start: give ",
+                Setting::StartConfiguration
+            ],
         });
     };
     check(search, velocity)?;
@@ -72,7 +77,11 @@ pub(super) fn begin(
     if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
     }
-    let problem = "at start_qd the arm cannot stop before it comes nearer to an obstacle than the margin".into();
+    let problem = message![
+        "at ",
+        Setting::StartVelocity,
+        " the arm cannot stop before it comes nearer to an obstacle than the margin"
+    ];
     Err(Error::Infeasible { problem })
 }
 
@@ -81,24 +90,28 @@ fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
     let limits = search.limits;
     if velocity.len() != limits.dof() {
         let expected = format!("{} joints", limits.dof());
-        return Err(Error::WrongLength { what: "start_qd".into(), expected, got: velocity.len() });
+        return Err(Error::WrongLength { what: Setting::StartVelocity.into(), expected, got: velocity.len() });
     }
-    require_finite("start_qd", velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
+    require_finite(Setting::StartVelocity, velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
     let jumps = |j: &usize| limits.acceleration[*j].is_infinite() && limits.jerk[*j].is_infinite();
     if let Some(j) = (0..limits.dof()).find(jumps) {
         return Err(Error::Infeasible {
-            problem: format!(
-                "without an acceleration or jerk limit the velocity of joint '{}' may jump, and start_qd means nothing: \
-                 give limits=Limits(acceleration=...)",
-                limits.joint_name(j)
-            ),
+            problem: message![
+                format!(
+                    "without an acceleration or jerk limit the velocity of joint '{}' may jump, and ",
+                    limits.joint_name(j)
+                ),
+                Setting::StartVelocity,
+                " means nothing: give ",
+                Setting::Limit("acceleration"),
+            ],
         });
     }
     match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j] * (1.0 + ROUNDING)) {
         None => Ok(()),
         Some(j) => {
-            let what = format!("start_qd of joint '{}'", limits.joint_name(j));
-            Err(Error::out_of_range(what, &format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
+            let what = message![Setting::StartVelocity, format!(" of joint '{}'", limits.joint_name(j))];
+            Err(Error::out_of_range(what, format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
         }
     }
 }

@@ -209,7 +209,7 @@ impl<'a> PairSearch<'a> {
             Status::Solved => Ok(Some(solution.q)),
             _ if attempt == 0 => {
                 let problem = format!("the nearest configuration found stays {} away", solution.error);
-                Err(Error::Unreachable { what: name.of_target(), problem })
+                Err(Error::Unreachable { what: name.of_target(), problem: problem.into() })
             }
             _ => Ok(None),
         }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::message::{Message, message};
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Clearance, Surroundings, clear_in_words};
 use crate::robot::Robot;
@@ -72,15 +73,17 @@ impl Solution {
     }
 
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let Self { error, obstruction, status, .. } = self;
         if error.position.is_nan() && error.rotation.is_nan() {
-            return format!("not solved: {}", status.advice());
+            return message!["not solved: ", status.advice()];
         }
         let ended = match status {
-            Status::Solved => return format!("solved to {error}{}", self.kept_clear()),
-            Status::InCollision => return format!("reached to {error}, but {obstruction}: {}", status.advice()),
-            Status::Improved => return format!("below the requested value, {error} away"),
+            Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
+            Status::InCollision => {
+                return message![format!("reached to {error}, but {obstruction}: "), status.advice()];
+            }
+            Status::Improved => return format!("below the requested value, {error} away").into(),
             Status::OutOfReach => "as near as possible,",
             Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
@@ -91,7 +94,7 @@ impl Solution {
             _ => "stopped,",
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
-        format!("{ended} {error} away{why}: {}", status.advice())
+        message![format!("{ended} {error} away{why}: "), status.advice()]
     }
 
     /// Clearance as the end of a sentence; empty if nothing was checked.

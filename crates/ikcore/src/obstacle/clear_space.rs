@@ -7,6 +7,7 @@ use super::obstacles::Obstacles;
 use super::scene::{Scene, SceneRobot};
 use super::surroundings::Surroundings;
 use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::robot::Robot;
 
 /// Free configurations of a scene: those at which everything keeps the margin. Callers check configurations: one finite entry per
@@ -35,7 +36,7 @@ impl Surroundings {
     pub fn clear_space<'a>(&self, robot: impl Into<SceneRobot<'a>>) -> Result<Option<ClearSpace<'a>>> {
         let margin = self.kept_margin()?;
         if !self.is_given() {
-            let problem = "margin= needs obstacles= (a list, which may be empty) or self_collision=True".into();
+            let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
             return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
         }
         let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;

@@ -60,7 +60,7 @@ impl Contact {
 
     /// Advice to allow the contact, where the robot stands on the other body.
     pub(crate) fn remedy(&self) -> String {
-        format!("if the robot stands there, give the obstacle touch=[\"{}\"]", self.link)
+        format!("if the robot stands there, put '{}' into the obstacle's touch", self.link)
     }
 }
 

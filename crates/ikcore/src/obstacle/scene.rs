@@ -13,6 +13,7 @@ use super::obstacles::Obstacles;
 use crate::bodies::{BodyModel, BodyPair, BodyPoses, CarriedBody};
 use crate::error::{Error, Result};
 use crate::math::{Columns, Frame};
+use crate::message::{Setting, message};
 use crate::robot::{Joint, Robot};
 use crate::shape::{LineSegment, PosedBody};
 use crate::wording::listed;
@@ -389,14 +390,17 @@ fn no_capsules(robot: &Robot) -> Error {
         [] => "has no capsules, so that nothing is known of the room it takes up".into(),
         _ => format!("has collision shapes that cannot be read ({})", listed(unread.iter().map(String::as_str))),
     };
-    let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
     let remedy = match robot.capsules() {
-        [] => format!(
-            "load its URDF with collision=\"fit\", or give it capsules with {given}"
-        ),
-        _ => "load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
-              robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
-            .into(),
+        [] => message!["load its URDF with ", Setting::Fitted, ", or ", Setting::GiveCapsules],
+        _ => message![
+            "load its URDF with ",
+            Setting::Fitted,
+            ", which covers meshes too; ",
+            Setting::CapsulesAlone,
+            " keeps the shapes that were read and leaves these out; ",
+            Setting::MoreCapsules,
+            " covers them too",
+        ],
     };
     Error::NoCapsules { robot: robot.name().into(), problem, remedy }
 }

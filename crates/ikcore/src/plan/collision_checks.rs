@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::planar_arm::PlanarArm;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
+use crate::message::Message;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Contact, JointMotion, Surroundings, TooNear};
 use crate::robot::Robot;
 use crate::timing::Violation;
@@ -46,9 +47,9 @@ pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) ->
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));
             let remedy = if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) {
-                format!("; {}", contact.remedy())
+                format!("; {}", contact.remedy()).into()
             } else {
-                String::new()
+                Message::default()
             };
             Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
         }

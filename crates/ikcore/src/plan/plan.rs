@@ -8,6 +8,7 @@ use super::collision_checks::least_clearance;
 use super::cost::Cost;
 use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
+use crate::message::{Message, Setting, message};
 use crate::obstacle::{Clearance, ClearanceSweep, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
@@ -92,7 +93,7 @@ pub struct Improvement {
 
 /// What to try where a path leads into collision.
 const ADVICE_ALONG_PATH: &str =
-    "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
+    "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
 
 /// Number of violations that a message lists.
 const NAMED_IN_MESSAGE: usize = 3;
@@ -163,10 +164,10 @@ impl Plan {
     }
 
     /// Returns a sentence: what happened, and what to try.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
-            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH } else { self.advice() };
-            return format!("no clear plan for {obstruction}; {advice}");
+            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
+            return message![format!("no clear plan for {obstruction}; "), advice];
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
@@ -175,15 +176,15 @@ impl Plan {
                 self.clearance_in_words(),
                 self.freed_in_words(),
                 self.peak_in_words()
-            ),
+            )
+            .into(),
             Status::Interrupted if self.violations.is_empty() => {
-                format!("stopped with {cost}: {}", self.status.advice())
+                message![format!("stopped with {cost}: "), self.status.advice()]
             }
-            _ => format!(
-                "no plan keeps everything; the least violating one breaks: {}; {}",
-                self.broken(),
-                self.advice()
-            ),
+            _ => message![
+                format!("no plan keeps everything; the least violating one breaks: {}; ", self.broken()),
+                self.advice(),
+            ],
         }
     }
 
@@ -207,17 +208,15 @@ impl Plan {
         })
     }
 
-    fn advice(&self) -> &'static str {
-        match (self.accuracy, &self.clearance) {
-            (None, None) => "try another seed, a larger budget in stop=Stop(...) or wider limits",
-            (None, Some(_)) => {
-                "try another seed, a larger budget in stop=Stop(...), a smaller margin, ends that are clear or wider limits"
-            }
+    fn advice(&self) -> Message {
+        let more = match (self.accuracy, &self.clearance) {
+            (None, None) => " or wider limits".into(),
+            (None, Some(_)) => ", a smaller margin, ends that are clear or wider limits".into(),
             (Some(_), _) => {
-                "try another seed, a larger budget in stop=Stop(...), wider limits, a larger accuracy, or for \
-                 method=\"tpbso\" denser points"
+                message![", wider limits, a larger accuracy, or for ", Setting::Method("tpbso"), " denser points"]
             }
-        }
+        };
+        message!["try another seed, a larger ", Setting::Budget, more]
     }
 
     fn broken(&self) -> String {

@@ -4,6 +4,7 @@ use super::collision_checks::{certify, too_near};
 use super::plan::{Freed, Plan};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
+use crate::message::message;
 use crate::obstacle::{Clearance, ClearanceSweep};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
@@ -25,7 +26,7 @@ impl Plan {
         let limits_of_all = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         let limits = MotionLimits::new(robot, Some(&limits_of_all), METHOD)?;
         if !self.violations.is_empty() {
-            let problem = format!("only a plan without violations can be retimed, and this one: {}", self.message());
+            let problem = message!["only a plan without violations can be retimed, and this one: ", self.message()];
             return Err(Error::Infeasible { problem });
         }
         let trajectory = if self.path.is_empty() {
@@ -35,7 +36,7 @@ impl Plan {
         };
         let violations = limits.violations(&trajectory);
         if let Some(violation) = violations.first() {
-            let problem = format!("the path of the plan leaves the limits: {violation}");
+            let problem = format!("the path of the plan leaves the limits: {violation}").into();
             return Err(Error::Infeasible { problem });
         }
         let cost = self.objective.of(robot, &trajectory);
@@ -56,7 +57,7 @@ impl Plan {
             let violation = too_near(&near.contact, margin);
             let problem =
                 format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
-            return Err(Error::Infeasible { problem });
+            return Err(Error::Infeasible { problem: problem.into() });
         }
         if smoothed {
             // Found when it is asked for.

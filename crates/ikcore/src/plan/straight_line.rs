@@ -48,7 +48,7 @@ impl StraightLine {
     pub fn validate(&self, what: &str) -> Result<()> {
         require_positive(&format!("distance of {what}"), self.distance)?;
         let Some(direction) = &self.direction else { return Ok(()) };
-        require_finite(&format!("direction of {what}"), direction, |i| format!("entry {i}"))?;
+        require_finite(format!("direction of {what}"), direction, |i| format!("entry {i}"))?;
         if norm(direction) == 0.0 {
             return Err(Error::out_of_range(format!("the length of direction of {what}"), "positive", 0.0));
         }

@@ -3,6 +3,7 @@
 use super::several_tips::tip_ends;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
+use crate::message::{Message, Setting, message};
 use crate::obstacle::ClearSpace;
 use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions, motion_space};
 use crate::robot::Robot;
@@ -71,10 +72,13 @@ fn plan_joined(
 /// [`Error::SeveralTips`].
 fn require_joint_space(robot: &Robot, options: &PointToPointOptions) -> Result<()> {
     let cases = [
-        (options.task.is_some(), "task= of plan_point_to_point without a dict"),
-        (options.has_pieces(), "approach=, retreat= or free_start= of plan_point_to_point"),
-        (matches!(options.method, PointToPointMethod::Tpbso(_)), "method=\"tpbso\" of plan_point_to_point"),
-        (options.objective == Cost::TipTravel, "objective=\"tip_travel\" of plan_point_to_point"),
+        (options.task.is_some(), Setting::OneTask.into()),
+        (options.has_pieces(), "plan_point_to_point with approach, retreat or free_start".into()),
+        (
+            matches!(options.method, PointToPointMethod::Tpbso(_)),
+            message![Setting::Method("tpbso"), " of plan_point_to_point"],
+        ),
+        (options.objective == Cost::TipTravel, "the objective 'tip_travel' of plan_point_to_point".into()),
     ];
     cases.into_iter().filter(|(is_asked, _)| *is_asked).try_for_each(|(_, call)| robot.require_one_tip(call))
 }
@@ -102,8 +106,11 @@ pub(crate) fn check_point_to_point(
         }
     }
     if options.start_velocity.is_some() && (options.retreat.is_some() || options.free_start) {
-        let problem = "start_qd cannot be kept by a motion that begins with retreat or free_start, from rest";
-        return Err(Error::Contradiction { problem: problem.into() });
+        let problem = message![
+            Setting::StartVelocity,
+            " cannot be kept by a motion that begins with retreat or free_start, from rest"
+        ];
+        return Err(Error::Contradiction { problem });
     }
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
@@ -120,12 +127,9 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
                 && options.start_velocity.is_none()
                 && options.method == PointToPointMethod::MinMax =>
         {
-            let remedy = if options.free_start {
-                "; free_start=True found no way out on which nothing comes nearer"
-            } else {
-                "; free_start=True moves out first"
-            };
-            Error::InCollision { what, link, other, depth, remedy: remedy.into() }
+            let does =
+                if options.free_start { " found no way out on which nothing comes nearer" } else { " moves out first" };
+            Error::InCollision { what, link, other, depth, remedy: message!["; ", Setting::FreeStart, does] }
         }
         other => other,
     }
@@ -133,14 +137,17 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
 
 /// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
 fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&'a Endpoint> {
-    let refused = |what: &str, does: &str| {
-        Err(Error::Contradiction { problem: format!("{what} by method=\"minmax\": method=\"tpbso\" {does}") })
+    let refused = |what: Message, does: &str| {
+        let [other, method] = ["minmax", "tpbso"].map(Setting::Method);
+        Err(Error::Contradiction { problem: message![what, " by ", other, ": ", method, " ", does] })
     };
     match ends {
-        _ if options.start_velocity.is_some() => refused("start_qd is kept", "begins at rest"),
-        _ if options.has_pieces() => refused("approach, retreat and free_start are kept", "has no such pieces"),
-        _ if options.task.is_some() => refused("task is kept", "reaches whole targets"),
+        _ if options.start_velocity.is_some() => {
+            refused(message![Setting::StartVelocity, " is kept"], "begins at rest")
+        }
+        _ if options.has_pieces() => refused("approach, retreat and free_start are kept".into(), "has no such pieces"),
+        _ if options.task.is_some() => refused("task is kept".into(), "reaches whole targets"),
         [end] => Ok(end),
-        _ => refused("several ends are taken", "plans to one"),
+        _ => refused("several ends are taken".into(), "plans to one"),
     }
 }

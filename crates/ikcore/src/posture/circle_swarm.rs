@@ -79,7 +79,7 @@ impl CircleSwarm {
                 return Err(Error::out_of_range(what, "at least 1", 0.0));
             }
             if count > MOST {
-                return Err(Error::out_of_range(what, &format!("at most {MOST}"), count as f64));
+                return Err(Error::out_of_range(what, format!("at most {MOST}"), count as f64));
             }
         }
         for (what, value) in [("c1", self.c1), ("c2", self.c2), ("velocity_limit", self.velocity_limit)] {

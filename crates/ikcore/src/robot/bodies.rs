@@ -8,6 +8,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
+use crate::message::Setting;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -47,7 +48,7 @@ impl Robot {
         for (i, capsule) in capsules.iter().enumerate() {
             self.link_number(&capsule.link)?;
             let ends = [capsule.a, capsule.b];
-            require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
+            require_finite(format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
                 format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
@@ -64,7 +65,7 @@ impl Robot {
     /// [`Error::SeveralTips`].
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
-        self.require_one_tip("with_capsules(radius=...)")?;
+        self.require_one_tip(Setting::CapsulesAlongLinks)?;
         let chain = self.chain();
         let moving = chain.moving;
         let mut capsules = vec![];
@@ -108,7 +109,7 @@ impl Robot {
             body,
             body + 1
         );
-        Error::InvalidRobot { robot: self.name().into(), problem }
+        Error::InvalidRobot { robot: self.name().into(), problem: problem.into() }
     }
 }
 

@@ -70,7 +70,7 @@ pub(crate) fn require_supported(robot: &str, moving: usize) -> Result<()> {
         return Ok(());
     }
     let problem = format!("{moving} moving joints between base and tip; at most {MAX_DOF} are supported");
-    Err(Error::InvalidRobot { robot: robot.into(), problem })
+    Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })
 }
 
 impl Description {
@@ -103,7 +103,7 @@ impl Description {
 
     /// Checks all assumptions of the kernels.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem: problem.into() };
         let moving: usize = self.elements.iter().map(Element::stages).sum();
         if moving == 0 || self.joints.is_empty() {
             return Err(invalid("no joint moves between base and tip".into()));
@@ -173,7 +173,7 @@ impl Element {
 
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
     pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem: problem.into() };
         match self {
             Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Self::Link(_) => Ok(()),

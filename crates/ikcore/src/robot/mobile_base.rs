@@ -119,7 +119,7 @@ impl Robot {
             if values.len() != count {
                 let what = format!("{field} of a {base} base");
                 let expected = format!("{count} joints: {}", base.joint_names().join(", "));
-                return Err(Error::WrongLength { what, expected, got: values.len() });
+                return Err(Error::WrongLength { what: what.into(), expected, got: values.len() });
             }
         }
         let joints = base.joints(limits)?;

@@ -185,7 +185,7 @@ impl Robot {
         if q.len() != self.dof() {
             let expected = format!("{} joints{}", self.dof(), self.joints_among(q.len()));
             let what = format!("{what} of robot '{}'", self.name());
-            return Err(Error::WrongLength { what, expected, got: q.len() });
+            return Err(Error::WrongLength { what: what.into(), expected, got: q.len() });
         }
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }

@@ -76,7 +76,8 @@ impl OffChain {
 
     /// Checks all assumptions of [`folded`](Self::folded).
     pub fn validate(&self, description: &Description) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: description.name.clone(), problem };
+        let invalid =
+            |problem: String| Error::InvalidRobot { robot: description.name.clone(), problem: problem.into() };
         let mut names: HashSet<&str> = description.link_names().collect();
         let on_chain = names.len();
         let joints: Vec<&str> = self.all_joints(description).map(|joint| joint.name.as_str()).collect();

@@ -27,7 +27,9 @@ impl Robot {
             self.link_number(one)?;
             self.link_number(other)?;
             if one == other {
-                return Err(Error::Contradiction { problem: format!("link '{one}' cannot be tested against itself") });
+                return Err(Error::Contradiction {
+                    problem: format!("link '{one}' cannot be tested against itself").into(),
+                });
             }
         }
         Ok(self.with_pair_rule(PairRule::Given(pairs)))

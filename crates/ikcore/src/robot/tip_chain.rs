@@ -85,7 +85,7 @@ impl TipChains {
     /// Checks the tips of `parts`, whose links are valid: that each has a chain, and that joints move it relative to the others.
     pub fn validate(parts: &Parts) -> Result<()> {
         let name = &parts.description.name;
-        let invalid = |problem: String| Error::InvalidRobot { robot: name.clone(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: name.clone(), problem: problem.into() };
         let beside = |tip: &String| parts.off_chain.links.iter().any(|link| link.name == *tip);
         if let Some(tip) = parts.tips.iter().find(|tip| !beside(tip)) {
             let problem = match parts.description.link_names().any(|link| link == tip) {

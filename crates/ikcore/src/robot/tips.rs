@@ -6,6 +6,7 @@ use crate::error::{Error, Result, shortened, suggestion};
 use crate::kinematics::{Reach, Screws, TaskRank};
 use crate::math::Columns;
 use crate::math::{Frame, MAX_DOF};
+use crate::message::{Message, Setting, message};
 use crate::wording::{joined, listed};
 
 impl Robot {
@@ -46,10 +47,13 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::SeveralTips`].
-    pub fn require_one_tip(&self, call: &str) -> Result<()> {
+    pub fn require_one_tip(&self, call: impl Into<Message>) -> Result<()> {
         match self.parts().tips[..] {
             [] => Ok(()),
-            _ => Err(Error::SeveralTips { call: call.into(), tips: joined(self.tips()) }),
+            _ => {
+                let remedy = message!["load the robot with one of them as ", Setting::Tip];
+                Err(Error::SeveralTips { call: call.into(), tips: joined(self.tips()), remedy })
+            }
         }
     }
 

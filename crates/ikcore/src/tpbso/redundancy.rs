@@ -141,7 +141,8 @@ fn planar_target(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTa
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),
     };
-    let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
+    let unreachable =
+        |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem: problem.into() };
     let beside = || unreachable("it lies beside the plane that the arm moves in".into());
     let planar = arm.planar_target(&target).ok_or_else(beside)?;
     let held = usize::from(planar.orientation.is_some());

@@ -96,7 +96,8 @@ impl Around {
     /// obstacle.
     pub fn new(space: ClearSpace<'static>, obstacles: ObstacleVelocities, limits: &Limits) -> Result<Self> {
         for field in [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk] {
-            let remedy = "limits that vary can carry the arm into an obstacle; give numbers, or leave obstacles= out";
+            let remedy =
+                "limits that vary can carry the arm into an obstacle; give numbers, or leave the obstacles out";
             if limits.field(field).is_some() {
                 limits.constants(field, "tracking among obstacles", remedy)?;
             }

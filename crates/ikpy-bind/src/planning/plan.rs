@@ -148,7 +148,7 @@ impl PyPlan {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Plan {}: {}>", self.core.status.name(), self.core.message())
+        format!("<Plan {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

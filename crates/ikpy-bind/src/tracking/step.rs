@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
@@ -20,6 +21,7 @@ use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::tips::TipErrors;
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
@@ -103,7 +105,7 @@ impl PyStep {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Step {}: {}>", self.core.status.name(), self.sentence())
+        format!("<Step {}: {}>", self.core.status.name(), self.message())
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
@@ -145,13 +147,13 @@ impl PyStep {
     }
 
     /// Returns the message: the outcome, advice, and the body in the way.
-    fn sentence(&self) -> String {
+    fn sentence(&self) -> Message {
         let message = self.core.message();
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;
-                format!("{message} ({link} is {distance:.4} m from {other})")
+                format!("{} ({link} is {distance:.4} m from {other})", said(&message)).into()
             }
             _ => message,
         }

@@ -25,6 +25,7 @@ use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -126,7 +127,7 @@ impl PyTrackResult {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.core.message())
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -277,7 +278,7 @@ pub fn track(
     let paths = TipPaths { tips: &tips, paths: &references };
     let record = watched(py, progress, |watcher| track_tips(&arm, &paths, start, &options, watcher))?;
     let tips = TipErrors { keys: asked.keys(robot.get()).clone(), errors: record.tips.errors.clone() };
-    python_calls::log(py, format!("track: {}", record.message()))?;
+    python_calls::log(py, "track", &said(&record.message()))?;
     PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
 }
 

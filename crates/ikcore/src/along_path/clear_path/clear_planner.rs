@@ -49,7 +49,7 @@ const AROUND: f64 = 1.5;
 const SPARE: f64 = 2e-5;
 
 /// What to try where no motion is found.
-const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by task=";
+const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by a task";
 
 /// The penalty of a posture in collision, for each metre that is missing of the margin.
 const DEEP: f64 = 1e6;
@@ -277,7 +277,7 @@ impl ClearPlanner<'_> {
             1 => "the one configuration tried there is on another branch than those before".into(),
             count => format!("all {count} configurations tried there are on other branches than those before"),
         };
-        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") })
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}").into() })
     }
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.

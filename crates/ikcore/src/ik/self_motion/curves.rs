@@ -70,7 +70,7 @@ pub fn self_motion(
     let SelfMotionOptions { start, spacing, limits, seed } = options;
     let [least, most] = SPACINGS;
     if !(least..=most).contains(spacing) {
-        return Err(Error::out_of_range("spacing", &format!("from {least} to {most}"), *spacing));
+        return Err(Error::out_of_range("spacing", format!("from {least} to {most}"), *spacing));
     }
     let each = SolveOptions { limits: limits.clone(), seed: *seed, ..SolveOptions::default() };
     let context = SolveContext::new(robot, &each)?;
@@ -115,7 +115,7 @@ fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
             "self_motion needs one joint more than the target: robot '{}' has {} joints, and this target takes {needed}",
             robot.name(),
             robot.dof()
-        ),
+        ).into(),
     })
 }
 

@@ -10,6 +10,7 @@ use super::package::Packages;
 use crate::error::{Error, Result, shortened};
 use crate::load::cover_cache::covered_mesh;
 use crate::load::mesh::read_mesh;
+use crate::message::{Setting, message};
 use crate::robot::{Bodies, Body, BodySource, LinkCapsule, LinkMesh, MeshFit, Robot};
 use crate::shape::Geometry;
 
@@ -110,12 +111,12 @@ fn found(mesh: &UrdfMesh, packages: &Packages) -> Result<PathBuf> {
     let UrdfMesh { link, file, .. } = mesh;
     packages.find(file).map_err(|looked| {
         let places = looked.iter().map(|place| place.display().to_string()).take(3).collect::<Vec<_>>().join(", ");
-        let problem = format!(
-            "the mesh '{}' of link '{link}' is not found: give package_dirs, or collision=\"primitives\" to do without; looked \
-             for {}",
-            shortened(file),
-            if places.is_empty() { "no folder" } else { &places }
-        );
+        let places = if places.is_empty() { "no folder" } else { &places };
+        let problem = message![
+            format!("the mesh '{}' of link '{link}' is not found: give package_dirs, or ", shortened(file)),
+            Setting::Primitives,
+            format!(" to do without; looked for {places}"),
+        ];
         Error::Urdf { line: None, problem }
     })
 }
