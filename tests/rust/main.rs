@@ -37,7 +37,7 @@ mod ik {
     mod round_poses;
     mod self_motion;
     mod solve;
-    pub mod tips;
+    mod tips;
 }
 mod kinematics {
     mod chains;

@@ -11,8 +11,8 @@ use std::fs;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
+use crate::common::arms::two_arms;
 use crate::common::robot;
-use crate::ik::tips::two_arms;
 use crate::interface::{interface, type_of};
 use crate::layers::imports::{Sources, rust_files};
 use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, solve_batch};
@@ -27,7 +27,7 @@ use ikcore::math::{Knots, Pose, pose};
 use ikcore::motion::{ArmState, state_to_state, stop};
 use ikcore::nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 use ikcore::objective::Bounds;
-use ikcore::obstacle::{Obstacle, Scene, Surroundings};
+use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds, StraightLine,

@@ -56,7 +56,7 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "manipulability" SeveralTips: manipulability(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "manipulability_all" SeveralTips: manipulability_all(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "Scene::new" NoCapsules: Scene::new(&panda, vec![ball(2.0)]), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";
-        "Scene::new" InvalidObstacle: Scene::new(&solid(), vec![Obstacle::new(ball(2.0), vec!["hnd".into()])]), "touch of obstacle 0 (Sphere): robot 'planar2' has no link 'hnd'; links with bodies: link_1, link_2";
+        "Scene::new" InvalidObstacle: Scene::new(&solid(), Obstacles::from_iter([Obstacle::new(ball(2.0), vec!["hnd".into()])])), "touch of obstacle 0 (Sphere): robot 'planar2' has no link 'hnd'; links with bodies: link_1, link_2";
         "Scene::nearest" WrongLength: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[0.0]), "joint angles of robot 'planar2': expected 2 joints, got 1";
         "Scene::nearest" NotFinite: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[NAN; 2]), "joint angles must be finite, but joint 'joint_1' is NaN";
         "Scene::which_are_clear" OutOfRange: Scene::new(&solid(), vec![ball(3.0)]).unwrap().which_are_clear(&[0.0; 2], -1.0), "margin must be zero or more and finite, got -1";
