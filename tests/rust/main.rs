@@ -7,7 +7,6 @@ mod common;
 mod interface;
 mod layers;
 mod plain_words;
-mod promised_errors;
 
 mod along_path {
     mod clear;
@@ -25,7 +24,10 @@ mod batch {
 mod closed_form {
     mod branches;
 }
-mod error;
+mod error {
+    mod promised;
+    mod wrong_input;
+}
 mod free_path {
     mod ends;
     mod point_to_point;
