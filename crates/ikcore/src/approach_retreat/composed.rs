@@ -16,7 +16,7 @@ use crate::plan::{
 };
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stop, Stopwatch};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
 /// Straight lines to the ends that are planned to, shared between all ends.
@@ -38,7 +38,7 @@ pub(crate) fn composed(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     free_path::require_pace(robot, &limits)?;
     let space = PieceSpace::new(robot, options)?;
     let mut pieces = Pieces { robot, options, limits: &limits, space: space.as_ref(), evaluations: 0 };
@@ -78,7 +78,7 @@ fn end_of(motion: &Trajectory) -> Result<Endpoint> {
 struct Pieces<'a> {
     robot: &'a Robot,
     options: &'a PointToPointOptions,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     space: Option<&'a PieceSpace>,
     evaluations: usize,
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::obstacle::{ClearSpace, Edge, RequiredDistance};
-use crate::timing::{MotionLimits, scaled};
+use crate::timing::{ConstantLimits, scaled};
 use crate::trajectory::Trajectory;
 
 /// How far beyond the margin the arm moves (m).
@@ -21,7 +21,7 @@ const PART: f64 = 0.01;
 /// The motion out of the contact at `from` (n,): straight lines, each from rest to rest, on which no two bodies come nearer to each
 /// other, by more than [`LEEWAY`], than they are at its beginning or than the margin; `None` if none was found. The shortest way:
 /// down the gradient of the distances.
-pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Result<Option<Trajectory>> {
+pub(super) fn way_out(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f64]) -> Result<Option<Trajectory>> {
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
     let mut near = space.near_rows();
     space.find_rows(from, space.margin(), &mut near);
@@ -58,7 +58,7 @@ fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, t
 }
 
 /// Configurations down the gradient of the shortfall, the last one of which keeps the margin and a little more.
-fn descent(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Option<Vec<Vec<f64>>> {
+fn descent(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f64]) -> Option<Vec<Vec<f64>>> {
     let up_to = space.margin() + BEYOND;
     let n = from.len();
     let (mut way, mut q, mut step) = (vec![from.to_vec()], from.to_vec(), LONGEST);

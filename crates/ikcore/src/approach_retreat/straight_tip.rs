@@ -11,7 +11,7 @@ use crate::objective::TaskBlock;
 use crate::plan::configuration_at;
 use crate::robot::Robot;
 use crate::task::{Criterion, Target, Task, TaskKind, TipError};
-use crate::timing::{MotionLimits, scaled};
+use crate::timing::{ConstantLimits, scaled, unit_quintic};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -39,7 +39,7 @@ pub(super) struct StraightTip<'a> {
     bare: &'a Robot,
     /// With the tool of the task, if there is one.
     robot: Cow<'a, Robot>,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     /// Its orientation is kept as far as this asks for it.
     task: Option<Task>,
 }
@@ -50,7 +50,7 @@ pub(super) type Hindrance = String;
 impl<'a> StraightTip<'a> {
     /// # Errors
     /// As [`Task::robot`].
-    pub(super) fn new(robot: &'a Robot, limits: &'a MotionLimits, task: Option<Task>) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, limits: &'a ConstantLimits, task: Option<Task>) -> Result<Self> {
         let with_tool = task.map_or(Ok(None), |task| task.robot(robot))?;
         Ok(Self { bare: robot, robot: with_tool.map_or(Cow::Borrowed(robot), Cow::Owned), limits, task })
     }
@@ -172,7 +172,7 @@ impl<'a> StraightTip<'a> {
             values.iter_mut().zip(rows.chunks_exact(n)).for_each(|(value, row)| *value = row[j]);
             spline.curvatures(&values, &mut curvatures);
             for (i, t) in breaks.iter().enumerate() {
-                let [fraction, speed, acceleration] = quintic(*t);
+                let [fraction, speed, acceleration] = unit_quintic(*t);
                 let piece = ((fraction * intervals as f64) as usize).min(intervals - 1);
                 let [c0, c1, c2, c3] = spline.piece(piece, &values, &curvatures).coefficients();
                 let s = fraction - breaks[piece];
@@ -208,10 +208,4 @@ impl<'a> StraightTip<'a> {
         }
         Ok(true)
     }
-}
-
-/// Fraction of the way, speed and acceleration of a quintic from rest to rest at the fraction `t` of its time.
-fn quintic(t: f64) -> [f64; 3] {
-    let rest = 1.0 - t;
-    [t * t * t * (10.0 + t * (6.0 * t - 15.0)), 30.0 * (t * rest).powi(2), 60.0 * t * rest * (1.0 - 2.0 * t)]
 }

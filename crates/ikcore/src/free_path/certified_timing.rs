@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{ClearanceSweep, SampledLine};
 use crate::plan::{Deadline, TimedMotion, configuration_at};
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{JointPolyline, ConstantLimits};
 use crate::trajectory::Trajectory;
 
 /// How often blends are narrowed before the motion stops at every corner instead.
@@ -24,7 +24,7 @@ pub(super) struct TimedPath {
 
 /// The limits and the margin of a motion.
 pub(super) struct Timing<'s, 'a> {
-    pub limits: &'s MotionLimits,
+    pub limits: &'s ConstantLimits,
     pub sweep: &'s mut ClearanceSweep<'a>,
     /// Distance to keep (m).
     pub margin: f64,
@@ -38,7 +38,7 @@ impl TimedPath {
     }
 
     /// Times a path. `fractions[i]` is the fraction of the shorter adjacent line that the blend of point i takes.
-    pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &MotionLimits) -> Result<Self> {
+    pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &ConstantLimits) -> Result<Self> {
         let stopping = path.with_stops(limits)?;
         let motion = match path.with_blends(limits, &fractions).transpose()? {
             Some(blended) if blended.duration() < stopping.duration() => blended,
@@ -50,7 +50,7 @@ impl TimedPath {
 
 /// The fraction of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
 /// between its ends is clear.
-pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &MotionLimits, check: &mut SampledLine) -> f64 {
+pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLimits, check: &mut SampledLine) -> f64 {
     let mut fraction = 1.0;
     while fraction > LEAST_SHARE {
         let [from, to] = path.blend_ends(limits, i, fraction);

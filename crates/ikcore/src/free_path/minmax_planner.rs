@@ -8,7 +8,7 @@ use crate::free_path::{among_obstacles, moving_start};
 use crate::plan::{Deadline, Endpoint, Plan, PointToPointOptions, can_collide};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 const METHOD: &str = "method=\"minmax\"";
 
@@ -21,7 +21,7 @@ pub(crate) fn point_to_point(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let deadline = Deadline::start(options.stop.as_ref());
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
     let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
@@ -44,7 +44,7 @@ pub(crate) fn point_to_point(
 }
 
 /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
-pub(crate) fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
+pub(crate) fn require_pace(robot: &Robot, limits: &ConstantLimits) -> Result<()> {
     let unlimited =
         |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {

@@ -12,12 +12,12 @@ use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Target, Task};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
-    pub limits: &'a MotionLimits,
+    pub limits: &'a ConstantLimits,
     pub start: &'a Endpoint,
     /// Any of them will do.
     pub ends: &'a [Endpoint],
@@ -38,7 +38,7 @@ impl<'a> PairSearch<'a> {
     /// [`Error::OutsideLimits`] for a start outside the limits.
     pub(super) fn new(
         robot: &'a Robot,
-        limits: &'a MotionLimits,
+        limits: &'a ConstantLimits,
         start: &'a Endpoint,
         ends: &'a [Endpoint],
         options: &PointToPointOptions,

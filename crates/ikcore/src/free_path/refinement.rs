@@ -11,7 +11,7 @@ use crate::plan::{Cost, tip_travel_along};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{JointPolyline, ConstantLimits};
 
 /// How far a corner is moved at first, at most and at least (rad, m). Below that the search begins again with the first distance.
 const FIRST: f64 = 0.1;
@@ -35,7 +35,7 @@ const OF_TIP: f64 = 0.02; // m/s, in a tip travel
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathMeasure<'a> {
     pub robot: &'a Robot,
-    pub limits: &'a MotionLimits,
+    pub limits: &'a ConstantLimits,
     pub objective: Cost,
 }
 
@@ -91,7 +91,7 @@ impl BlendedPath {
     }
 
     /// The path with one change, not examined yet.
-    fn varied(&self, limits: &MotionLimits, rng: &mut LazyRng) -> Variation {
+    fn varied(&self, limits: &ConstantLimits, rng: &mut LazyRng) -> Variation {
         let mut points = self.path.0.clone();
         let (lines, kind) = (points.len() - 1, rng.uniform());
         let new = if kind < MOVES && lines > 1 {
@@ -191,7 +191,7 @@ fn pulled(beside: &[Vec<f64>], fraction: f64) -> Vec<f64> {
 }
 
 /// A configuration at most `step` away (rad, m), within the limits.
-fn displaced(mut q: Vec<f64>, step: f64, limits: &MotionLimits, rng: &mut LazyRng) -> Vec<f64> {
+fn displaced(mut q: Vec<f64>, step: f64, limits: &ConstantLimits, rng: &mut LazyRng) -> Vec<f64> {
     let mut direction = vec![0.0; q.len()];
     rng.direction(&mut direction);
     let distance = step * rng.uniform();
@@ -214,10 +214,10 @@ mod tests {
     const START: [f64; 2] = [-0.8, 0.0];
     const END: [f64; 2] = [0.8, 0.0];
 
-    fn limits(robot: &Robot) -> MotionLimits {
+    fn limits(robot: &Robot) -> ConstantLimits {
         let limits = Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(1.0)]).unwrap();
         let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
-        MotionLimits::new(robot, Some(&limits), "this test").unwrap()
+        ConstantLimits::for_robot(robot, Some(&limits), "this test").unwrap()
     }
 
     /// Refines a path that bends more than it has to, past a sphere; returns both.

@@ -6,7 +6,7 @@ use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{JointPolyline, ConstantLimits};
 
 /// How the search for a path ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub(super) struct TreeSearch<'a> {
 impl<'a> TreeSearch<'a> {
     pub(super) fn new(
         scene: &'a Scene<'a>,
-        limits: &MotionLimits,
+        limits: &ConstantLimits,
         margin: f64,
         budget: usize,
         deadline: Deadline,
@@ -172,7 +172,7 @@ mod tests {
     fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
         let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
         let obstacles = [obstacle];
-        let limits = MotionLimits::new(&robot, None, "this test").unwrap();
+        let limits = ConstantLimits::for_robot(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
         let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
         let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);

@@ -5,7 +5,7 @@ use super::pair_search::PairSearch;
 use crate::error::{Error, Result};
 use crate::plan::{Cost, Improvement, Plan};
 use crate::solver::{Monitor, Status};
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{JointPolyline, ConstantLimits};
 use crate::trajectory::Trajectory;
 
 /// Number of pairs from random starts; as many come from the quickest branches.
@@ -39,7 +39,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
 }
 
 /// Returns the quicker of a quintic and a motion at constant velocity between blends.
-pub(super) fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
+pub(super) fn straight(pair: &EndPair, limits: &ConstantLimits) -> Result<Trajectory> {
     pair.require_motion()?;
     let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
     let quintic = line.with_stops(limits)?;

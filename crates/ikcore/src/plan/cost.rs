@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::polynomial::{derivative, evaluate, roots};
 use crate::math::vector::distance;
 use crate::robot::Robot;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::{Coefficients, Trajectory};
 use crate::wording::words;
 
@@ -55,7 +55,7 @@ impl Cost {
     }
 
     /// A large value of the objective for `robot` under `limits`, which scales penalties.
-    pub(crate) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
+    pub(crate) fn scale(self, robot: &Robot, limits: &ConstantLimits) -> f64 {
         let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
         match self {
             Self::Time => limits.whole_range_time(),

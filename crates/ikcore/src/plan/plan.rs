@@ -12,7 +12,7 @@ use crate::obstacle::{ClearanceSweep, NearestContact, Surroundings};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
-use crate::timing::{JointPath, MotionLimits, Violation};
+use crate::timing::{JointPath, ConstantLimits, Violation};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -138,7 +138,7 @@ impl Plan {
     }
 
     /// Notes the largest acceleration of joints that have no acceleration limit in `limits`.
-    pub(crate) fn name_peak(&mut self, limits: &MotionLimits) {
+    pub(crate) fn name_peak(&mut self, limits: &ConstantLimits) {
         let reached = self.trajectory.max_acceleration();
         let unlimited = (0..limits.dof()).filter(|j| limits.acceleration[*j].is_infinite());
         let highest = unlimited.max_by(|i, k| reached[*i].total_cmp(&reached[*k]));

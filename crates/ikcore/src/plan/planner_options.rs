@@ -11,7 +11,7 @@ use crate::obstacle::{Obstacles, Surroundings};
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 use crate::task::Task;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Methods of point-to-point planning.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -148,7 +148,7 @@ impl AlongPathOptions {
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
-    pub(crate) fn start_within(&self, robot: &Robot, limits: &MotionLimits) -> Result<Option<&[f64]>> {
+    pub(crate) fn start_within(&self, robot: &Robot, limits: &ConstantLimits) -> Result<Option<&[f64]>> {
         let Some(q) = &self.start else { return Ok(None) };
         robot.check("start_q", q)?;
         robot.require_within("start_q", q, &limits.lower, &limits.upper)?;

@@ -8,7 +8,7 @@ use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPoin
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::{free_path, tpbso};
 
 /// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
@@ -58,7 +58,7 @@ fn plan_joined(
         }
     }
     .map_err(|error| with_way_out(error, options))?;
-    plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?);
+    plan.name_peak(&ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?);
     Ok(plan)
 }
 

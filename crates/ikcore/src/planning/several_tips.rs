@@ -7,7 +7,7 @@ use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, can_collide, 
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;
@@ -62,7 +62,7 @@ struct EndSearch<'a> {
 
 impl<'a> EndSearch<'a> {
     fn new(robot: &'a Robot, options: &PointToPointOptions) -> Result<Self> {
-        let limits = MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?;
+        let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?;
         let margin = Some(kept_margin(options.margin)? + RESERVE);
         let surroundings = match can_collide(robot, options) {
             true => Surroundings { margin, ..options.surroundings() },

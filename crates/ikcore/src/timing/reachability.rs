@@ -9,7 +9,7 @@ use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
-use super::timing_limits::TimingLimits;
+use super::constant_limits::ConstantLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};
@@ -31,7 +31,7 @@ impl SpeedProfile {
     /// [`Error::Infeasible`] if the speeds at the ends are not possible.
     pub(super) fn fastest(
         path: &JointPath,
-        limits: &TimingLimits,
+        limits: &ConstantLimits,
         segments: Vec<Segment>,
         [start, end]: [Range; 2],
     ) -> Result<Self> {
@@ -59,7 +59,7 @@ impl SpeedProfile {
 
 struct Pass<'a> {
     path: &'a JointPath,
-    limits: &'a TimingLimits,
+    limits: &'a ConstantLimits,
     segments: &'a [Segment],
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,

@@ -5,7 +5,7 @@
 //! convex.
 
 use super::derivatives::PathDerivatives;
-use super::timing_limits::TimingLimits;
+use super::constant_limits::ConstantLimits;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,7 @@ impl Strips {
     ///
     /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
     /// its three Bernstein coefficients bound it at every point, not only at grid points.
-    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
+    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &ConstantLimits) {
         let n = limits.acceleration.len();
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);

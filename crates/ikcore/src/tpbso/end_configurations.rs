@@ -9,7 +9,7 @@ use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// The configurations of one end.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ impl EndConfigurations {
         what: &str,
         end: &Endpoint,
         robot: &Robot,
-        limits: &MotionLimits,
+        limits: &ConstantLimits,
         elbow: Elbow,
         seed: u64,
         monitor: &mut dyn Monitor,

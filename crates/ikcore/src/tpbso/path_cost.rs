@@ -8,7 +8,7 @@ use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::plan::{Cost, Orientations};
 use crate::robot::Robot;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// The spline passes every second point; the others measure its accuracy.
@@ -28,7 +28,7 @@ const LONGEST_OVER_MIDDLE: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(super) struct PathCost<'a> {
     robot: &'a Robot,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     redundancy: Redundancy,
     spline: CubicSpline,
     cost: Cost,
@@ -52,7 +52,7 @@ impl<'a> PathCost<'a> {
     /// of the points that the splines skip.
     pub(super) fn new(
         robot: &'a Robot,
-        limits: &'a MotionLimits,
+        limits: &'a ConstantLimits,
         redundancy: Redundancy,
         cost: Cost,
         accuracy: f64,

@@ -4,11 +4,10 @@ use super::interpolation::{Corners, Interpolation, JointWaypoints};
 use crate::along_path::deviation::TipDeviation;
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result, require_positive};
-use crate::limits::Limits;
 use crate::plan::AlongPathOptions;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
-use crate::timing::{JointPath, MotionLimits, TimingLimits, coarse_duration, time_all};
+use crate::timing::{JointPath, ConstantLimits, coarse_duration, time_all};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -24,9 +23,7 @@ pub(crate) struct PathProblem<'a> {
     /// The path of its tip.
     pub tip_path: &'a TipPath,
     /// Limits to keep.
-    pub limits: MotionLimits,
-    /// Limits of the timing.
-    pub timing_limits: TimingLimits,
+    pub limits: ConstantLimits,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
     pub accuracy: f64,
     /// The options of the call.
@@ -52,15 +49,15 @@ impl<'a> PathProblem<'a> {
     /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path.
     pub(crate) fn new(robot: &Robot, tip_path: &'a TipPath, options: &'a AlongPathOptions) -> Result<Self> {
         let stopwatch = Stopwatch::start();
-        let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
-        let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
+        let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
+        limits.require_accelerations(METHOD)?;
         let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
         require_positive("accuracy", accuracy)?;
         if let Some(q) = options.start_within(robot, &limits)? {
             require_on_path(robot, q, tip_path, accuracy)?;
         }
         let robot = limits.applied_to(robot)?;
-        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options, stopwatch })
+        Ok(Self { robot, tip_path, limits, accuracy, options, stopwatch })
     }
 
     /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
@@ -73,13 +70,13 @@ impl<'a> PathProblem<'a> {
         nominal: &JointWaypoints,
         accuracy: f64,
     ) -> Result<(Interpolation<'a>, JointWaypoints)> {
-        let Self { robot, tip_path, timing_limits, .. } = self;
+        let Self { robot, tip_path, limits, .. } = self;
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
         for corners in Corners::on(tip_path) {
             let interpolation = Interpolation { robot, tip_path, corners: *corners };
             let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
             let path = interpolation.path(&waypoints)?;
-            let duration = coarse_duration(&path, timing_limits, SEGMENTS_A_PIECE * path.pieces())?;
+            let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
             if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
                 quickest = Some((duration, interpolation, waypoints));
             }
@@ -104,7 +101,7 @@ impl<'a> PathProblem<'a> {
         }
         let stretches = interpolation.stretches(&waypoints)?;
         let path = interpolation.path(&waypoints)?;
-        let trajectory = time_all(&stretches, &self.timing_limits)?;
+        let trajectory = time_all(&stretches, &self.limits)?;
         Ok(PathMotion { waypoints, stretches, path, trajectory })
     }
 }
@@ -125,8 +122,4 @@ fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) 
     let problem =
         format!("start_q {what} {value} {unit}{tolerance_band} from the path's first point, allowed {accuracy} {unit}");
     Err(Error::Infeasible { problem })
-}
-
-fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {
-    TimingLimits::new(&limits.cloned().unwrap_or_else(|| Limits::of(robot)), METHOD)
 }

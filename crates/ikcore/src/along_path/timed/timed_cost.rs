@@ -79,7 +79,7 @@ impl<'a> TimedCost<'a> {
         let path = self.interpolation.path(&waypoints)?;
         let cost = match self.problem.options.objective {
             Cost::JointTravel => travel(&waypoints.rows, self.motion.dof()),
-            _ => coarse_duration(&path, &self.problem.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
+            _ => coarse_duration(&path, &self.problem.limits, SEGMENTS_A_PIECE * path.pieces())?,
         };
         let broken = self.deviation(&waypoints, &path) + self.outside(&path) + self.blocked(&waypoints);
         Ok(cost + BROKEN * self.scale * broken)
