@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::planning::{JointPath, SplineEnds, ConstantLimits, TimingOptions, time_optimal};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
 use ikcore::rng;
 
 const JOINTS: usize = 7;

@@ -1,7 +1,7 @@
 //! The fastest timing of joint paths: known optima, limits at every instant, errors by their messages.
 
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::planning::{JointPath, SplineEnds, ConstantLimits, TimingOptions, time_optimal};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
 use ikcore::trajectory::Trajectory;
 use ikcore::{Error, Result};
 use proptest::prelude::*;

@@ -174,6 +174,7 @@ fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::write_between;
     use crate::path::Waypoints;
 
     #[test]
@@ -182,8 +183,7 @@ mod tests {
         let (from, to) = ([0.2, 1.1], [0.9, 0.3]);
         let points = Waypoints::new(vec![robot.tip_position(&from), robot.tip_position(&to)], None).unwrap();
         let tip_path = TipPath::through(&points).unwrap();
-        let configurations =
-            |fraction: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + fraction * (to[j] - from[j]));
+        let configurations = |fraction: f64, q: &mut [f64]| write_between(&from, &to, fraction, q);
         let deviation = TipDeviation { robot: &robot, tip_path: &tip_path, configurations };
         let mut dense: f64 = 0.0;
         for i in 0..=4000 {

@@ -245,6 +245,7 @@ mod tests {
         BAXTER, GEN3, IIWA14, PANDA, SAWYER, XARM7, iiwa14_of_urdf, random_angles,
     };
     use crate::closed_form::vector::{norm, sub};
+    use crate::math::vector::between;
 
     /// Largest difference of angles, whole turns aside.
     fn apart(a: &[f64; 7], b: &[f64; 7]) -> f64 {
@@ -325,7 +326,7 @@ mod tests {
             narrowed += usize::from(arcs.length() < 5.0);
             for [a, b] in arcs.iter() {
                 for part in [0.02, 0.5, 0.98] {
-                    let found = method.solve(&method.pose(&target), a + part * (b - a));
+                    let found = method.solve(&method.pose(&target), between(*a, *b, part));
                     let within = |q: f64| limits[3][0] - 1e-4 <= q && q <= limits[3][1] + 1e-4;
                     assert!(found.is_empty() || found.iter().any(|set| within(set[3])), "{q:?}");
                 }

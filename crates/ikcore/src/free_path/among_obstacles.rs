@@ -8,6 +8,7 @@ use super::rrt_connect::TreeSearch;
 use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
+use crate::math::vector::point_between;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearanceSweep, Scene, kept_margin};
@@ -112,10 +113,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
 /// Returns the pair whose straight line penetrates least, at samples.
 fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
     let distance = |pair: &EndPair| {
-        let at = |i: usize| -> Vec<f64> {
-            let fraction = i as f64 / INTERVALS as f64;
-            pair.start.iter().zip(&pair.end).map(|(start, end)| start + fraction * (end - start)).collect()
-        };
+        let at = |i: usize| point_between(&pair.start, &pair.end, i as f64 / INTERVALS as f64).collect::<Vec<_>>();
         let nearest = (0..=INTERVALS).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
         nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
     };

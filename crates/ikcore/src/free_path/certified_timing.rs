@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{ClearanceSweep, SampledLine};
 use crate::plan::{Deadline, TimedMotion, configuration_at};
-use crate::timing::{JointPolyline, ConstantLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 use crate::trajectory::Trajectory;
 
 /// How often blends are narrowed before the motion stops at every corner instead.

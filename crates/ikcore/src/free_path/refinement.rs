@@ -5,13 +5,13 @@ use std::ops::Range;
 use super::certified_timing::clear_fraction;
 use super::rrt_connect::TreeSearch;
 use super::shortening::along;
-use crate::math::vector::distance;
+use crate::math::vector::{distance, point_between};
 use crate::obstacle::SampledLine;
 use crate::plan::{Cost, tip_travel_along};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, ConstantLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 
 /// How far a corner is moved at first, at most and at least (rad, m). Below that the search begins again with the first distance.
 const FIRST: f64 = 0.1;
@@ -186,8 +186,8 @@ fn pulled(beside: &[Vec<f64>], fraction: f64) -> Vec<f64> {
     let (before, corner, after) = (&beside[0], &beside[1], &beside[2]);
     let lengths = [distance(before, corner), distance(corner, after)];
     let place = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
-    let on_line = |j: usize| before[j] + place * (after[j] - before[j]);
-    corner.iter().enumerate().map(|(j, q)| q + fraction * (on_line(j) - q)).collect()
+    let on_line: Vec<f64> = point_between(before, after, place).collect();
+    point_between(corner, &on_line, fraction).collect()
 }
 
 /// A configuration at most `step` away (rad, m), within the limits.

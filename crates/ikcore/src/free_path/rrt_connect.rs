@@ -2,11 +2,12 @@
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
 
 use super::configuration_tree::ConfigurationTree;
+use crate::math::vector::write_between;
 use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, ConstantLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 
 /// How the search for a path ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,16 +152,17 @@ impl<'a> TreeSearch<'a> {
 
 /// Writes the configuration at `fraction` of the way, or the goal if that is past it.
 fn step_towards(from: &[f64], goal: &[f64], fraction: f64, next: &mut [f64]) {
-    let fraction = fraction.min(1.0);
-    for (next, (from, goal)) in next.iter_mut().zip(from.iter().zip(goal)) {
-        *next = if fraction < 1.0 { from + fraction * (goal - from) } else { *goal };
+    if fraction < 1.0 {
+        write_between(from, goal, fraction, next);
+    } else {
+        next.copy_from_slice(goal);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vector::distance;
+    use crate::math::vector::{between, distance};
     use crate::rng;
     use crate::robot::Robot;
     use crate::shape::Shape;
@@ -188,7 +190,7 @@ mod tests {
                 assert_eq!((&path.0[0][..], &path.0[path.0.len() - 1][..]), (&start[..], &end[..]));
                 for line in path.0.windows(2) {
                     for i in 0..=200 {
-                        let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
+                        let at = |j: usize| between(line[0][j], line[1][j], f64::from(i) / 200.0);
                         let clearance = scene.clearance(&[at(0), at(1)]).unwrap();
                         // Between two configurations that were examined a body may come a little nearer.
                         assert!(clearance >= 0.5 * MARGIN, "{clearance} m");

@@ -1,6 +1,7 @@
 //! Shortens a clear path: leaves out points, and takes shortcuts.
 
 use super::rrt_connect::TreeSearch;
+use crate::math::vector::point_between;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
 use crate::timing::JointPolyline;
@@ -61,5 +62,5 @@ impl TreeSearch<'_> {
 pub(super) fn along(points: &[Vec<f64>], place: f64) -> (usize, Vec<f64>) {
     let line = (place as usize).min(points.len() - 2);
     let fraction = place - line as f64;
-    (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + fraction * (b - a)).collect())
+    (line, point_between(&points[line], &points[line + 1], fraction).collect())
 }

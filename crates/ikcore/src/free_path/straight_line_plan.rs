@@ -5,7 +5,7 @@ use super::pair_search::PairSearch;
 use crate::error::{Error, Result};
 use crate::plan::{Cost, Improvement, Plan};
 use crate::solver::{Monitor, Status};
-use crate::timing::{JointPolyline, ConstantLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 use crate::trajectory::Trajectory;
 
 /// Number of pairs from random starts; as many come from the quickest branches.

@@ -78,6 +78,7 @@ impl Braking {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::between;
     use proptest::prelude::*;
 
     proptest! {
@@ -102,7 +103,7 @@ mod tests {
                 prop_assert!(least <= most);
                 let (kind, fraction) = fractions[tick as usize / 40];
                 let fraction = match kind { 0 => 0.0, 1 => 1.0, 2 => f64::from(u8::from(tick % 7 < 3)), _ => fraction };
-                let next = least + fraction * (most - least);
+                let next = between(least, most, fraction);
                 let rounding = 1e-12 * (1.0 + half);
                 prop_assert!((next - change).abs() <= HARDER * jerk + rounding && next.abs() <= HARDER + rounding);
                 (change, step) = (next, step + next);

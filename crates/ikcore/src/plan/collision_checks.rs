@@ -195,6 +195,7 @@ fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::between;
     use crate::rng;
     use crate::shape::Shape;
     use crate::trajectory::polynomial;
@@ -223,7 +224,7 @@ mod tests {
             for i in 1..500 {
                 let fraction = f64::from(i) / 500.0;
                 let mut q = [0.0];
-                timed.write(from + fraction * (to - from), &mut q);
+                timed.write(between(from, to, fraction), &mut q);
                 let off = (q[0] - ends[0][0] - fraction * (ends[1][0] - ends[0][0])).abs();
                 assert!(
                     off <= 4.0 * fraction * (1.0 - fraction) * off_line[0] + 1e-12,

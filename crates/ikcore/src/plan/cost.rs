@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::polynomial::{derivative, evaluate, roots};
 use crate::math::vector::distance;
+use crate::math::vector::point_between;
 use crate::robot::Robot;
 use crate::timing::ConstantLimits;
 use crate::trajectory::{Coefficients, Trajectory};
@@ -97,8 +98,7 @@ pub(crate) fn tip_travel_along(robot: &Robot, points: &[Vec<f64>]) -> f64 {
     let of_line = |ends: &[Vec<f64>]| {
         let at = |i: usize| {
             let fraction = i as f64 / CHORDS_A_LINE as f64;
-            let q: Vec<f64> = ends[0].iter().zip(&ends[1]).map(|(from, to)| from + fraction * (to - from)).collect();
-            robot.tip_position(&q)
+            robot.tip_position(&point_between(&ends[0], &ends[1], fraction).collect::<Vec<_>>())
         };
         (1..=CHORDS_A_LINE).map(|i| distance(&at(i), &at(i - 1))).sum::<f64>()
     };

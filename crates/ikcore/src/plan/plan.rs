@@ -12,7 +12,7 @@ use crate::obstacle::{ClearanceSweep, NearestContact, Surroundings};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
-use crate::timing::{JointPath, ConstantLimits, Violation};
+use crate::timing::{ConstantLimits, JointPath, Violation};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 

@@ -58,12 +58,7 @@ impl ConstantLimits {
         Ok(limits)
     }
 
-    fn read(
-        limits: &Limits,
-        joints: Vec<(String, Option<JointKind>)>,
-        method: &str,
-        remedy: &str,
-    ) -> Result<Self> {
+    fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: &str, remedy: &str) -> Result<Self> {
         limits.validate(0.0, 0)?;
         let constants = |field: Field| {
             let mut values = limits.constants(field, method, remedy)?;

@@ -5,9 +5,9 @@
 //! all limits allow, and the window is chosen to minimise the duration. So every limit holds, but this is a smoothed
 //! optimum, not the optimum under jerk limits.
 
+use super::constant_limits::{ConstantLimits, ROUNDING};
 use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
-use super::constant_limits::{ConstantLimits, ROUNDING};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::trajectory::Trajectory;

@@ -6,6 +6,7 @@ use super::quintic::quintic;
 use super::time_scaling::{CAUTION, within_limits};
 use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
+use crate::math::vector::point_between;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// Largest acceleration of a blend, relative to change of velocity / duration.
@@ -129,7 +130,7 @@ impl JointPolyline {
         let blend = fraction * durations[0].min(durations[1]);
         std::array::from_fn(|side| {
             let ([corner, other], part) = (lines[side], 0.5 * blend / durations[side]);
-            corner.iter().zip(other).map(|(corner, other)| corner + part * (other - corner)).collect()
+            point_between(corner, other, part).collect()
         })
     }
 

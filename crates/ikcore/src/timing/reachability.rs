@@ -5,11 +5,11 @@
 //! method on the width of the interval that the strips leave for u, which is concave and piecewise linear in x: it
 //! converges from outside in a few steps, exactly.
 
+use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
-use super::constant_limits::ConstantLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};

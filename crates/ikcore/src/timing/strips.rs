@@ -4,8 +4,8 @@
 //! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
 //! convex.
 
-use super::derivatives::PathDerivatives;
 use super::constant_limits::ConstantLimits;
+use super::derivatives::PathDerivatives;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]

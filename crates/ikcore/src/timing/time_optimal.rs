@@ -1,12 +1,12 @@
 //! The call `time_optimal`: grid, speed profile, trajectory.
 
 use super::compose::compose;
+use super::constant_limits::ConstantLimits;
 use super::grid::{check_gridpoints, cut};
 use super::jerk::smooth;
 use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
-use super::constant_limits::ConstantLimits;
 use super::time_scaling::within_limits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;

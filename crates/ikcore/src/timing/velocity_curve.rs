@@ -1,9 +1,9 @@
 //! The maximum velocity curve: the path speed that the velocity limits allow.
 
+use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use super::constant_limits::ConstantLimits;
 use crate::math::polynomial::quadratic_roots;
 
 /// Represents no bound; finite, to leave room for arithmetic.

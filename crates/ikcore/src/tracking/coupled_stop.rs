@@ -2,7 +2,7 @@
 
 use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
 use super::step_context::StepContext;
-use crate::math::vector::dot;
+use crate::math::vector::{dot, write_between};
 use crate::motion::{Braking, JointState};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
@@ -126,9 +126,7 @@ impl JointMotion for CoupledStop {
         let last = self.places.len() - 1;
         let before = (tick.max(0.0).floor() as usize).min(last);
         let (from, to) = (&self.places[before], &self.places[(before + 1).min(last)]);
-        for (q, (from, to)) in q.iter_mut().zip(from.iter().zip(to)) {
-            *q = from + tick.fract() * (to - from);
-        }
+        write_between(from, to, tick.fract(), q);
     }
 
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {

@@ -14,7 +14,7 @@ use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::Limits;
-use crate::math::vector::between;
+use crate::math::vector::write_within;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, NearestContact, Obstacles, Surroundings};
 use crate::problem::Problem;
@@ -369,11 +369,11 @@ impl Session {
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
             let fraction = 0.5 * (kept + past);
-            between(&self.arm.q, &end, fraction, &mut found.q);
+            write_within(&self.arm.q, &end, fraction, &mut found.q);
             let inside = region.contains(&self.arm.robot.tip_position(&found.q));
             (kept, past) = if inside { (fraction, past) } else { (kept, fraction) };
         }
-        between(&self.arm.q, &end, kept, &mut found.q);
+        write_within(&self.arm.q, &end, kept, &mut found.q);
         found.assess(&self.arm.robot, &self.arm.aims());
         found.evaluations += BISECTIONS + 1;
         self.running.forget();

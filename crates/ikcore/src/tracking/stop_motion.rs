@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
+use crate::math::vector::write_between;
 use crate::motion::{Braking, JointState, StopCurve};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
@@ -67,9 +68,7 @@ impl JointMotion for StopMotion<'_> {
             return;
         }
         if tick <= 1.0 {
-            for (q, (from, command)) in q.iter_mut().zip(self.from.iter().zip(self.command)) {
-                *q = from + tick * (command - from);
-            }
+            write_between(self.from, self.command, tick, q);
             return;
         }
         let (before, fraction) = (tick.floor() - 1.0, tick.fract());

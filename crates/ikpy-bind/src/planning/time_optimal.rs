@@ -1,6 +1,6 @@
 //! `time_optimal`.
 
-use ikcore::planning::{JointPath, SplineEnds, ConstantLimits, TimingOptions, time_optimal as fastest};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 

@@ -4,6 +4,7 @@ use super::passage::Passage;
 use super::price::Price;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
+use crate::math::vector::point_between;
 use crate::objective::Point;
 
 /// Passes over the sequence, from long stretches to short ones.
@@ -52,7 +53,7 @@ impl Smoothing<'_, '_> {
         let mut between = vec![from.clone()];
         for i in begin + 1..end {
             let part = (self.fractions[i] - self.fractions[begin]) / length;
-            let guess: Point = from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect();
+            let guess: Point = point_between(from, to, part).collect();
             let Some(q) = self.passage.clear_on_path(self.fractions[i], &guess) else { return };
             between.push(q);
         }

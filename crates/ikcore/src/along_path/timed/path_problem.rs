@@ -7,7 +7,7 @@ use crate::error::{Error, Result, require_positive};
 use crate::plan::AlongPathOptions;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
-use crate::timing::{JointPath, ConstantLimits, coarse_duration, time_all};
+use crate::timing::{ConstantLimits, JointPath, coarse_duration, time_all};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 

@@ -7,6 +7,7 @@ use super::repetition::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
 use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
+use crate::math::vector::between;
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
 use crate::path::Waypoints;
@@ -276,7 +277,7 @@ impl TipPath {
         let (row, part) = self.locate(fraction);
         match &self.times {
             Some(times) => {
-                let time = times[row] + part * (times[row + 1] - times[row]);
+                let time = between(times[row], times[row + 1], part);
                 format!("the path at t = {} s", number(time))
             }
             None if part == 0.0 => format!("point {row} of the path"),
