@@ -11,8 +11,8 @@ use crate::error::{Error, Result};
 use crate::free_path;
 use crate::obstacle::{ClearanceSweep, kept_margin};
 use crate::plan::{
-    EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at, joined,
-    nearest_at, no_usable_end, refuse_collision,
+    END_RESERVE, EndName, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, TimedMotion, configuration_at,
+    joined, nearest_at, no_usable_end, refuse_collision,
 };
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stop, Stopwatch};
@@ -95,7 +95,7 @@ impl<'a> Pieces<'a> {
         let clearance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
         let Some(out) = way_out(&space, self.limits, q)? else {
             // Names the two bodies.
-            refuse_collision("start", space.scene(), q, space.margin() - RESERVE)?;
+            refuse_collision("start", space.scene(), q, space.margin() - END_RESERVE)?;
             return Ok(None);
         };
         let freed = Freed { clearance, until: out.duration() };

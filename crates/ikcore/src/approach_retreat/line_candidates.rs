@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
 use crate::obstacle::{ClearSpace, ClearanceSweep, Contact, NearestContact};
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at};
+use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, TimedMotion, configuration_at};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -136,7 +136,7 @@ impl LineSearch<'_> {
             Err(why) => return Ok(Err((0.0, why))),
         };
         let space = self.along_line.as_ref().map(|(_, space)| space);
-        let margin = space.map_or(0.0, |space| space.margin() - RESERVE);
+        let margin = space.map_or(0.0, |space| space.margin() - END_RESERVE);
         let whole = [0.0, outward.duration()];
         let checked =
             space.map(|space| ClearanceSweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));

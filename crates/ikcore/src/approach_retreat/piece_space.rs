@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings, kept_margin};
-use crate::plan::{PointToPointOptions, RESERVE, as_lines, can_collide};
+use crate::plan::{END_RESERVE, PointToPointOptions, as_lines, can_collide};
 use crate::robot::Robot;
 
 /// A robot and its surroundings, as the planner of the motion in between sees them.
@@ -26,7 +26,7 @@ impl PieceSpace {
         let may_cross = lines.is_some() || options.self_collision == Some(false);
         let surroundings = Surroundings {
             obstacles: Some(options.obstacles.clone()),
-            margin: Some(kept_margin(options.margin)? + RESERVE),
+            margin: Some(kept_margin(options.margin)? + END_RESERVE),
             self_collision: Some(!may_cross),
         };
         Ok(Some(Self { robot: lines.unwrap_or_else(|| robot.clone()), surroundings }))

@@ -13,8 +13,8 @@ use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearanceSweep, Scene, kept_margin};
 use crate::plan::{
-    Cost, EndName, Endpoint, Improvement, Plan, PointToPointOptions, RESERVE, TimedMotion, as_lines, configuration_at,
-    nearest_at, no_usable_end, refuse_collision, scene, too_near,
+    Cost, END_RESERVE, EndName, Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines,
+    configuration_at, nearest_at, no_usable_end, refuse_collision, scene, too_near,
 };
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
@@ -28,7 +28,7 @@ const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
 /// Distances that paths may keep beyond the margin (m).
-const RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
+const CERTIFIED_RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
 /// What rounding may take off a distance in the check of a line (m).
 const SINGLE: f64 = 3e-5;
 
@@ -39,7 +39,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let scene = scene(search.robot, lines.as_ref(), options)?;
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
-    let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
+    let is_clear = |q: &[f64]| scene.is_clear(q, margin + END_RESERVE);
     let refusal = |name: EndName, end: &Endpoint| match end {
         Endpoint::Configuration(q) => refuse_collision(&name.of_target(), &scene, q, margin),
         Endpoint::Targets { .. } => Ok(()),
@@ -59,7 +59,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let most = most_kept(&scene, &open, margin);
-    let mut trees = TreeSearch::new(&scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
+    let mut trees =
+        TreeSearch::new(&scene, limits, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
     let mut sweep = ClearanceSweep::new(&scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
@@ -92,7 +93,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
             let plan = Plan { status, ..bare(search, trajectory, options.objective) };
             let plan = with_least_distance(plan, &mut sweep, &scene, margin)?;
             let obstruction = if open.is_empty() {
-                no_way::blocked_ends(&scene, &pairs, margin + RESERVE)
+                no_way::blocked_ends(&scene, &pairs, margin + END_RESERVE)
             } else {
                 let straight = plan.nearest.as_ref().map(|nearest| &nearest.contact);
                 no_way::gap(trees.gap, trees.check.examined(), straight, margin)
@@ -147,7 +148,7 @@ fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
         ends.all(|q| scene.is_clear(q, margin + more))
     };
     // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
-    RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
+    CERTIFIED_RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
 }
 
 /// A plan of a motion without violations.

@@ -5,6 +5,7 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
+use crate::limits::ROUNDING;
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{ClearanceSweep, kept_margin};
 use crate::plan::{
@@ -13,9 +14,6 @@ use crate::plan::{
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
-
-/// Relative excess over a velocity limit that counts as rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// How a motion with an initial velocity goes on.
 pub(super) enum Beginning {

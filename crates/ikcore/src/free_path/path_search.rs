@@ -34,7 +34,7 @@ const CHANGES: usize = 60;
 const ROUNDS: u32 = 4;
 
 /// Distance that paths keep beyond the margin (m), since they are examined at closely spaced configurations alone, and corners are cut.
-pub(super) const RESERVE: f64 = 1e-3;
+pub(super) const SEARCH_RESERVE: f64 = 1e-3;
 
 /// The certified motion, or why there is none.
 pub(super) enum Certified {
@@ -110,7 +110,7 @@ impl<'a> PathSearch<'_, 'a> {
                 }
                 return Ok(best.certified(status));
             }
-            let more = RESERVE * f64::from(2_u32.pow(round + 1));
+            let more = SEARCH_RESERVE * f64::from(2_u32.pow(round + 1));
             self.trees.check.be_stricter(self.margin + more.min(self.most));
         }
         Ok(best.certified(Status::Stalled))

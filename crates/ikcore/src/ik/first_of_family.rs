@@ -28,7 +28,7 @@ const OPEN: usize = 2;
 const SEARCHED_SHARE: usize = 400;
 
 /// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
-const ROUNDED: f64 = 1e-4;
+const UNDECIDED: f64 = 1e-4;
 
 /// How a look at scattered values ends without a solution.
 enum Scattered {
@@ -166,7 +166,7 @@ impl<'a> FamilySearch<'a> {
             if let Ok(solution) = attempt.preferred(&self.preference, &mut likely) {
                 return Ok(solution);
             }
-            if self.preference.misses(&mut likely, ROUNDED).next().is_some() {
+            if self.preference.misses(&mut likely, UNDECIDED).next().is_some() {
                 miss = Miss::Near;
             }
         }

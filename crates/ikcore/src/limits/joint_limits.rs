@@ -7,6 +7,9 @@ use crate::error::{Error, Result};
 use crate::objective::Bounds;
 use crate::robot::{Joint, Robot};
 
+/// Excess over a limit that counts as rounding: relative, for positions below 1 absolute (rad, m).
+pub(crate) const ROUNDING: f64 = 1e-9;
+
 /// The limits of all joints: a function of time for each joint and field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limits {

@@ -19,7 +19,7 @@ const JERK_SHAKE: f64 = 0.12;
 const AMPLIFIED: f64 = 5.0;
 
 /// Smallest cube root: that of rounding, which is no noise to average.
-const ROUNDING: f64 = 1e-4;
+const SMALLEST_ROOT: f64 = 1e-4;
 
 /// A memory below this many samples follows single samples.
 pub(super) const NOISELESS: f64 = 2.0;
@@ -95,7 +95,7 @@ impl Circumstances {
     /// Samples to remember so that following the noise takes a small share of the limits.
     fn memory_at_rest(&self) -> f64 {
         let Self { noise, interval, age, jerk_fraction, quickness } = *self;
-        let allowed = (noise * quickness).cbrt().clamp(ROUNDING, 1.0);
+        let allowed = (noise * quickness).cbrt().clamp(SMALLEST_ROOT, 1.0);
         let seen = AMPLIFIED * noise * (1.0 + age / interval) / interval.powi(2);
         if seen == 0.0 {
             return 1.0;

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use crate::shape::{BoundingBall, Shape, ShapeIndex};
 
 /// What the distance of two balls may lose to rounding (m).
-const ROUNDING: f64 = 1e-9;
+const BALL_ROUNDING: f64 = 1e-9;
 
 /// What it may lose relative to the coordinates and radius of one.
-const RELATIVE_ROUNDING: f64 = 1e-12;
+const BALL_ROUNDING_RELATIVE: f64 = 1e-12;
 
 /// Shapes to keep clear of, with a ball around each and, where there are many, a tree to find the near ones. Clones share all of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -49,7 +49,7 @@ impl Obstacles {
             None => {
                 for (obstacle, (middle, own)) in self.0.balls.iter().enumerate() {
                     // What is not a number is near.
-                    if !((middle - center).norm() > radius + own + ROUNDING) {
+                    if !((middle - center).norm() > radius + own + BALL_ROUNDING) {
                         visit(obstacle);
                     }
                 }
@@ -79,7 +79,7 @@ impl From<Vec<Shape>> for Obstacles {
             let BoundingBall { center, radius } = shape.bounding_ball();
             let center = Vector3::from(center);
             let radius = if shape.is_huge() { f64::INFINITY } else { radius };
-            (center, radius + RELATIVE_ROUNDING * (radius + center.amax()))
+            (center, radius + BALL_ROUNDING_RELATIVE * (radius + center.amax()))
         };
         Self(Arc::new(Prepared {
             balls: shapes.iter().map(ball).collect(),

@@ -12,7 +12,7 @@ use crate::timing::Violation;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
 /// Distance added to the margin at end configurations (m), so that motions to them can be certified.
-pub(crate) const RESERVE: f64 = 2e-6;
+pub(crate) const END_RESERVE: f64 = 2e-6;
 
 /// Whether `robot` can collide: with an obstacle, or with itself where that is asked for, or by default if its shape is
 /// known.
@@ -53,7 +53,7 @@ pub(crate) fn scene<'a>(
 /// # Errors
 /// [`Error::InCollision`].
 pub(crate) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
-    let kept = margin + RESERVE;
+    let kept = margin + END_RESERVE;
     match scene.nearest(q)? {
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::{Surroundings, kept_margin};
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, can_collide, no_usable_end};
+use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, can_collide, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
@@ -63,7 +63,7 @@ struct EndSearch<'a> {
 impl<'a> EndSearch<'a> {
     fn new(robot: &'a Robot, options: &PointToPointOptions) -> Result<Self> {
         let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?;
-        let margin = Some(kept_margin(options.margin)? + RESERVE);
+        let margin = Some(kept_margin(options.margin)? + END_RESERVE);
         let surroundings = match can_collide(robot, options) {
             true => Surroundings { margin, ..options.surroundings() },
             false => Surroundings::default(),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile};
+use crate::limits::{Field, Limits, Profile, ROUNDING};
 use crate::math::sampling_range;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
@@ -26,9 +26,6 @@ pub struct ConstantLimits {
     /// Names, and kinds where a robot is known.
     joints: Vec<(String, Option<JointKind>)>,
 }
-
-/// Excess over a limit that counts as rounding of the polynomial coefficients: relative, absolute for positions below 1.
-pub(super) const ROUNDING: f64 = 1e-9;
 
 impl ConstantLimits {
     /// The limits of a path without a robot; `method` names the call in errors.

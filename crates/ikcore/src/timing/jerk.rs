@@ -5,11 +5,12 @@
 //! all limits allow, and the window is chosen to minimise the duration. So every limit holds, but this is a smoothed
 //! optimum, not the optimum under jerk limits.
 
-use super::constant_limits::{ConstantLimits, ROUNDING};
+use super::constant_limits::ConstantLimits;
 use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
+use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
 /// Narrowest and widest window, relative to the duration.

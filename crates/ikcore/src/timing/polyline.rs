@@ -6,7 +6,7 @@ use crate::math::vector::{distance, squared_distance};
 
 /// Distance below which two waypoints count as one, and a line between two blends as none, relative to the extent of the
 /// waypoints: the time for it would be lost to rounding.
-const NEGLIGIBLE: f64 = 1e-12;
+const NEGLIGIBLE_LENGTH: f64 = 1e-12;
 
 /// Points (n each) joined by straight lines in joint space; consecutive points differ.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ impl JointPath {
             return Err(Error::out_of_range("blend", "zero or more and finite", blend));
         }
         let rows: Vec<&[f64]> = waypoints.chunks_exact(joints.len()).collect();
-        let negligible = NEGLIGIBLE * extent(&rows);
+        let negligible = NEGLIGIBLE_LENGTH * extent(&rows);
         let corners = JointPolyline::through(&rows, negligible);
         if corners.0.len() < 2 {
             let problem = "all waypoints are the same: give at least two that differ".into();

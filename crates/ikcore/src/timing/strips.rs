@@ -34,7 +34,7 @@ pub(super) struct Strips {
 
 /// A coefficient of u below this fraction of the largest counts as zero: its line would be so steep that it is mostly
 /// rounding, and it hardly bounds u.
-const NEGLIGIBLE: f64 = 1e-9;
+const NEGLIGIBLE_SLOPE: f64 = 1e-9;
 
 impl Strips {
     pub(super) fn new(joints: usize) -> Self {
@@ -65,7 +65,7 @@ impl Strips {
         for (of_end, slopes) in offsets.chunks_exact_mut(n).zip(slopes.chunks_exact_mut(n)) {
             for ((offset, slope), c) in of_end.iter_mut().zip(slopes).zip(&limits.acceleration) {
                 let (a, b) = (*offset, *slope);
-                if a.abs() <= NEGLIGIBLE * largest {
+                if a.abs() <= NEGLIGIBLE_SLOPE * largest {
                     self.largest_x = self.largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
                     (*offset, *slope) = (f64::INFINITY, 0.0);
                 } else {

@@ -1,7 +1,8 @@
 //! Scaling of a whole motion in time, by one factor.
 
-use super::constant_limits::{ConstantLimits, ROUNDING};
+use super::constant_limits::ConstantLimits;
 use crate::error::{Error, Result};
+use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
@@ -9,7 +10,7 @@ use crate::wording::{number, time};
 pub(super) const CAUTION: f64 = 1.0 + 1e-12;
 
 /// Jumps of an acceleration at a knot that count as rounding, relative to the largest acceleration of the joint.
-const ROUNDING_OF_JUMPS: f64 = 1e-6;
+const JUMP_ROUNDING: f64 = 1e-6;
 
 /// Below this fraction of the duration, the rounding of times may make a segment exceed its limits.
 const SHORT: f64 = 1e-6;
@@ -75,7 +76,7 @@ fn refuse_jumps(motion: &Trajectory, limits: &ConstantLimits) -> Result<()> {
             motion.end_accelerations(i, &mut after, &mut at_end);
         }
         // The end of a short segment late in a motion is rounded with its time.
-        let rounding = |j: usize| ROUNDING_OF_JUMPS * largest[j] + 4.0 * f64::EPSILON * t * steepest[j];
+        let rounding = |j: usize| JUMP_ROUNDING * largest[j] + 4.0 * f64::EPSILON * t * steepest[j];
         let jump = |j: &usize| (after[*j] - before[*j]).abs() > rounding(*j).max(f64::MIN_POSITIVE);
         let limited = (0..n).filter(|j| limits.jerk[*j].is_finite());
         if let Some(j) = limited.filter(|j| largest[*j] > 0.0).find(jump) {

@@ -8,15 +8,12 @@ use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
 use crate::error::Result;
 use crate::kinematics::ReachShortfall;
-use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::limits::{Field, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
-
-/// Rounding of differences between positions, as a fraction of an acceleration or jerk limit.
-const ROUNDED: f64 = 1e-9;
 
 /// Excess over a limit that counts as rounding, in units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
@@ -238,8 +235,8 @@ impl Record {
         let change = step - last;
         let [acceleration, jerk] =
             [Field::Acceleration, Field::Jerk].map(|field| self.limits.smallest_over(field, j, tick));
-        let too_hard = change.abs() - (1.0 + ROUNDED) * acceleration * self.dt.powi(2);
-        let too_abrupt = (change - (last - before)).abs() - (1.0 + ROUNDED) * jerk * self.dt.powi(3);
+        let too_hard = change.abs() - (1.0 + ROUNDING) * acceleration * self.dt.powi(2);
+        let too_abrupt = (change - (last - before)).abs() - (1.0 + ROUNDING) * jerk * self.dt.powi(3);
         larger(too_hard, too_abrupt)
     }
 

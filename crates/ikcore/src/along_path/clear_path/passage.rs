@@ -12,7 +12,7 @@ const FINE: f64 = 0.15;
 const HALVINGS: usize = 3;
 
 /// Distance that postures keep beyond the margin (m), since the arm is not certified between them.
-const RESERVE: f64 = 5e-5;
+const POSTURE_RESERVE: f64 = 5e-5;
 
 /// Postures stay this far from their limits where a motion has left them, relative to the range.
 const INSET: f64 = 1e-3;
@@ -97,7 +97,7 @@ impl<'a> Passage<'a> {
     /// What is kept beyond the margin at a place (m).
     pub fn kept_beyond_margin(&self, fraction: f64) -> f64 {
         let near = self.extras.iter().filter(|extra| (extra.fraction - fraction).abs() <= extra.reach);
-        near.map(|extra| extra.distance).fold(RESERVE, f64::max)
+        near.map(|extra| extra.distance).fold(POSTURE_RESERVE, f64::max)
     }
 
     /// Whether the posture `q` keeps clear there.

@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::motion_state::MotionState;
-use super::phases::Phases;
+use super::phases::{Phases, ROUNDING};
 use crate::math::polynomial::quadratic_roots;
 use crate::math::vector::between;
 
@@ -163,6 +163,3 @@ impl JointProfile {
         self
     }
 }
-
-/// Times that are nearer to each other, relative to the duration, count as the same.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
