@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use super::line_candidates::{LineSearch, Side};
-use super::out_of_contact::{LEEWAY, way_out};
+use super::line_search::{LineSearch, Side};
+use super::out_of_contact::{ALLOWED_LOSS, way_out};
 use super::piece_space::PieceSpace;
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
@@ -19,12 +19,12 @@ use crate::solver::{Monitor, Stop, Stopwatch};
 use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
-/// Straight lines to the ends that are planned to, shared between all ends.
+/// Number of straight lines to the ends, shared between all ends.
 const LINES: usize = 24;
-/// At least so many for each end.
+/// Fewest lines for each end.
 const LINES_OF_EACH: usize = 2;
 
-/// Lines that take longer than the quickest by this factor are left out.
+/// Largest duration of a line, relative to the fastest one.
 const SLOWEST: f64 = 2.0;
 
 const METHOD: &str = "method=\"minmax\"";
@@ -43,10 +43,10 @@ pub(crate) fn composed(
     let space = PieceSpace::new(robot, options)?;
     let mut pieces = Pieces { robot, options, limits: &limits, space: space.as_ref(), evaluations: 0 };
     let way_out = if options.free_start { pieces.way_out(start)? } else { None };
-    let freed = way_out.as_ref().map(|(out, _)| end_of(out)).transpose()?;
+    let freed = way_out.as_ref().map(|(out, _)| Endpoint::at_end_of(out)).transpose()?;
     let start = freed.as_ref().unwrap_or(start);
     let retreat = options.retreat.as_ref().map(|line| pieces.retreat(line, start, monitor)).transpose()?;
-    let retreated = retreat.as_ref().map(end_of).transpose()?;
+    let retreated = retreat.as_ref().map(Endpoint::at_end_of).transpose()?;
     let start = retreated.as_ref().unwrap_or(start);
     let approaches = match &options.approach {
         None => None,
@@ -69,12 +69,7 @@ pub(crate) fn composed(
     Ok(Plan { freed: way_out.map(|(_, freed)| freed), elapsed: stopwatch.elapsed(), ..plan })
 }
 
-/// Where a motion ends.
-fn end_of(motion: &Trajectory) -> Result<Endpoint> {
-    configuration_at(motion, motion.duration()).map(Endpoint::Configuration)
-}
-
-/// What all pieces share.
+/// Robot, options and space that all pieces share.
 struct Pieces<'a> {
     robot: &'a Robot,
     options: &'a PointToPointOptions,
@@ -102,7 +97,7 @@ impl<'a> Pieces<'a> {
         Ok(Some((out, freed)))
     }
 
-    /// What the way out of a contact keeps clear of: contacts that the retreat allows are none.
+    /// Space of the way out of a contact, with the contacts that the retreat allows.
     fn around_start(&self) -> Option<PieceSpace> {
         match &self.options.retreat {
             Some(line) => self.along_line(line),
@@ -124,8 +119,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Notes the smallest distance of a plan and its pieces. All keep the margin, but for contacts that are allowed on one of them
-    /// alone: then it is found at once, because the surroundings of the whole motion do not tell it.
+    /// Notes the smallest distance of a plan and its pieces. All keep the margin, except where contacts are allowed on
+    /// one piece alone: then it is computed at once, because the surroundings of the whole motion do not contain it.
     fn note_clearance(
         &self,
         plan: &mut Plan,
@@ -160,14 +155,14 @@ impl<'a> Pieces<'a> {
         }
         if let (Some((out, freed)), Some(space)) = (way_out, self.around_start()) {
             let lines = out.knots().len() - 1;
-            offer(out, &space, freed.clearance - lines as f64 * LEEWAY)?;
+            offer(out, &space, freed.clearance - lines as f64 * ALLOWED_LOSS)?;
         }
         (plan.clearance, plan.nearest) = least.map_or((None, None), |(least, nearest)| (Some(least), nearest));
         plan.surroundings = None;
         Ok(())
     }
 
-    /// What a straight line keeps clear of.
+    /// Space of a straight line.
     fn along_line(&self, line: &StraightLine) -> Option<PieceSpace> {
         self.space.map(|space| space.among(line.obstacles(&self.options.obstacles)))
     }
@@ -196,7 +191,7 @@ impl<'a> Pieces<'a> {
         })
     }
 
-    /// A straight line from the start, and where it ends.
+    /// Returns a straight line from the start.
     fn retreat(&mut self, line: &StraightLine, start: &Endpoint, monitor: &mut dyn Monitor) -> Result<Trajectory> {
         let along_line = self.along_line(line);
         let mut search = self.search(line, Side::Retreat, along_line.as_ref(), None)?;
@@ -206,7 +201,7 @@ impl<'a> Pieces<'a> {
         found.into_iter().next().ok_or(Error::Interrupted)
     }
 
-    /// Straight lines to the ends, each with the index of its end.
+    /// Returns straight lines to the ends, each with the index of its end.
     fn approaches(
         &mut self,
         line: &StraightLine,

@@ -4,12 +4,12 @@
 //! |---|---|
 //! | `composed` | the motion of all pieces |
 //! | `straight_tip` | joint motions with a straight line of the tip |
-//! | `line_candidates` | the configurations of an end from which there is a clear one |
+//! | `line_search` | the configurations of an end from which there is a clear one |
 //! | `out_of_contact` | the way out of a contact at the start |
 //! | `piece_space` | what the pieces keep clear of |
 
 mod composed;
-mod line_candidates;
+mod line_search;
 mod out_of_contact;
 mod piece_space;
 mod straight_tip;

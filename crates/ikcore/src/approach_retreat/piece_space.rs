@@ -1,4 +1,4 @@
-//! What the pieces at the ends of a motion keep clear of.
+//! Space of the pieces at the ends of a motion.
 
 use crate::error::Result;
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings, kept_margin};

@@ -4,7 +4,7 @@
 //! Where the first three axes meet, the wrist is a point on axes 5 and 6, which turns about axis 7; where the last three do, the
 //! shoulder is a point on axes 2 and 3, which turns about axis 1.
 
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::{ParameterArcs, Wave};
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
@@ -47,7 +47,7 @@ impl ElbowDistance {
     }
 
     fn of(chain: &AxisChain<7>, [shoulder, wrist]: [Vector; 2], circle: Orbit, by_first: bool) -> Option<Self> {
-        let turns = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let turns = chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns);
         let elbow = &chain.joints[3];
         let square = |q: f64| squared_distance(&elbow.displacement(q).place::<Baseline>(&wrist), &shoulder);
         turns.then(|| Self { shoulder, wrist, by_joint_4: Wave::of(square), circle, by_first })

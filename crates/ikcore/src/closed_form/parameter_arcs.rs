@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::closed_form::subproblem::CLAMP;
+use crate::math::turns::without_turns;
 
 /// An arc that ends by less before a limit (rad) may reach it: near a peak of its wave, a change of the pose within the tolerances of a
 /// caller moves its end by as much.
@@ -56,7 +57,7 @@ impl Wave {
         let slack = CLAMP * (base.abs() + swing);
         let is_met = swing > 0.0 && (value - base).abs() <= swing + slack;
         let off = ((value - base) / swing).clamp(-1.0, 1.0).acos();
-        [peak - off, peak + off].into_iter().filter(move |_| is_met).map(|angle| angle - TAU * (angle / TAU).round())
+        [peak - off, peak + off].into_iter().filter(move |_| is_met).map(without_turns)
     }
 
     /// The arcs on which the wave lies between two bounds. Bounds missed by little, or by `slack`, give an arc without length: whether the

@@ -8,7 +8,7 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::arm_angle_limits::{Decisive, Values};
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
 use crate::closed_form::given_joint::GivenJoint;
@@ -128,8 +128,8 @@ impl Redundant {
     /// Prepares limits of the axes (rad, m).
     pub fn limits(&self, axes: [[f64; 2]; 7]) -> AxisLimits {
         let ranges = std::array::from_fn(|k| match self.chain.joints[k].motion {
-            AxisMotion::Turns => AngleRange::of(axes[k]),
-            AxisMotion::Slides => AngleRange::ANY,
+            AxisKind::Turns => AngleRange::of(axes[k]),
+            AxisKind::Slides => AngleRange::ANY,
         });
         let distances = self.distance.map_or([0.0; 2], |distance| distance.range(axes[3]));
         AxisLimits { axes, ranges, distances }
@@ -213,7 +213,7 @@ impl Redundant {
         match (self.parameter(), &self.distance) {
             (Parameter::ArmAngle, Some(distance)) => distance.arm_angles(&pose.goal, *distances),
             (Parameter::ArmAngle, None) => ParameterArcs::CIRCLE,
-            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisMotion::Slides => {
+            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisKind::Slides => {
                 ParameterArcs::one(axes[axis])
             }
             (Parameter::Axis(axis), Some(distance)) => distance.angles(&pose.goal, *distances).within(axes[axis]),

@@ -1,6 +1,6 @@
 //! How neighbouring axes of a chain lie: parallel, meeting, skew; read from its numbers once.
 
-use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
 
 /// How far from parallel (rad) or from meeting (as a fraction of the arm's size) axes may be.
@@ -61,7 +61,7 @@ pub fn are_sharp(joints: &[JointAxis], size: f64) -> bool {
     let pair_is_sharp = |pair: &[JointAxis]| {
         let [exact, sharp] = [EXACT, SHARP].map(|tolerance| Pair::of(&pair[0], &pair[1], size, tolerance));
         // The point of a joint that slides means nothing.
-        let turning = pair.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let turning = pair.iter().all(|joint| joint.motion == AxisKind::Turns);
         let same = (exact == Pair::Parallel) == (sharp == Pair::Parallel);
         same && (!turning || (exact == Pair::Skew) == (sharp == Pair::Skew))
     };

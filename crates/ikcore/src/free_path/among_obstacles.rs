@@ -8,20 +8,18 @@ use super::rrt_connect::TreeSearch;
 use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
-use crate::math::vector::point_between;
-use crate::math::vector::squared_distance;
+use crate::math::vector::{point_between, squared_distance};
 use crate::objective::Point;
 use crate::obstacle::{ClearanceSweep, Scene, kept_margin};
 use crate::plan::{
-    Cost, END_RESERVE, EndName, Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines,
-    configuration_at, nearest_at, no_usable_end, refuse_collision, scene, too_near,
+    Cost, END_RESERVE, EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, as_lines, configuration_at,
+    nearest_at, no_usable_end, refuse_collision, scene, too_near,
 };
 use crate::solver::{Monitor, Status};
-use crate::trajectory::Trajectory;
 
 /// Total number of configurations that all trees may examine: about half a second.
 const BUDGET: usize = 1_000_000;
-/// With fewer collision-free pairs than this, more are sought ...
+/// Fewest collision-free pairs; below it more are sought ...
 const FEW_PAIRS: usize = 3;
 /// ... from this many random starts.
 const TRIES: usize = 400;
@@ -29,7 +27,7 @@ const TRIES: usize = 400;
 const INTERVALS: usize = 16;
 /// Distances that paths may keep beyond the margin (m).
 const CERTIFIED_RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
-/// What rounding may take off a distance in the check of a line (m).
+/// Rounding of distances in the check of a line, in single precision (m).
 const SINGLE: f64 = 3e-5;
 
 /// Plans for checked ends and options.
@@ -84,13 +82,13 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     search.evaluations += trees.check.examined() + sweep.examined();
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
-            let plan = Plan { history, clearance: Some(margin), ..bare(search, trajectory, options.objective) };
+            let plan = Plan { history, clearance: Some(margin), ..search.plan(trajectory, options.objective) };
             if lines.is_some() { with_least_distance(plan, &mut sweep, &scene, margin)? } else { plan }
         }
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             let trajectory = straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?;
-            let plan = Plan { status, ..bare(search, trajectory, options.objective) };
+            let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let plan = with_least_distance(plan, &mut sweep, &scene, margin)?;
             let obstruction = if open.is_empty() {
                 no_way::blocked_ends(&scene, &pairs, margin + END_RESERVE)
@@ -141,7 +139,7 @@ fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -
     Ok(starts)
 }
 
-/// The most that all ends keep beyond the margin (m), of a few distances.
+/// Returns the largest of a few distances that all ends keep beyond the margin (m).
 fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
     let keep = |more: f64| {
         let mut ends = open.iter().flat_map(|pair| [&pair.start, &pair.end]);
@@ -151,19 +149,7 @@ fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
     CERTIFIED_RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
 }
 
-/// A plan of a motion without violations.
-fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
-    let cost = objective.of(search.robot, &trajectory);
-    Plan {
-        history: vec![Improvement { evaluations: search.evaluations, cost }],
-        violations: search.limits.violations(&trajectory),
-        evaluations: search.evaluations,
-        elapsed: search.deadline.elapsed(),
-        ..Plan::of(trajectory, objective, cost)
-    }
-}
-
-/// The plan with its smallest distance, and the violation if that is less than the margin.
+/// Adds the smallest distance of a plan, and its violation if that is less than the margin.
 fn with_least_distance(mut plan: Plan, sweep: &mut ClearanceSweep, scene: &Scene, margin: f64) -> Result<Plan> {
     let whole = [0.0, plan.trajectory.duration()];
     let Some(near) = sweep.smallest(&TimedMotion::new(&plan.trajectory), whole) else { return Ok(plan) };

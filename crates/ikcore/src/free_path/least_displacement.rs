@@ -25,9 +25,9 @@ const DAMPING: f64 = 0.0125;
 /// The smallest weight, relative to the sum.
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
-/// What the targets leave free.
+/// Freedom that the targets leave.
 pub(super) struct Freedom<'a> {
-    /// With the tool of the task, if there is one.
+    /// The robot with the tool of the task, if there is one.
     robot: Cow<'a, Robot>,
     limits: &'a ConstantLimits,
     task: Option<Task>,

@@ -28,7 +28,7 @@ pub(crate) fn point_to_point(
         match moving_start::begin(&mut search, velocity, options, monitor)? {
             Beginning::Whole(plan) => return Ok(*plan),
             Beginning::Stop(stop) => {
-                let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
+                let at_rest = Endpoint::at_end_of(&stop)?;
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };
                 let rest = point_to_point(robot, &at_rest, ends, &options, monitor)?;
                 return moving_start::followed_by(stop, rest, robot, &options);

@@ -7,19 +7,20 @@ use crate::free_path::least_displacement;
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::Limits;
 use crate::objective::Point;
-use crate::plan::{Deadline, EndName, Endpoint, PointToPointOptions, no_usable_end};
+use crate::plan::{Cost, Deadline, EndName, Endpoint, Improvement, Plan, PointToPointOptions, no_usable_end};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Target, Task};
 use crate::timing::ConstantLimits;
+use crate::trajectory::Trajectory;
 
 /// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
     pub limits: &'a ConstantLimits,
     pub start: &'a Endpoint,
-    /// Any of them will do.
+    /// Alternative ends.
     pub ends: &'a [Endpoint],
     pub task: Option<Task>,
     pub rng: LazyRng,
@@ -96,7 +97,7 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    /// The pairs to one end.
+    /// Returns the pairs to one end.
     fn pairs_to(&mut self, chosen: usize, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>, Missing> {
         let (start, end) = (self.start, &self.ends[chosen]);
         self.require_inside(self.name(chosen), end).map_err(Missing::End)?;
@@ -169,6 +170,18 @@ impl<'a> PairSearch<'a> {
     pub(super) fn pair(&self, start: Point, end: Point, chosen: usize) -> EndPair {
         let duration = self.limits.quintic_duration(start.iter().zip(&end).map(|(start, end)| end - start));
         EndPair { start, end, chosen, duration }
+    }
+
+    /// The plan of a motion found at the present cost of the search.
+    pub(super) fn plan(&self, trajectory: Trajectory, objective: Cost) -> Plan {
+        let (evaluations, cost) = (self.evaluations, objective.of(self.robot, &trajectory));
+        Plan {
+            history: vec![Improvement { evaluations, cost }],
+            violations: self.limits.violations(&trajectory),
+            evaluations,
+            elapsed: self.deadline.elapsed(),
+            ..Plan::of(trajectory, objective, cost)
+        }
     }
 
     /// Options of a solve for an end.

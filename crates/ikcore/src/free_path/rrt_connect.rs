@@ -9,7 +9,7 @@ use crate::rng::LazyRng;
 use crate::solver::Monitor;
 use crate::timing::{ConstantLimits, JointPolyline};
 
-/// How the search for a path ended.
+/// Outcome of the search for a path.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Connection {
     /// A clear path.
@@ -23,18 +23,18 @@ pub(super) enum Connection {
 /// Length of an edge while a tree grows (rad, m).
 const STRIDE: f64 = 1.0;
 
-/// Comparisons of nodes for each configuration of the budget: about as much work again.
+/// Budget of node comparisons per configuration of the budget: about as much work again.
 const COMPARISONS: usize = 100;
-/// What drawing a sample costs, in comparisons.
+/// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
 
-/// Draws after which a sample is taken even if it is not promising.
+/// Number of draws after which a sample is taken even if it is not promising.
 const DRAWS: usize = 1000;
 
-/// What a path is wanted for.
+/// A search for a path: its ends and its number.
 pub(super) struct Route<'r> {
     pub start: &'r [f64],
-    /// Any of them will do.
+    /// Alternative ends.
     pub ends: &'r [Vec<f64>],
     /// Whether a path through a configuration can be good enough.
     pub is_promising: &'r dyn Fn(&[f64]) -> bool,
@@ -49,7 +49,7 @@ pub(super) struct TreeSearch<'a> {
     pub budget: usize,
     /// Time that the search may take.
     pub deadline: Deadline,
-    /// The least that ever lay between the trees (rad, m).
+    /// Smallest distance between the trees so far (rad, m).
     pub gap: f64,
     /// Nodes compared with a goal to find the nearest.
     compared: usize,
@@ -74,7 +74,7 @@ impl<'a> TreeSearch<'a> {
         self.check.examined() >= self.budget || self.compared >= comparisons || self.deadline.is_over()
     }
 
-    /// A path between ends that are clear.
+    /// Searches for a path between clear ends.
     pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
         let n = route.start.len();
         let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);

@@ -35,7 +35,7 @@ impl Limits {
         }
     }
 
-    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    /// The robot's own limits, with its maker's limits on acceleration and jerk where these are known.
     pub fn rated(robot: &Robot) -> Self {
         let of = |value: fn(&Joint) -> f64| {
             let values: Vec<f64> = robot.joints().iter().map(value).collect();

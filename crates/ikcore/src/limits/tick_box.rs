@@ -42,18 +42,18 @@ pub(crate) struct TickBox {
     /// The upper position limits over the tick (rad, m).
     pub ceiling: Point,
     varying: [Varying; 3],
-    /// Every tick has this box, whatever the configuration.
+    /// Whether every tick has this box, whatever the configuration.
     lasting: bool,
 }
 
-/// Which values of one kind of limit vary over time.
+/// Variation over time of one kind of limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Varying {
     /// None: all are constant.
     Not,
     /// All alike: joints share one profile.
     Together,
-    /// Each joint on its own.
+    /// Joints vary apart from each other.
     Apart,
 }
 

@@ -11,7 +11,7 @@
 //! | `columns` | columns of Jacobians |
 //! | `gram`, `ldl`, `box_step`, `block_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, of several tasks, beside rows |
 //! | `one_joint` | time-optimal motions of one joint between two states |
-//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
+//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
@@ -39,6 +39,7 @@ pub(crate) mod sincos;
 pub(crate) mod singular_values;
 pub mod so3;
 pub mod ticks;
+pub(crate) mod turns;
 pub(crate) mod vec3;
 pub(crate) mod vector;
 

@@ -9,8 +9,7 @@ use super::Braking;
 use super::bracket::largest_not_positive;
 use super::braking::longest_first;
 
-/// Limits of a joint that could not stop in time otherwise, relative to those that it plans with: still below the limits
-/// that were given.
+/// Limits of a joint that could not stop in time otherwise, relative to its planned limits; still below the given ones.
 const HARDER: f64 = 1.0 + 0.8e-6;
 
 /// Distances to the position limits, and the largest step.
@@ -22,9 +21,9 @@ pub(super) struct Room {
 }
 
 impl Braking {
-    /// The admissible changes of a joint with this step and change, from smallest to largest; without any, the one that comes
-    /// nearest, twice. `slowest_until` gives the smallest velocity limit of the next ticks, in rad or m per tick, if it
-    /// varies.
+    /// Returns the smallest and largest admissible change of a joint with this step and change; if there is none, the
+    /// nearest one twice. `slowest_until` gives the smallest velocity limit of the next ticks, in rad or m per tick, if
+    /// it varies.
     pub(super) fn changes(
         &self,
         [step, change]: [f64; 2],
@@ -49,8 +48,8 @@ impl Braking {
         }
     }
 
-    /// The largest change from `least` to `most` after which the fastest stop stays within `room` above and below
-    /// `slowest_until` its end.
+    /// Returns the largest change from `least` to `most` after which the fastest stop stays within `room` above and
+    /// below `slowest_until` its end.
     fn largest_before(
         &self,
         step: f64,

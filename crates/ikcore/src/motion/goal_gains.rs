@@ -1,4 +1,4 @@
-//! How much a sample corrects the motion of a goal.
+//! Gains by which a sample corrects the motion of a goal.
 
 /// Corrections of position, step and change per sample interval by an unexpected difference.
 #[derive(Debug, Clone, Copy)]
@@ -9,14 +9,15 @@ pub(super) struct GoalGains {
 }
 
 impl GoalGains {
-    /// The straight line of least squares through this many samples.
+    /// Gains of the straight line of least squares through this many samples.
     pub fn of_line(samples: usize) -> Self {
         let n = samples as f64;
         let both = n * (n + 1.0);
         Self { position: 2.0 * (2.0 * n - 1.0) / both, step: 6.0 / both, change: 0.0 }
     }
 
-    /// The parabola that remembers this many samples, `interval` ticks apart: three poles at 1 - 1/m for a memory of m.
+    /// Gains of the parabola that remembers this many samples, `interval` ticks apart: three poles at 1 - 1/m for a
+    /// memory of m.
     pub fn of_parabola(memory: f64, interval: f64) -> Self {
         let (theta, forgotten) = (1.0 - 1.0 / memory, 1.0 / memory);
         // A change adds this fraction of itself to the displacement of an interval.

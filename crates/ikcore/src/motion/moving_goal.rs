@@ -11,13 +11,14 @@ use super::noise_level::{NoiseLevel, root_mean_square};
 use super::{JointState, Scales};
 use crate::objective::Point;
 
-/// A sample further than this many standard deviations from where the goal was expected is no noise.
+/// Distance of a sample from the expected goal, in standard deviations, beyond which it is no noise.
 const OUTLIER: f64 = 6.0;
 
-/// A sample further than this many accelerations of one sample is no smooth motion of a goal that the arm can follow.
+/// Distance of a sample, in accelerations over one sample interval, beyond which the arm cannot follow the goal
+/// smoothly.
 const SUDDEN: f64 = 4.0;
 
-/// Where the memory grows at once from one sample to this many, what was taken for motion was noise.
+/// Growth of the memory from one sample at once to this many: the motion learned before was noise.
 const MISTAKEN: f64 = 2.0 * NOISELESS;
 
 /// Samples that a parabola needs.
@@ -31,7 +32,7 @@ const STRETCH: f64 = 2.0;
 pub(crate) struct GoalSample<'a> {
     /// The configuration that meets the target.
     pub q: &'a [f64],
-    /// Its time, in ticks.
+    /// Time of the sample, in ticks.
     pub time: f64,
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct GoalSample<'a> {
 pub(crate) struct MovingGoal {
     /// Configuration of the goal at the end of the tick.
     q: Point,
-    /// Its displacement in the tick.
+    /// Displacement of the goal in the tick.
     step: Point,
     /// The difference of its displacement to that of the tick before.
     change: Point,

@@ -17,19 +17,20 @@ use crate::objective::{Bounds, Point};
 /// Half width of the noise around the goal, in standard deviations of a sample.
 const EDGE: f64 = 4.0;
 
-/// A joint aims at the goal itself, not at the edge, where its stop is longer than this fraction of the edge.
+/// Length of a stop, as a fraction of the edge, from which on a joint aims at the goal itself, not at the edge.
 const FAST: f64 = 0.125;
 
 /// Time of the linear law, as a fraction of the memory of the goal.
 const SHARPER: f64 = 0.35;
 
-/// So many standard deviations of the goal away, the linear law takes half the time.
+/// Distance, in standard deviations of the goal, at which the linear law takes half the time.
 const NEAR: f64 = 3.0;
 
-/// A correction of the goal by its noise may change the change of the linear law by this fraction of the jerk limit.
+/// Fraction of the jerk limit by which noise of the goal may change the change of the linear law.
 const JERK_SHARE: f64 = 0.125;
 
-/// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
+/// Distance of a goal, in changes plus standard deviations of its noise, from which on joints approach it in
+/// proportion.
 const FAR: f64 = 16.0;
 
 /// Smallest share of its limits that a joint keeps.
@@ -40,7 +41,7 @@ const LEAST_SHARE: f64 = 0.1;
 pub(crate) struct Pursuit<'a> {
     /// The goal at the end of the tick.
     pub goal: &'a MovingGoal,
-    /// How the joints may brake.
+    /// Braking of the joints.
     pub braking: &'a [Braking],
     /// Largest steps and changes.
     pub scales: &'a Scales,

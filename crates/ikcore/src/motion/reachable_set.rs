@@ -13,7 +13,7 @@ use crate::math::MAX_DOF;
 /// Fraction of the velocity, acceleration and jerk limits in use; with all of them, rounding of positions could exceed a limit.
 const PLANNED: f64 = 1.0 - 1e-6;
 
-/// Bounds that cross by less than this (rad, m; relative beyond 1) cross by rounding.
+/// Rounding of bounds that cross (rad, m; relative beyond 1).
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The reachable set of an arm.
@@ -26,7 +26,8 @@ pub(crate) struct ReachableSet {
     positions_vary: bool,
     velocities_vary: bool,
     braking: [Braking; MAX_DOF],
-    /// The farthest that a joint gets before it has stopped; position limits beyond have no effect. Infinite if limits vary.
+    /// Farthest position of a joint before it has stopped; position limits beyond have no effect. Infinite if limits
+    /// vary.
     farthest: [f64; MAX_DOF],
     joints: usize,
 }
@@ -67,7 +68,7 @@ impl ReachableSet {
         Some(set)
     }
 
-    /// How each joint may brake from the last tick on.
+    /// Braking of each joint from the last tick on.
     pub fn braking(&self) -> &[Braking] {
         &self.braking[..self.joints]
     }
@@ -90,7 +91,7 @@ impl ReachableSet {
         self.narrow_now(q, state, time, limits, tick)
     }
 
-    /// [`narrow`](Self::narrow) with the acceleration and jerk limits of the last call of it.
+    /// Narrows as [`narrow`](Self::narrow), with the acceleration and jerk limits of its last call.
     pub fn narrow_now(&self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         let mut feasible = true;
         for j in 0..q.len() {

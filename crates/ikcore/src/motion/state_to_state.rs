@@ -1,4 +1,4 @@
-//! The quickest motion of an arm from one state to another.
+//! The fastest motion of an arm from one state to another.
 
 use super::arm_state::ArmState;
 use super::synchronised::Synchronised;

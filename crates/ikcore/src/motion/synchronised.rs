@@ -11,11 +11,11 @@ pub(crate) struct Synchronised {
     duration: f64,
 }
 
-/// Durations that are nearer to each other, relative to their size, count as one.
+/// Relative difference below which durations count as equal.
 const EQUAL: f64 = 1e-12;
 
 impl Synchronised {
-    /// The quickest motion of all joints together; `None` if there is none.
+    /// Returns the fastest motion of all joints together; `None` if there is none.
     ///
     /// A joint may be unable to take just a little longer than its shortest time, since it would have to turn back; so the
     /// duration is raised until it is possible for every joint.

@@ -1,4 +1,4 @@
-//! What a planner is asked and what it returns: ends, options, the [`Plan`] and its checks.
+//! Arguments and results of planners: ends, options, the [`Plan`] and its checks.
 //!
 //! | file | what |
 //! |---|---|

@@ -32,13 +32,13 @@ pub struct Plan {
     pub clearance: Option<f64>,
     /// The nearest two bodies, where on the trajectory they are nearest, if that is known.
     pub nearest: Option<NearestContact>,
-    /// Why no clear motion was found, if that is so.
+    /// Reason why no clear motion was found, if so.
     pub obstruction: Option<String>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
-    /// How the motion got out of a contact at its start, if it had to.
+    /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
-    /// What the whole motion keeps clear of, if anything.
+    /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
@@ -91,7 +91,7 @@ pub struct Improvement {
     pub cost: f64,
 }
 
-/// What to try where a path leads into collision.
+/// Advice where a path leads into collision.
 const ADVICE_ALONG_PATH: &str =
     "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
 
@@ -166,7 +166,7 @@ impl Plan {
         Ok(Some((near.contact.distance.max(clearance), nearest)))
     }
 
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns the outcome and advice, as a sentence.
     pub fn message(&self) -> String {
         if let Some(obstruction) = &self.obstruction {
             let advice = if self.reference.is_some() { ADVICE_ALONG_PATH } else { self.advice() };
@@ -191,7 +191,7 @@ impl Plan {
         }
     }
 
-    /// Of a certified motion.
+    /// Clearance of a certified motion, in words.
     fn clearance_in_words(&self) -> String {
         let Some(surroundings) = &self.surroundings else { return String::new() };
         let clear = match self.clearance {

@@ -103,7 +103,7 @@ pub struct PointToPointOptions {
 }
 
 impl PointToPointOptions {
-    /// What the motion keeps clear of.
+    /// Surroundings that the motion keeps clear of.
     pub(crate) fn surroundings(&self) -> Surroundings {
         let obstacles = Some(self.obstacles.clone());
         Surroundings { obstacles, margin: self.margin, self_collision: self.self_collision }
@@ -119,7 +119,7 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
-    /// What the motion keeps clear of. By default nothing is checked.
+    /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,

@@ -12,7 +12,8 @@ use crate::timing::{ConstantLimits, scaled, time_all};
 const METHOD: &str = "retime";
 
 impl Plan {
-    /// The same path as fast as these `limits` allow; `None` means those of `robot`, for which the plan was made.
+    /// Returns the same path as fast as these `limits` allow; `None` means those of `robot`, for which the plan was
+    /// made.
     ///
     /// The timing of a plan that has [`path`](Self::path) is optimised again. Any other motion is scaled in time as a
     /// whole, so that it passes the very same configurations. Either way its clearance and accuracy remain.

@@ -62,7 +62,7 @@ fn plan_joined(
     Ok(plan)
 }
 
-/// Err for what the planner does for one tip alone.
+/// Checks that options for one tip alone are not given for several.
 ///
 /// # Errors
 /// [`Error::SeveralTips`].
@@ -128,7 +128,7 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
     }
 }
 
-/// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
+/// The end of a motion by [`Tpbso`](super::Tpbso), checked for options beyond the published method.
 fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&'a Endpoint> {
     let refused = |what: &str, does: &str| {
         Err(Error::Contradiction { problem: format!("{what} by method=\"minmax\": method=\"tpbso\" {does}") })

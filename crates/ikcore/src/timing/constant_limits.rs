@@ -201,7 +201,7 @@ impl ConstantLimits {
         (0..self.dof()).map(time).fold(0.0, f64::max)
     }
 
-    /// `robot` with these position limits.
+    /// Returns `robot` with these position limits.
     ///
     /// # Errors
     /// None in practice: the limits were checked.
@@ -237,7 +237,7 @@ impl ConstantLimits {
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let [velocity, acceleration, jerk] =
             [trajectory.max_velocity(), trajectory.max_acceleration(), trajectory.max_jerk()];
-        // Of the times of the trajectory: a velocity may be off by what an acceleration changes meanwhile, and so on.
+        // Rounding of the times of the trajectory: a velocity may be off by its change in that time, and so on.
         let resolution = 4.0 * f64::EPSILON * trajectory.duration();
         let mut found = vec![];
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {

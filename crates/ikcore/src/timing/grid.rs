@@ -14,7 +14,7 @@ pub(super) struct Segment {
     pub length: f64,
 }
 
-/// More grid points count as a mistake; this many take a tenth of a second.
+/// Largest number of grid points, which takes a tenth of a second; more count as a mistake.
 pub(super) const MAX_GRIDPOINTS: usize = 200_000;
 
 /// Checks that a grid is not too coarse to start and stop on, nor too fine to be intended.
@@ -32,7 +32,7 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
 /// speed limit is soon reached, and up to there the mean speed is half of it.
 const HALVINGS: usize = 5;
 
-/// At most one in this many segments of a piece is used for halvings.
+/// Largest use of segments for halvings: one in this many segments of a piece is used for halvings.
 const SHARE: usize = 4;
 
 /// Cuts the path into about `wanted` segments. No segment spans a break, and a piece that starts or ends at rest has

@@ -24,8 +24,8 @@ const CUTS: usize = 10;
 const SMALLEST_SPAN: f64 = 3e-4;
 /// Number of uniform knots, in addition to those where the jerk changes.
 const EVEN_KNOTS: usize = 500;
-/// If quintics must be slowed down by more than this factor beyond the need at their knots, they oscillate between
-/// knots; then intervals between knots are halved, at most `HALVINGS` times.
+/// Largest slowdown of quintics, relative to the need at their knots. Beyond it they oscillate between knots, whose
+/// intervals are then halved, at most `HALVINGS` times.
 const FAITHFUL: f64 = 1.03;
 const HALVINGS: usize = 2;
 

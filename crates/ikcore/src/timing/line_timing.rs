@@ -1,4 +1,4 @@
-//! The quickest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
+//! The fastest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
 
 use super::constant_limits::ConstantLimits;
 use super::polyline::JointPolyline;
@@ -20,7 +20,7 @@ const TOO_SHORT: f64 = 1e-9;
 /// Maximum number of rounds in which blends and velocities are adjusted to each other.
 const ROUNDS: usize = 200;
 
-/// How long a motion with blends takes on the lines, were there no blends, and in the blends (s).
+/// Durations of a motion with blends (s): of the lines as if there were no blends, and of the blends.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BlendTimes {
     lines: Vec<f64>,
@@ -35,6 +35,15 @@ impl BlendTimes {
 }
 
 impl JointPolyline {
+    /// Returns the faster of the motions with stops and with blends.
+    pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
+        let stopping = self.with_stops(limits)?;
+        match self.with_blends(limits, fractions).transpose()? {
+            Some(blended) if blended.duration() < stopping.duration() => Ok(blended),
+            _ => Ok(stopping),
+        }
+    }
+
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
     pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         if limits.limit_jerk() {
@@ -123,7 +132,7 @@ impl JointPolyline {
         None
     }
 
-    /// Where the blend of inner point `i` begins and ends, if it takes this fraction of the shorter adjacent line.
+    /// Ends of the blend of inner point `i` if it takes this fraction of the shorter adjacent line.
     pub(crate) fn blend_ends(&self, limits: &ConstantLimits, i: usize, fraction: f64) -> [Vec<f64>; 2] {
         let lines = [[i, i - 1], [i, i + 1]].map(|[corner, other]| [&self.0[corner], &self.0[other]]);
         let durations = [line_duration(&self.0[i - 1..=i], limits), line_duration(&self.0[i..=i + 1], limits)];

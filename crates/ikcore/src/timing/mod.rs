@@ -1,4 +1,4 @@
-//! The fastest timing of a joint path, and the constant limits that all timings keep.
+//! The fastest timing of a joint path, and the constant limits of all timings.
 //!
 //! | file | what |
 //! |---|---|

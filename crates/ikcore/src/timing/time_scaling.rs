@@ -12,7 +12,7 @@ pub(super) const CAUTION: f64 = 1.0 + 1e-12;
 /// Jumps of an acceleration at a knot that count as rounding, relative to the largest acceleration of the joint.
 const JUMP_ROUNDING: f64 = 1e-6;
 
-/// Below this fraction of the duration, the rounding of times may make a segment exceed its limits.
+/// Longest segment, as a fraction of the duration, that the rounding of times may take beyond its limits.
 const SHORT: f64 = 1e-6;
 
 /// Maximum number of times that a motion is slowed, because slower times are rounded anew.
@@ -27,8 +27,8 @@ impl ConstantLimits {
         (0..self.dof()).map(of_joint).fold(0.0, f64::max)
     }
 
-    /// That factor for one joint with these velocity, acceleration and jerk: the k-th derivative scales with the k-th
-    /// power of time. A joint that may not move does not.
+    /// Slowdown factor of one joint with these velocity, acceleration and jerk: the k-th derivative scales with the
+    /// k-th power of time. A joint that may not move does not.
     pub(super) fn joint_slowdown(&self, joint: usize, [velocity, acceleration, jerk]: [f64; 3]) -> f64 {
         let ratio = |value: f64, limit: f64| if limit > 0.0 { value.abs() / limit } else { 0.0 };
         ratio(velocity, self.velocity[joint])

@@ -15,11 +15,11 @@ use crate::trajectory::Trajectory;
 pub(super) struct CollisionTest<'a> {
     scene: Scene<'a>,
     margin: f64,
-    /// For a planar arm of lines among ellipses: the exact test of section 4, several times faster than distances.
+    /// The exact test of section 4 for a planar arm of lines among ellipses, several times faster than distances.
     flat: Option<(PlanarArm, Vec<UnitDisc>)>,
 }
 
-/// How near a motion comes to anything.
+/// Smallest distance of a motion from anything.
 pub(super) struct Clearance {
     /// The smallest distance (m).
     pub distance: f64,

@@ -35,14 +35,14 @@ pub(super) struct PathCost<'a> {
     accuracy: f64,
     scale: f64,
     start: Option<&'a [f64]>,
-    motion: Motion,
+    motion: JointSplines,
     /// Second derivatives of the splines through x_phi.
     node_curvatures: Vec<f64>,
 }
 
 /// Splines of all joints over the path from 0 to 1: by joint, then by knot.
 #[derive(Debug, Clone)]
-struct Motion {
+struct JointSplines {
     values: Vec<f64>,
     curvatures: Vec<f64>,
 }
@@ -64,7 +64,7 @@ impl<'a> PathCost<'a> {
         let size = robot.dof() * spline.knots().len();
         Self {
             scale: cost.scale(robot, limits),
-            motion: Motion { values: vec![0.0; size], curvatures: vec![0.0; size] },
+            motion: JointSplines { values: vec![0.0; size], curvatures: vec![0.0; size] },
             node_curvatures: vec![0.0; NODES * redundancy.links()],
             robot,
             limits,

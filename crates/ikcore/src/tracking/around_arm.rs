@@ -45,7 +45,7 @@ const PACE: f64 = 0.1;
 
 /// Motion of obstacles between two calls that give their places.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct ObstacleMotion {
+pub(super) struct ObstacleVelocities {
     /// Velocity of each obstacle (m/s); empty if all are at rest.
     pub velocities: Vec<[f64; 3]>,
     speeds: Vec<f64>,
@@ -55,7 +55,7 @@ pub(super) struct ObstacleMotion {
 #[derive(Debug)]
 pub(super) struct Around {
     pub space: Arc<ClearSpace<'static>>,
-    pub obstacles: ObstacleMotion,
+    pub obstacles: ObstacleVelocities,
     /// Time since the obstacles were where they are said to be (s).
     pub since: f64,
     /// Near pairs at the place of rest if the arm brakes now.
@@ -67,7 +67,7 @@ pub(super) struct Around {
     check: MotionCertificate,
 }
 
-impl ObstacleMotion {
+impl ObstacleVelocities {
     /// With these velocities (m/s): one for each of the obstacles, of which there are `count`, or none.
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl Around {
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
     /// obstacle.
-    pub fn new(space: ClearSpace<'static>, obstacles: ObstacleMotion, limits: &Limits) -> Result<Self> {
+    pub fn new(space: ClearSpace<'static>, obstacles: ObstacleVelocities, limits: &Limits) -> Result<Self> {
         for field in [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk] {
             let remedy = "limits that vary can carry the arm into an obstacle; give numbers, or leave obstacles= out";
             if limits.field(field).is_some() {

@@ -137,7 +137,7 @@ impl JointMotion for CoupledStop {
     }
 
     fn middle(&self, from: f64, to: f64) -> Option<f64> {
-        super::stop_motion::middle(from, to, self.limited)
+        super::command_and_stop::middle(from, to, self.limited)
     }
 
     fn is_spline(&self) -> bool {

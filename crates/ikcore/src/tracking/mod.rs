@@ -12,13 +12,13 @@
 //! | file | what |
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
-//! | `approach_motion` | the approach from rest onto a moving path, `TrackOptions::ease` |
+//! | `path_approach` | the approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
 //! | `tracked_arm` | accepted configuration, clock, limits and targets |
-//! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `limited_state` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | what is around an arm, as rows that its command is to keep |
-//! | `safety_filter`, `stop_motion`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | whether an arm that obstacles hold still comes nearer to its target |
 //! | `constrained_step`, `context`, `tick_aim` | steps beside rows, and what they are found from |
 //! | `tip_tasks`, `track_tips` | several tips: what is asked of them, and the call for their paths |
@@ -29,15 +29,16 @@
 //! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
 
-mod approach_motion;
 mod around_arm;
+mod command_and_stop;
 mod commanded_motion;
 mod constrained_step;
 mod controller;
 mod coupled_stop;
 mod late_sensor;
-mod limited_motion;
+mod limited_state;
 mod model_free;
+mod path_approach;
 mod plant;
 mod progress;
 mod record;
@@ -47,7 +48,6 @@ mod safety_filter;
 mod session;
 mod step;
 mod step_context;
-mod stop_motion;
 mod target_filter;
 mod target_stream;
 mod tip_paths;

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::around_arm::{Around, ObstacleMotion, Response};
+use super::around_arm::{Around, ObstacleVelocities, Response};
 use super::constrained_step::{ConstrainedStep, Resting, StepRequest, Towards};
 use super::coupled_stop::CoupledStop;
 use super::progress::{ArmProgress, Pace, is_nearer};
@@ -61,7 +61,7 @@ impl SafetyFilter {
     /// obstacle.
     pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
         Ok(Self {
-            around: space.map(|space| Around::new(space, ObstacleMotion::default(), limits)).transpose()?,
+            around: space.map(|space| Around::new(space, ObstacleVelocities::default(), limits)).transpose()?,
             rows: ConstrainedStep::with_room(limits.dof(), 2 * MOST_ROWS + MOST_COMING),
             stop: CoupledStop::default(),
             next_stop: CoupledStop::default(),
@@ -87,7 +87,7 @@ impl SafetyFilter {
     pub fn replace(
         &mut self,
         space: Option<ClearSpace<'static>>,
-        obstacles: ObstacleMotion,
+        obstacles: ObstacleVelocities,
         limits: &Limits,
     ) -> Result<()> {
         self.progress.note_replaced();

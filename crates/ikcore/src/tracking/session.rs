@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::around_arm::ObstacleMotion;
-use super::limited_motion::LimitedMotion;
+use super::around_arm::ObstacleVelocities;
+use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::safety_filter::{Kept, SafetyFilter};
@@ -312,7 +312,7 @@ impl Session {
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
     pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
-        let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
+        let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
         let space = if surroundings.is_given() { clear_space(&surroundings, &self.arm.robot)? } else { None };
@@ -335,7 +335,7 @@ impl Session {
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
         let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
-        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
+        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedState::time_to_stop);
         held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
     }
 

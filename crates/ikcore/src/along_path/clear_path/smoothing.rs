@@ -1,4 +1,4 @@
-//! Smoother sequences: stretches of them are replaced by postures between their ends.
+//! Smoothing of sequences: postures between two others are replaced by postures near the straight line.
 
 use super::passage::Passage;
 use super::price::Price;
@@ -46,7 +46,7 @@ impl Smoothing<'_, '_> {
         Ok(())
     }
 
-    /// Replaces what is between two postures by the postures nearest to the straight line between them.
+    /// Replaces the postures between two others by those nearest to the straight line between them.
     fn replace(&mut self, postures: &mut [Point], begin: usize, end: usize) {
         let (from, to) = (&postures[begin], &postures[end]);
         let length = self.fractions[end] - self.fractions[begin];

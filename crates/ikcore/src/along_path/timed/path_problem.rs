@@ -1,4 +1,4 @@
-//! A path, and what the motion along it has to keep.
+//! A path, and the limits and accuracy of the motion along it.
 
 use super::interpolation::{Corners, Interpolation, JointWaypoints};
 use crate::along_path::deviation::TipDeviation;
@@ -28,19 +28,19 @@ pub(crate) struct PathProblem<'a> {
     pub accuracy: f64,
     /// The options of the call.
     pub options: &'a AlongPathOptions,
-    /// Measures the call.
+    /// Stopwatch of the call.
     pub stopwatch: Stopwatch,
 }
 
-/// A motion along the path.
-pub(crate) struct PathMotion {
+/// A path that the tip follows, as joint motion.
+pub(crate) struct FollowedPath {
     /// The configurations that it passes.
     pub waypoints: JointWaypoints,
     /// The joint paths between stops.
     pub stretches: Vec<JointPath>,
-    /// All of them, joined.
+    /// Concatenation of these paths.
     pub path: JointPath,
-    /// The same in time.
+    /// Fastest timing of these paths.
     pub trajectory: Trajectory,
 }
 
@@ -85,7 +85,7 @@ impl<'a> PathProblem<'a> {
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
     }
 
-    /// The fastest motion through `waypoints`, and through the knots added that its accuracy needs.
+    /// Returns the fastest motion through `waypoints`, with knots added as its accuracy requires.
     ///
     /// # Errors
     /// None in practice, as for [`corners_of`](Self::corners_of).
@@ -94,7 +94,7 @@ impl<'a> PathProblem<'a> {
         interpolation: &Interpolation<'_>,
         waypoints: JointWaypoints,
         accuracy: f64,
-    ) -> Result<PathMotion> {
+    ) -> Result<FollowedPath> {
         let mut waypoints = interpolation.refined(waypoints, accuracy)?;
         if self.options.start.is_none() {
             interpolation.draw_inside(&mut waypoints)?;
@@ -102,7 +102,7 @@ impl<'a> PathProblem<'a> {
         let stretches = interpolation.stretches(&waypoints)?;
         let path = interpolation.path(&waypoints)?;
         let trajectory = time_all(&stretches, &self.limits)?;
-        Ok(PathMotion { waypoints, stretches, path, trajectory })
+        Ok(FollowedPath { waypoints, stretches, path, trajectory })
     }
 }
 
@@ -117,7 +117,7 @@ fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) 
     } else {
         return Ok(());
     };
-    let tolerance_band = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+    let tolerance_band = if tip_path.has_tolerance() { ", beyond its tolerance," } else { "" };
     let (value, accuracy) = (number(value), number(accuracy));
     let problem =
         format!("start_q {what} {value} {unit}{tolerance_band} from the path's first point, allowed {accuracy} {unit}");

@@ -4,6 +4,7 @@
 //! determinant vanishes, and its null vector holds x and y.
 
 use crate::closed_form::angle::Angle;
+use crate::math::vector::dot;
 
 /// Equations.
 pub const EQUATIONS: usize = 6;
@@ -132,15 +133,14 @@ fn half_angle(high: f64, low: f64) -> Angle {
 
 /// Two pairs from the null space that both span: x multiplies the products with i to 2 into those with i from 1.
 fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     // x low = high on the solutions; z = (x - 1)/(x + 1) instead of x, which may be infinite.
     let parts = basis.map(|v| {
         let sum: [f64; 9] = std::array::from_fn(|k| v[k + 3] + v[k]);
         let difference: [f64; 9] = std::array::from_fn(|k| v[k + 3] - v[k]);
         (sum, difference)
     });
-    let gram = |i: usize, j: usize| product(&parts[i].0, &parts[j].0);
-    let mixed = |i: usize, j: usize| product(&parts[i].0, &parts[j].1);
+    let gram = |i: usize, j: usize| dot(&parts[i].0, &parts[j].0);
+    let mixed = |i: usize, j: usize| dot(&parts[i].0, &parts[j].1);
     let (a, b, d) = (gram(0, 0), gram(0, 1), gram(1, 1));
     let determinant = a * d - b * b;
     // m = gram^-1 mixed, whose eigenvalues are z.
@@ -155,7 +155,7 @@ fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
     let root = radicand.max(0.0).sqrt();
     for (pair, value) in pairs.iter_mut().zip([half + root, half - root]) {
         let (u, v) = ([m[0][1], value - m[0][0]], [value - m[1][1], m[1][0]]);
-        let weights = if product(&u, &u) > product(&v, &v) { u } else { v };
+        let weights = if dot(&u, &u) > dot(&v, &v) { u } else { v };
         *pair = angles(&std::array::from_fn(|k| weights[0] * basis[0][k] + weights[1] * basis[1][k]));
     }
     (pairs, 2)

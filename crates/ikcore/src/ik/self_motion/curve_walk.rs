@@ -3,6 +3,7 @@
 //! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
 //! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.
 
+use super::wrapped_limits::WrappedLimits;
 use crate::ik::goal_descent::difference;
 use crate::math::MAX_DOF;
 use crate::math::box_step::{BoxStep, least_damping};
@@ -32,7 +33,16 @@ pub(in crate::ik) struct CurvePoint {
     pub along: Point,
 }
 
-/// What a step led along.
+impl CurvePoint {
+    /// Whether a step of this `length` has led to or past `begin`, in its direction.
+    pub fn has_closed_at(&self, begin: &Self, length: f64, limits: &WrappedLimits<'_>) -> bool {
+        let since = limits.apart(&self.q, &begin.q);
+        let is_past = dot(&since, &begin.along) >= 0.0 && dot(&self.along, &begin.along) > 0.0;
+        is_past && norm(&since) < 1.1 * length
+    }
+}
+
+/// Outcome of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ik) enum StepKind {
     /// A stretch of the curve, from the place before to here.

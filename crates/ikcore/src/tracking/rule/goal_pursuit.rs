@@ -6,7 +6,7 @@
 //! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
 
 use super::tick::{Tick, TickResult};
-use crate::math::vector::distance;
+use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
@@ -83,7 +83,7 @@ impl GoalPursuit {
 
     /// How far the expected goal is from an arm at `q` (rad, m).
     fn away(&self, q: &[f64]) -> f64 {
-        self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max)
+        largest_difference(&self.expected, q)
     }
 
     /// Where to look for a clear sample of an arm at `q`, and the sample to replace.
@@ -165,8 +165,7 @@ impl GoalPursuit {
                 }
                 None => self.linearization.write_step(lambda, &begin, ends, &mut self.sample),
             }
-            let longest = self.sample.iter().zip(&begin).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
-            if longest <= SHORT {
+            if largest_difference(&self.sample, &begin) <= SHORT {
                 return;
             }
         }

@@ -11,12 +11,12 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// Configurations of a target that are tried.
+/// Number of configurations of a target that are tried.
 const TRIED: usize = 32;
-/// Values of the parameter of a redundant arm at which its closed form is asked for them.
+/// Number of values of the parameter of a redundant arm at which its closed form is evaluated.
 const REDUNDANCY: usize = 16;
 
-/// Which end of the motion the line is at.
+/// End of the motion at which a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     /// After the start.
@@ -43,25 +43,25 @@ impl Side {
     }
 }
 
-/// Finds straight lines at the ends of a motion.
+/// Search for straight lines at an end of a motion.
 pub(super) struct LineSearch<'a> {
     pub options: &'a PointToPointOptions,
     pub line: &'a StraightLine,
     pub side: Side,
     pub tip: StraightTip<'a>,
     pub position_limits: Limits,
-    /// What the line keeps clear of, and the configurations that do; `None` if nothing can collide.
+    /// Space of the line, and its clear configurations; `None` if nothing can collide.
     pub along_line: Option<(&'a PieceSpace, ClearSpace<'a>)>,
-    /// Where the line meets the rest of the motion no contact is allowed.
+    /// Clear configurations where the line meets the rest of the motion: there no contact is allowed.
     pub beyond: Option<ClearSpace<'a>>,
-    /// Configurations of the targets near this one come first (n,).
+    /// Configuration (n,) near which configurations of the targets come first.
     pub near: Option<Vec<f64>>,
     /// Evaluations so far.
     pub evaluations: usize,
 }
 
 impl LineSearch<'_> {
-    /// Up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
+    /// Returns up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
     ///
     /// # Errors
     /// [`Error::Unreachable`] if there is none: why the best one is none; errors of the surroundings.
@@ -95,7 +95,7 @@ impl LineSearch<'_> {
         Ok(found)
     }
 
-    /// The configurations of an end; clear ones, if it is a target.
+    /// Returns the configurations of an end; clear ones if it is a target.
     fn configurations(&mut self, name: EndName, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Vec<f64>>> {
         let target = match end {
             Endpoint::Configuration(q) => {
@@ -123,7 +123,7 @@ impl LineSearch<'_> {
         Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())
     }
 
-    /// The motion along the line from or to `q`, or how far it gets (m), and why no farther.
+    /// Returns the motion along the line from or to `q`, or the length reached (m) and the hindrance.
     fn from(&self, q: &[f64]) -> Result<Result<Trajectory, (f64, Hindrance)>> {
         let (frame, place) = (self.tip.robot().tip(q), self.side.place());
         // Always found from the end of the motion away, and reversed for an approach.
@@ -163,7 +163,7 @@ fn in_words(contact: &Contact, margin: f64) -> String {
     format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other)
 }
 
-/// Why a target has no clear configuration.
+/// Explains why a target has no clear configuration.
 fn why_none(set: &SolutionSet) -> String {
     match (&set.obstruction, &set.miss) {
         (Some(obstruction), _) => obstruction.to_string(),
@@ -173,7 +173,7 @@ fn why_none(set: &SolutionSet) -> String {
     }
 }
 
-/// The same motion from its end to its start.
+/// Returns the motion reversed in time.
 fn reversed(motion: &Trajectory) -> Result<Trajectory> {
     let (duration, n) = (motion.duration(), motion.joints().len());
     let times: Vec<f64> = motion.knots().iter().rev().map(|t| duration - t).collect();

@@ -13,7 +13,7 @@ const SHORTEST: f64 = 1e-3;
 
 /// The motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
 #[derive(Debug)]
-pub(super) struct StopMotion<'a> {
+pub(super) struct CommandAndStop<'a> {
     from: &'a [f64],
     command: &'a [f64],
     /// The stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
@@ -23,7 +23,7 @@ pub(super) struct StopMotion<'a> {
     ticks: f64,
 }
 
-impl<'a> StopMotion<'a> {
+impl<'a> CommandAndStop<'a> {
     /// Of an arm at `from` that is given `command`. `limited`: how its joints may brake, and their motion in the last tick.
     pub fn new(from: &'a [f64], command: &'a [f64], limited: Option<(&[Braking], &'a JointState)>) -> Self {
         let mut stops: SmallVec<[(StopCurve, f64); MAX_DOF]> = SmallVec::new();
@@ -59,7 +59,7 @@ impl<'a> StopMotion<'a> {
     }
 }
 
-impl JointMotion for StopMotion<'_> {
+impl JointMotion for CommandAndStop<'_> {
     fn write(&self, tick: f64, q: &mut [f64]) {
         if tick < 0.0 && self.is_spline() {
             for (q, (from, step)) in q.iter_mut().zip(self.from.iter().zip(self.before)) {

@@ -17,12 +17,12 @@ use crate::trajectory::Trajectory;
 const AROUND: usize = 3;
 
 /// The approach, and the ticks that it takes.
-pub(super) struct ApproachMotion {
+pub(super) struct PathApproach {
     pub ticks: usize,
     trajectory: Trajectory,
 }
 
-impl ApproachMotion {
+impl PathApproach {
     /// The earliest approach of an arm at rest at `start`. The path is followed without acceleration and jerk limits for
     /// as long as no motion within them meets it. `None` if none does before it ends.
     ///
