@@ -11,7 +11,7 @@ others and of random descents, which count if they reach the pose by Pinocchio's
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -37,7 +37,7 @@ SHOWN = 20  # missing solutions written out for an arm
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables, and the reasons for missing libraries."""
+    """Figures so far, as lines of tables, and the reasons for missing libraries."""
 
     times: list[list[str]] = field(default_factory=list)
     complete: list[list[str]] = field(default_factory=list)
@@ -107,7 +107,7 @@ def measure_times(chain: Chain, adapters: list[Adapter], poses: int, measured: M
 
 
 def good_solutions(chain: Chain, targets: np.ndarray, calls: Calls) -> np.ndarray:
-    """The number of solutions of each pose that reach it, inside the limits, each counted once."""
+    """Counts the solutions of each pose that reach it inside the limits, each once."""
     return np.array(
         [
             len(completeness.distinct(completeness.verified(chain, target, found)))
@@ -153,7 +153,7 @@ def measure_completeness(
 
 
 def write(measured: Measured, out: Path) -> None:
-    """The tables and the report."""
+    """Writes the tables and the report."""
     write_table(out / "times.csv", TIMES_COLUMNS, measured.times)
     summary = solutions_report.summary_lines([dict(zip(TIMES_COLUMNS, line, strict=True)) for line in measured.times])
     write_table(out / "solutions.csv", solutions_report.SUMMARY_COLUMNS, summary)

@@ -14,7 +14,7 @@ fn pentagram() -> TipPath {
     TipPath::along(&Path::new(star)).expect("a tip_path")
 }
 
-/// r = 1 + 0.35 cos 3u about (1, 1), scaled to a largest radius of 0.6.
+/// Trefoil r = 1 + 0.35 cos 3u about (1, 1), scaled to a largest radius of 0.6.
 fn trefoil() -> TipPath {
     let point = |i: u32| {
         let u = TAU * f64::from(i) / 50.0;

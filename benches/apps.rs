@@ -1,4 +1,4 @@
-//! The seven motions of Yuan et al. 2016 by its own method and by others, and one iteration of it.
+//! APPS on the seven motions of Yuan et al. 2016, beside other methods, and one iteration of it.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use ikcore::solver::{Algorithm, AnySolver, Apps, JacobianTranspose, LevenbergMar
 use ikcore::solver::{Stop, Unattended};
 use ikcore::task::{Aims, Target, Tolerance};
 
-/// Joint angles (degrees) from which each motion starts, and the position (m) that it leads to: Tables 3 and 4.
+/// Joint angles (degrees) at the start of each motion, and the position (m) at its end: Tables 3 and 4.
 const MOTIONS: [(&str, [f64; 6], [f64; 3]); 6] = [
     ("I-1", [0.01, -78.33, 183.51, 0.16, -44.87, -179.93], [1.9485, 0.6342, 1.1262]),
     ("1-2", [-20.10, -66.53, 184.76, 142.27, 34.16, -147.38], [1.7850, 0.6342, 1.2252]),
@@ -22,7 +22,7 @@ const MOTIONS: [(&str, [f64; 6], [f64; 3]); 6] = [
     ("5-6", [22.00, -75.73, 191.81, 222.58, 33.61, -217.43], [1.9485, -0.6342, 1.1262]),
 ];
 
-/// The rotation of eq. (22), column by column.
+/// Rotation of eq. (22), column by column.
 const AXES: [[f64; 3]; 3] = [[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]];
 
 fn kuka() -> Robot {
@@ -60,7 +60,7 @@ fn motions(c: &mut Criterion) {
     }
 }
 
-/// A budget that is spent, over the number of iterations: what one costs with all that goes with it.
+/// Cost of one iteration, overhead included: the time of a spent budget over the number of iterations.
 fn iteration(c: &mut Criterion) {
     let robot = kuka();
     let (_, start, origin) = MOTIONS[3];
@@ -68,7 +68,7 @@ fn iteration(c: &mut Criterion) {
     let mut group = c.benchmark_group("iteration");
     group.throughput(Throughput::Elements(300));
     for (name, solver) in [("APPS as published", Apps::paper()), ("APPS", Apps::default())] {
-        // E_0 = 0 is never met, so that all 300 iterations are made.
+        // E_0 = 0 is never met, so all 300 iterations are made.
         let solver = Apps { error_threshold: Some(f64::MIN_POSITIVE), ..solver };
         let mut options = options(solver, &start, 1e-4);
         options.stop.max_iterations = 300;

@@ -1,4 +1,4 @@
-//! Poses by the default solver, in batches: on one core and on two.
+//! Batches of poses by the default solver, on one core and on two.
 
 use std::time::Duration;
 

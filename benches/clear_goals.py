@@ -15,7 +15,7 @@ Coal judges every answer. Times are those of the processor, so that a busy machi
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -71,7 +71,7 @@ def parse_arguments() -> argparse.Namespace:
 def measure(
     arm: MotionBenchArm, problems: list[dict], scratch: Path, arguments: argparse.Namespace, notes: list[str]
 ) -> list[list[str]]:
-    """Times every way on its poses, one after the other, and judges the answers."""
+    """Times every method on its poses, one after the other, and judges the answers."""
     scenes = [arm.scene(problem) for problem in problems]
     judges = [CoalScene(arm, problem) for problem in problems]
     targets = [arm.robot.fk(problem["goal"]) for problem in problems]
@@ -103,7 +103,7 @@ def by_barriers(
     targets: list[np.ndarray],
     judges: list[CoalScene],
 ) -> Way:
-    """The way of a library that builds a model of each scene."""
+    """Method of a library that builds a model of each scene."""
 
     def prepared(i: int) -> Call:
         model = library(arm, problems[i], scratch)
@@ -127,7 +127,7 @@ def line(
     every: int,
     notes: list[str],
 ) -> list[str]:
-    """Times one way on one of `every` poses, judges it, and returns its line of the table."""
+    """Times one method on one of `every` poses, judges it, and returns its line of the table."""
     times, answers = np.empty(len(targets)), []
     way(0)()  # what is loaded at the first call is not timed
     gc.collect()

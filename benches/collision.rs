@@ -1,4 +1,4 @@
-//! "Is this configuration clear?" for a Panda of capsules or spheres among boxes, a mesh and a point cloud.
+//! Collision test of a configuration, for a Panda of capsules or spheres among boxes, a mesh and a point cloud.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use ikcore::shape::Shape;
 
 const CONFIGURATIONS: usize = 1000;
 
-/// Spheres along the links, about as many as a spherized model has.
+/// Panda with spheres along the links, about as many as a spherized model has.
 fn of_spheres(robot: &Robot) -> Robot {
     let rods = robot.with_capsules_along_links(0.06).expect("rods");
     let spheres = rods.capsules().iter().flat_map(|rod| {
@@ -24,7 +24,7 @@ fn of_spheres(robot: &Robot) -> Robot {
     robot.with_capsules(spheres.collect()).expect("spheres")
 }
 
-/// Capsules side by side along the links, about as many as a model of fitted capsules has.
+/// Panda with capsules side by side along the links, about as many as a model of fitted capsules has.
 fn of_capsules(robot: &Robot) -> Robot {
     let rods = robot.with_capsules_along_links(0.05).expect("rods");
     let capsules = rods.capsules().iter().flat_map(|rod| {
@@ -51,7 +51,7 @@ fn boxes(rng: &mut LazyRng, count: usize) -> Vec<Shape> {
     (0..count).map(|_| one()).collect()
 }
 
-/// 1,000 triangles of a bumpy ball in front of the arm.
+/// Mesh of 1,000 triangles: a bumpy ball in front of the arm.
 fn mesh() -> Shape {
     let triangles = Shape::ellipsoid([0.7, 0.0, 0.3], [0.2, 0.3, 0.2], None).expect("a ball").triangles();
     let corners: Vec<[f64; 3]> = triangles

@@ -11,7 +11,7 @@ thread, the call included; then a circle to follow. Pinocchio's forward kinemati
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -54,7 +54,7 @@ GENERAL = [
     closed_form.EaikCall,
     closed_form.Ssik,
 ]
-# One descent from the start. They take milliseconds: apart, so that they do not empty the caches of the others, and on
+# Single descents from the start. They take milliseconds: run apart, to spare the caches of the others, and on
 # fewer targets.
 LOCAL = [
     local.PinocchioClik,
@@ -91,7 +91,7 @@ BATCH = 20_000
 
 @dataclass
 class Measured:
-    """All figures so far; texts are cells of tables."""
+    """Figures so far; texts are cells of tables."""
 
     targets: int  # a robot
     only: list[str] | None  # names of the libraries that are measured; None: all
@@ -102,12 +102,12 @@ class Measured:
     loads: list[float] = field(default_factory=list)  # load averages of the last minute; a busy machine spoils ratios
 
     def among(self, libraries: list[type[Adapter]]) -> list[type[Adapter]]:
-        """Those of the libraries that are measured."""
+        """Selects the libraries that are measured."""
         return [library for library in libraries if self.only is None or library.name in self.only]
 
 
 def main() -> None:
-    """Measure everything and write it down, anew after each robot: the run is long."""
+    """Measures everything and writes it down, again after each robot: the run is long."""
     arguments = parse_arguments()
     warnings.filterwarnings("ignore", category=DeprecationWarning)  # libraries of libraries
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ def main() -> None:
 
 
 def measure(chain: Chain, measured: Measured) -> None:
-    """Everything on one robot."""
+    """Measures everything on one robot."""
     for task in TASKS:
         measured.rows += compare(chain, task, measured.among(GENERAL), measured.targets, ROUNDS)
     measured.rows += compare(chain, POSE, measured.among(LOCAL), max(1, measured.targets // LOCAL_SHARE), 1)
@@ -135,7 +135,7 @@ def measure(chain: Chain, measured: Measured) -> None:
 
 
 def write(measured: Measured, out: Path) -> None:
-    """The tables, the report and the picture."""
+    """Writes the tables, the report and the picture."""
     write_table(out / "compare.csv", ROW_COLUMNS, [*map(row_line, measured.rows)])
     summary = summary_lines(measured.rows, POSE, ORDERS, versions())
     write_table(out / "summary.csv", summary_columns(ORDERS), summary)
@@ -146,7 +146,7 @@ def write(measured: Measured, out: Path) -> None:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What to measure, and where the results go."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arms.add_arguments(parser, robots=[Path(__file__).parents[2] / "shared" / "robots"])
     parser.add_argument("--only", nargs="+", help="names of the libraries to measure (default: all)")
@@ -156,7 +156,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int, rounds: int) -> list[Row]:
-    """The rows of one task on one robot, in every order."""
+    """Measures the rows of one task on one robot, in every order."""
     method, tolerance = TASKS[task]
     libraries = [library for library in libraries if library.offers(method)]
     adapters, missing = load(libraries, chain, tolerance)
@@ -177,7 +177,7 @@ def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int,
 
 
 def time_kinematics(chain: Chain, libraries: list[type[Adapter]]) -> list[list[str]]:
-    """Forward kinematics and Jacobian of every library that has them, in ns a call."""
+    """Measures forward kinematics and Jacobian of every library that has them, in ns a call."""
     configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
     adapters, _ = load([library for library in libraries if library.offers("fk")], chain, TASKS[POSE][1])
     poses = per_call({adapter.name: adapter.fk for adapter in adapters}, configurations)
@@ -190,14 +190,14 @@ def time_kinematics(chain: Chain, libraries: list[type[Adapter]]) -> list[list[s
 
 
 def time_batch(chain: Chain) -> list[str]:
-    """What beetle-ik solves in a second, on one core and on all."""
+    """Measures the solves of beetle-ik per second, on one core and on all."""
     adapter = BEETLE_IK(chain, 1e-6)
     targets, _ = chain.targets(BATCH)
     return [chain.name, *(f"{batch_rate(adapter, targets, threads):,.0f}" for threads in (1, os.cpu_count() or 1))]
 
 
 def markdown(measured: Measured) -> str:
-    """The whole report."""
+    """Returns the whole report."""
     rows, count = measured.rows, measured.targets
     sections = [
         f"# Inverse kinematics libraries compared\n\n{count} reachable targets a robot, drawn uniformly inside the "
@@ -230,7 +230,7 @@ def markdown(measured: Measured) -> str:
 
 
 def versions() -> dict[str, str]:
-    """What is installed, by the names of the libraries."""
+    """Versions of the installed libraries, by name."""
     found = {}
     for library in EVERY:
         try:
@@ -242,7 +242,7 @@ def versions() -> dict[str, str]:
 
 @functools.cache
 def processor() -> str:
-    """The processor's name, which Python itself only knows on some systems."""
+    """Name of the processor, which Python itself only knows on some systems."""
     listing = Path("/proc/cpuinfo")
     lines = listing.read_text().splitlines() if listing.exists() else []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]

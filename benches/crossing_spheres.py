@@ -1,4 +1,4 @@
-"""How often a sphere that crosses hits an arm that follows its target with `Tracker`.
+"""Rate at which a crossing sphere hits an arm that follows its target with `Tracker`.
 
     python benches/crossing_spheres.py --first 10000 --scenes 334 --out DIR
 
@@ -11,7 +11,7 @@ thousands of scenes take minutes.
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -27,7 +27,7 @@ from peers.report import plain_section, write_table
 
 import beetle_ik as bik
 
-# Of the capsules along the links (m). With those of the other arms the wrist of a UR10 would never be as clear of
+# Radii of the capsules along the links (m). With those of other arms the wrist of a UR10 would never be as clear of
 # itself as a start must be.
 RADII = {"ur10": 0.03}
 COLUMNS = [
@@ -72,7 +72,7 @@ def main() -> None:
 
 
 def from_sphere(scene: Scene, q: np.ndarray, *, smooth: bool) -> np.ndarray:
-    """The smallest distance (m) of the moving sphere from the arm in each tick of `q` (k + 1, n)."""
+    """Smallest distance (m) of the moving sphere from the arm in each tick of `q` (k + 1, n)."""
     robot = scene.robot
     sphere = next(thing for thing in scene.things if thing.moves)
     instants = [(tick + s, at) for tick in range(len(q) - 1) for s, at in clear_streams.between(q, tick, smooth=smooth)]
@@ -92,7 +92,7 @@ def from_sphere(scene: Scene, q: np.ndarray, *, smooth: bool) -> np.ndarray:
 
 
 def line(arm: str, limits: str, nearest: np.ndarray, numbers: list[int]) -> list[str]:
-    """The figures of one arm under some limits; `nearest` (scenes, ticks) in m."""
+    """Figures of one arm under some limits; `nearest` (scenes, ticks) in m."""
     least = nearest.min(axis=1)
     hit = np.flatnonzero(least < 0.0)
     return [

@@ -28,7 +28,7 @@ KINDS = ("velocity", "acceleration", "jerk")
 
 @dataclass
 class Outcome:
-    """Counts over the streams of one kind, and the largest excess over a limit: relative to it, rounding deducted."""
+    """Counts over the streams of one kind, and the largest relative excess over a limit, without rounding."""
 
     streams: int = 0
     ticks: int = 0
@@ -144,7 +144,7 @@ def _stop(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
 
 
 def excesses(stream: Stream, q: np.ndarray) -> dict[str, float]:
-    """Returns the largest excess of each finite difference over its limit, relative to it, rounding deducted.
+    """Returns the largest excess of each finite difference over its limit, relative to the limit, without rounding.
 
     The first `HISTORY` rows of `q` are the configurations up to the start.
     """

@@ -1,6 +1,6 @@
 """Random arms, limits and targets for `hostile_streams.py`."""
 
-# The functions of TARGETS all take the same.
+# All functions of TARGETS have the same signature.
 # ruff: noqa: ARG001
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ DROPOUTS, NOT_A_NUMBER = 0.3, 0.01  # shares of the ticks of a stream that has t
 
 @dataclass(frozen=True)
 class Stream:
-    """A tracker and its targets, one per tick; None where no target arrives."""
+    """Tracker and its targets, one per tick; None where no target arrives."""
 
     name: str
     robot: bik.Robot

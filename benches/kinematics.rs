@@ -28,7 +28,7 @@ fn single(c: &mut Criterion) {
         group.bench_function("four tip positions", |b| {
             b.iter(|| robot.tip_positions(black_box(&qs), |tip| _ = black_box(tip)));
         });
-        // A planar arm turns about one axis only: of its pose there is no index.
+        // Planar arms turn about one axis only: the pose has no index.
         let motion = if name == "planar5" { Motion::Position } else { Motion::Pose };
         let measure = Manipulability::of(&robot, motion);
         let mut gradient = vec![0.0; robot.dof()];

@@ -11,7 +11,7 @@ at rest, time a tick), a smooth path without noise (lag), and a noisy stream of 
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -76,7 +76,7 @@ STREAM_TICK = 2e-3  # s
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables, and the reasons for missing libraries."""
+    """Figures so far, as lines of tables, and the reasons for missing libraries."""
 
     jumps: list[list[str]] = field(default_factory=list)
     smooth: list[list[str]] = field(default_factory=list)
@@ -145,7 +145,7 @@ def measure_jumps(chain: Chain, setting: Setting, arguments: argparse.Namespace,
 def judge_jump(
     chain: Chain, commanded: motion.Commanded, goal: np.ndarray, setting: Setting, noise: float
 ) -> list[float]:
-    """The figures of one jump except the time in a row; the last third of the time counts as rest."""
+    """Figures of one jump except the time in a row; the last third of the time counts as rest."""
     points, dt = motion.tips(chain, commanded.q), setting.dt
     at_rest = commanded.q[-len(commanded.q) // 3 :]
     return [
@@ -160,7 +160,7 @@ def judge_jump(
 
 
 def over_limits(q: np.ndarray, setting: Setting) -> tuple[float, float]:
-    """The largest acceleration and jerk relative to their limits, NaN where there is none; the arm starts at rest."""
+    """Largest acceleration and jerk relative to their limits, NaN without a limit; the arm starts at rest."""
     q = np.vstack([q[:1], q[:1], q])
     acceleration = motion.excess(q, 2, setting.dt, setting.acceleration)
     return acceleration, np.nan if setting.jerk is None else motion.excess(q, 3, setting.dt, setting.jerk)
@@ -219,24 +219,24 @@ def rms(differences: np.ndarray) -> float:
 
 
 def available(movers: list[type[Mover]], chain: Chain, setting: Setting, measured: Measured) -> list[Mover]:
-    """The libraries that are installed and accept this arm and these limits; notes the others."""
+    """Selects the libraries that are installed and accept this arm and these limits; notes the others."""
     found, missing = load(movers, chain, setting)
     measured.missing |= dict.fromkeys(f"- {name}, {chain.name}: {reason}" for name, reason in missing.items())
     return found
 
 
 def limit_name(jerk: float | None) -> str:
-    """The limit as printed in the tables."""
+    """Formats the limit for the tables."""
     return "none" if jerk is None else f"{jerk:g}"
 
 
 def cell(value: float) -> str:
-    """The figure as printed in the tables; a dash if it is not finite."""
+    """Formats the figure for the tables; a dash if it is not finite."""
     return f"{value:.4g}" if np.isfinite(value) else "-"
 
 
 def write(measured: Measured, out: Path) -> None:
-    """The tables, the report and the picture."""
+    """Writes the tables, the report and the picture."""
     write_table(out / "jumps.csv", JUMP_COLUMNS, measured.jumps)
     write_table(out / "smooth.csv", SMOOTH_COLUMNS, measured.smooth)
     write_table(out / "stream.csv", STREAM_COLUMNS, measured.stream)
@@ -250,12 +250,12 @@ def write(measured: Measured, out: Path) -> None:
 
 
 def summarised(measured: Measured) -> list[list[str]]:
-    """The lines of the short table."""
+    """Returns the lines of the short table."""
     return summary_lines(rows(JUMP_COLUMNS, measured.jumps), rows(SMOOTH_COLUMNS, measured.smooth))
 
 
 def markdown(measured: Measured) -> str:
-    """The whole report."""
+    """Returns the whole report."""
     every = dict.fromkeys((*JUMPING, *STREAMING))
     late = f"{1e3 * STREAM_LATENCY:g} to {1e3 * (STREAM_LATENCY + STREAM_JITTER):g} ms late"
     sections = [

@@ -13,7 +13,7 @@ the program says so and ends.
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -68,13 +68,13 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def read_poses(file: Path) -> np.ndarray:
-    """Poses (k, 4, 4) of the tip."""
+    """Reads poses (k, 4, 4) of the tip."""
     rows = np.loadtxt(file, delimiter=",", skiprows=1)
     return np.array([bik.pose(row[:3], wxyz=row[3:]) for row in rows])
 
 
 def measure(arm: MotionBenchArm, problem: dict, poses: np.ndarray, repeats: int, *, ignored: bool) -> list:
-    """One line of the table."""
+    """Measures one line of the table."""
     limits = bik.Limits(acceleration=5.0, lower=problem["lower"], upper=problem["upper"])
     boxes = [bik.obstacles.Box(box["center"], box["size"]) for box in problem["boxes"]]
     around = {} if ignored else {"obstacles": boxes, "margin": MARGIN}
@@ -101,7 +101,7 @@ def measure(arm: MotionBenchArm, problem: dict, poses: np.ndarray, repeats: int,
 
 
 def as_judged(box: dict) -> dict:
-    """A box as the judge reads it."""
+    """Converts a box to the form of the judge."""
     return {"position": box["center"], "xyzw": [0, 0, 0, 1], "half_extents": 0.5 * np.asarray(box["size"])}
 
 

@@ -18,7 +18,7 @@ sample to sample (`peers/sphere_judge.py`).
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -91,7 +91,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def wanted(planner_types: tuple[type[Planner], ...], arguments: argparse.Namespace) -> list[type[Planner]]:
-    """The planners that the command line asks for."""
+    """Selects the planners that the command line names."""
     return [each for each in planner_types if not arguments.only or any(name in each.name for name in arguments.only)]
 
 
@@ -126,7 +126,7 @@ def measure(
     problems: list[dict[str, Any]],
     arguments: argparse.Namespace,
 ) -> list[Result]:
-    """Lets the planners take turns on the problems, and judges what they claim."""
+    """Runs the planners by turns on the problems, and judges their motions."""
     workers = list(started(planner_types, arm, arguments)) if problems else []
     order, results, scene = np.random.default_rng(0), [], None
     for number, problem in enumerate(problems):
@@ -153,7 +153,7 @@ def measure(
 
 
 def started(planner_types: list[type[Planner]], arm: Arm, arguments: argparse.Namespace) -> Iterator[Worker]:
-    """Starts a process for each planner that can be had."""
+    """Starts a process for each available planner."""
     own = Path(bik.__file__).parents[1]
     for planner in planner_types:
         old, ours = issubclass(planner, planners.Old), issubclass(planner, planners.BeetleIk)

@@ -1,4 +1,4 @@
-//! Plans from end to end: the plane's arms of Wang et al. (2019), panda behind a box and around a wall; one clearance.
+//! Plans from end to end: the planar arms of Wang et al. (2019), panda behind a box and around a wall; one clearance.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
@@ -9,7 +9,7 @@ use ikcore::shape::Shape;
 use ikcore::solver::Unattended;
 use ikcore::task::Target;
 
-/// Limits with this acceleration and, where given, velocity for all joints.
+/// Limits with this acceleration and, if given, velocity for all joints.
 fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Option<Limits> {
     let all = |value: f64| vec![Profile::Constant(value)];
     let limits = Limits::of(robot).replace(Field::Acceleration, all(acceleration)).expect("limits");

@@ -31,7 +31,7 @@ Table = tuple[np.ndarray, np.ndarray, np.ndarray]  # a (m), alpha (rad), d (m), 
 
 @dataclass
 class Count:
-    """Over the arms of one kind."""
+    """Counts over the arms of one kind."""
 
     poses: int = 0
     complete: int = 0
@@ -104,7 +104,7 @@ def distinct(solutions: np.ndarray) -> np.ndarray:
 
 
 def descended(robot: bik.Robot, pose: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Returns the distinct solutions (k, 6) that descents from random starts end on."""
+    """Returns the distinct solutions (k, 6) of descents from random starts."""
     starts = random.uniform(robot.lower, robot.upper, (count, robot.dof))
     ended = bik.solve_batch(
         robot,
@@ -126,7 +126,7 @@ def judge(robot: bik.Robot, pose: np.ndarray, found: bik.SolutionSet, known: np.
     count.solutions += len(found.q)
     count.wrong += int((~inside | (off > REACHED)).sum()) + len(found.q) - len(distinct(found.q))
     for q in known:
-        # Beside a singularity, what is left of the pose's error is much more in the joints.
+        # Near a singularity, a small error of the pose is a much larger one in the joints.
         conditioned = smallest(robot, q)
         same = max(SAME, 4.0 * DESCENDED / conditioned)
         if (apart(q[None], found.q) < same).any():

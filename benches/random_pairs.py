@@ -29,7 +29,7 @@ Made = tuple[
 
 @dataclass
 class Outcome:
-    """Pairs of two kinds of shapes, and how far distances are from coal's (m)."""
+    """Pairs of two kinds of shapes, and differences of distances from coal's (m)."""
 
     pairs: int = 0
     overlapping: int = 0
@@ -57,7 +57,7 @@ def main() -> None:
 
 
 def run(pairs: int, seed: int) -> dict[str, Outcome]:
-    """Compares at least so many pairs, by the names of the two kinds."""
+    """Compares at least this many pairs, and returns the outcomes by the names of the two kinds."""
     outcomes: dict[str, Outcome] = {}
     rng, kinds = np.random.default_rng(seed), list(each_two())
     for number in range(-(-pairs // POSES)):
@@ -67,7 +67,7 @@ def run(pairs: int, seed: int) -> dict[str, Outcome]:
 
 
 def each_two() -> Iterator[tuple[str, Maker, Maker]]:
-    """Every kind of body with every kind of obstacle."""
+    """Pairs of every kind of body with every kind of obstacle."""
     for own in MAKERS:
         for other in MAKERS:
             yield f"{own.__name__} and {other.__name__}", own, other
@@ -95,44 +95,44 @@ def compare(body: Made, obstacle: Made, rng: np.random.Generator, outcome: Outco
 
 
 def placed(rng: np.random.Generator, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """A random place within `reach` (m) along each axis."""
+    """Draws a random position within `reach` (m) along each axis, and a rotation."""
     turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
     return rng.uniform(-reach, reach, 3), turn * np.sign(np.linalg.det(turn))
 
 
 def sphere(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """A sphere."""
+    """Draws a sphere."""
     (center, turn), radius = placed(rng, reach), float(rng.uniform(0.1, 0.5) * size)
     return bik.obstacles.Sphere(center, radius), coal.Sphere(radius), center, turn
 
 
 def capsule(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """A capsule along its z axis."""
+    """Draws a capsule along its z axis."""
     (center, turn), (radius, length) = placed(rng, reach), rng.uniform((0.05, 0.2), (0.3, 1.0)) * size
     half = turn[:, 2] * length / 2
     return bik.obstacles.Capsule(center - half, center + half, radius), coal.Capsule(radius, length), center, turn
 
 
 def box(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """A box."""
+    """Draws a box."""
     (center, turn), edges = placed(rng, reach), rng.uniform(0.1, 1.0, 3) * size
     return bik.obstacles.Box(center, edges, turn), coal.Box(*edges), center, turn
 
 
 def cylinder(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """A cylinder along its z axis."""
+    """Draws a cylinder along its z axis."""
     (center, turn), (radius, length) = placed(rng, reach), rng.uniform(0.1, 0.7, 2) * size
     return bik.obstacles.Cylinder(center, turn[:, 2], radius, length), coal.Cylinder(radius, length), center, turn
 
 
 def ellipsoid(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """An ellipsoid."""
+    """Draws an ellipsoid."""
     (center, turn), axes = placed(rng, reach), rng.uniform(0.1, 0.6, 3) * size
     return bik.obstacles.Ellipsoid(center, axes, turn), coal.Ellipsoid(*axes), center, turn
 
 
 def hull(rng: np.random.Generator, reach: float, size: float) -> Made:
-    """The convex hull of 8 to 40 points."""
+    """Draws the convex hull of 8 to 40 points."""
     (center, turn), corners = placed(rng, reach), rng.uniform(-0.6, 0.6, (rng.integers(8, 40), 3)) * size
     points = coal.StdVec_Vec3s()
     points.extend(corners)

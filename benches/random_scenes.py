@@ -1,4 +1,4 @@
-"""Plans in random scenes: is any of them called clear that is not?
+"""Plans in random scenes: is any plan reported as clear that is not?
 
     python benches/random_scenes.py --count 100000
 
@@ -19,7 +19,7 @@ AT_ONCE = 1000
 
 
 def main() -> None:
-    """Plans, judges, and prints what is wrong."""
+    """Plans, judges, and prints the faults."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100_000, help="scenes (default: 100,000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first scene (default: 0)")

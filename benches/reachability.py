@@ -1,4 +1,4 @@
-"""Maps of what an arm reaches: poses a second, memory, size on disk, and agreement with a search on poses of theirs."""
+"""Reachability maps: poses a second, memory, size on disk, and agreement with a search on poses of theirs."""
 
 import argparse
 import resource
@@ -38,14 +38,14 @@ def main() -> None:
 
 
 def agreement(found: bik.ReachabilityMap, count: int) -> str:
-    """Compares poses drawn from voxels that are reached with `solve` and its whole budget."""
+    """Compares poses drawn from reached voxels with `solve` and its whole budget."""
     rng = np.random.default_rng(0)
     voxels = np.argwhere(found.index > 0)
     picked = voxels[rng.integers(len(voxels), size=count)].tolist()
     numbers = rng.integers(found.orientations, size=count)
     poses = np.array([found.poses((x, y, z))[k] for (x, y, z), k in zip(picked, numbers, strict=True)])
     reached = found.query(poses)
-    # An explicit solver searches with all of the budget.
+    # Explicit solvers search with all of the budget.
     searched = bik.solve_batch(found.robot, poses, solver=bik.MultiStart(bik.LevenbergMarquardt())).success
     missed, alone = int((searched & ~reached).sum()), int((reached & ~searched).sum())
     return f"of {int(reached.sum())} poses reached by the map, search misses {alone}; the map misses {missed}"

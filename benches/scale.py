@@ -1,4 +1,4 @@
-"""What chunks cost: poses a second and processor time with one and two worker processes, in memory and in a store.
+"""Cost of chunks: poses a second and processor time with one and two worker processes, in memory and in a store.
 
 Run it where nothing else runs: python benches/scale.py [--rows 500000] [--out DIR]
 """
@@ -95,7 +95,7 @@ def into_new(solve: Callable[..., object], store: Path, **options: Any) -> None:
 
 
 def measure_tasks(client: Client, workers: str, write: Callable[..., None]) -> None:
-    """Chunks of one target: what remains is the time of scheduler and client."""
+    """Measures chunks of one target: what remains is the time of scheduler and client."""
     robot = bik.Robot.named("ur5e")
     targets = poses(robot, TASKS)
     solve = partial(distributed.solve_batch, client, robot, targets, rows_per_chunk=1)

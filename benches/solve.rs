@@ -1,5 +1,5 @@
-//! Targets by the default solver: random and reachable, without a start, within the robot's limits; all solutions and the
-//! best posture at such poses; and what the index of starts costs to build.
+//! Default solver on random reachable targets, without a start, within the robot's limits; all solutions and the best posture
+//! at such poses; and the cost of building the index of starts.
 
 use std::hint::black_box;
 use std::time::Duration;
@@ -18,7 +18,7 @@ const TARGETS: u64 = 200;
 
 type TargetAt = fn(Frame) -> Target;
 
-/// What is asked of the solver, and how exactly (m, rad).
+/// Kind and tolerance of each target (m, rad).
 const TASKS: [(&str, TargetAt, f64); 3] = [
     ("pose", Target::Pose, 1e-6),
     ("pose to 1e-9", Target::Pose, 1e-9),
@@ -94,7 +94,7 @@ fn index(c: &mut Criterion) {
     let mut group = c.benchmark_group("index of starts");
     for name in ROBOTS {
         let robot = named(name);
-        // Other limits, even equal ones, mean another index.
+        // Limits replaced by others, even equal ones, require a new index.
         let fresh = || robot.with_limits(|_, _| ()).expect("the same limits");
         group.bench_function(name, |b| {
             b.iter_batched_ref(

@@ -1,5 +1,5 @@
-//! What the solvers cost per evaluation: on a sphere in seven dimensions, where nearly all of it is the solver's own, and
-//! on positions of a 7-joint arm. Populations of 40; no run ends before its budget.
+//! Cost of the solvers per evaluation: on a sphere in seven dimensions, where nearly all of it is the solver's own, and on
+//! positions of a 7-joint arm. Populations of 40; no run ends before its budget.
 
 use std::time::Duration;
 
@@ -28,12 +28,12 @@ impl Objective for Sphere {
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Score {
-        // Never reached, so that no population comes to rest.
+        // Value zero is never reached, so that no population comes to rest.
         Score { value: x.iter().map(|x| (x - 0.7) * (x - 0.7)).sum(), solved: false }
     }
 }
 
-/// A point that is never solved.
+/// Problem that never counts as solved.
 struct Unsolved<'a>(Problem<'a>);
 
 impl Objective for Unsolved<'_> {

@@ -30,23 +30,23 @@ POPULATION = 50
 
 
 def sphere(z: Array) -> Array:
-    """Least at z = 0."""
+    """Sphere function, with its minimum at z = 0."""
     return np.sum(z**2, axis=1)
 
 
 def rosenbrock(z: Array) -> Array:
-    """Least at z = 0, at the end of a bent valley."""
+    """Rosenbrock function, with its minimum at z = 0, at the end of a bent valley."""
     y = z + 1.0
     return np.sum(100.0 * (y[:, 1:] - y[:, :-1] ** 2) ** 2 + (1.0 - y[:, :-1]) ** 2, axis=1)
 
 
 def rastrigin(z: Array) -> Array:
-    """Least at z = 0, among many local minima."""
+    """Rastrigin function, with its minimum at z = 0, among many local minima."""
     return np.sum(z**2 - 10.0 * np.cos(2.0 * np.pi * z) + 10.0, axis=1)
 
 
 def ackley(z: Array) -> Array:
-    """Least at z = 0, in a funnel of local minima."""
+    """Ackley function, with its minimum at z = 0, in a funnel of local minima."""
     root, cosines = np.sqrt(np.mean(z**2, axis=1)), np.mean(np.cos(2.0 * np.pi * z), axis=1)
     return -20.0 * np.exp(-0.2 * root) - np.exp(cosines) + 20.0 + np.e
 
@@ -61,7 +61,7 @@ FUNCTIONS: dict[str, tuple[Callable[[Array], Array], float]] = {  # with the hal
 
 @dataclass(frozen=True)
 class Case:
-    """One function with its minimum shifted, in its box."""
+    """Function with its minimum shifted, in its box."""
 
     name: str
     seed: int
@@ -73,27 +73,27 @@ class Case:
 
     @functools.cached_property
     def shift(self) -> Array:
-        """Where the minimum is: in the inner half of the box."""
+        """Position of the minimum: in the inner half of the box."""
         return np.random.default_rng(self.seed).uniform(-0.5 * self.reach, 0.5 * self.reach, DIMENSION)
 
     def __call__(self, x: Array) -> Array:
-        """The values of the rows of x."""
+        """Values of the rows of x."""
         return FUNCTIONS[self.name][0](x - self.shift)
 
 
 @dataclass(frozen=True)
 class Mealpy:
-    """A solver of mealpy and its options."""
+    """Solver of mealpy and its options."""
 
     name: str
     options: dict[str, Any] = field(hash=False)
 
     def __str__(self) -> str:
-        """As the table shows it."""
+        """Name in the table."""
         return f"mealpy {self.name}({_listed(self.options)})"
 
     def best(self, case: Case, evaluations: int) -> float:
-        """The best value that it finds."""
+        """Returns the best value found."""
         from mealpy import ABC, DE, FFA, GA, PSO, FloatVar
 
         classes = {kind.__name__: kind for kind in (PSO.OriginalPSO, GA.BaseGA, ABC.OriginalABC, FFA.OriginalFFA)}
@@ -110,16 +110,16 @@ class Mealpy:
 
 @dataclass(frozen=True)
 class Pyswarms:
-    """The global-best swarm of pyswarms and its options."""
+    """Global-best swarm of pyswarms and its options."""
 
     options: dict[str, float] = field(hash=False)
 
     def __str__(self) -> str:
-        """As the table shows it."""
+        """Name in the table."""
         return f"pyswarms GlobalBestPSO({_listed(self.options)})"
 
     def best(self, case: Case, evaluations: int) -> float:
-        """The best value that it finds."""
+        """Returns the best value found."""
         import logging
 
         logging.disable(logging.CRITICAL)
@@ -137,7 +137,7 @@ def _listed(options: dict[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Pair:
-    """A solver of ours, what its row is called, and its rival."""
+    """Solver of ours, the name of its row, and its rival."""
 
     label: str
     ours: Any
@@ -168,10 +168,10 @@ SEPARABLE: dict[str, Any] = {
 PAIRS = [
     Pair("PSO", bik.papers.PSO(form="inertia", **SAME), CLERC),
     Pair("QPSO", bik.papers.QPSO(**SAME), CLERC),
-    # A beetle takes three evaluations a generation: a third of the particles, for as many generations.
+    # Beetles take three evaluations a generation: a third of the particles, for as many generations.
     Pair("BeetleSwarm, 17 beetles", bik.papers.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
     Pair("BeetleSwarm, 50 beetles", bik.papers.BeetleSwarm(**SAME), CLERC),
-    # As mealpy's does: what left the box is drawn anew in it, and nothing limits a velocity.
+    # Options as in mealpy: coordinates outside the box are redrawn in it, and nothing limits a velocity.
     Pair(
         'PSO, accept="improving", walls="random"',
         bik.papers.PSO(walls="random", velocity_limit=np.inf, **IMPROVING),
@@ -190,13 +190,13 @@ PAIRS = [
 
 
 def our_best(solver: Any, case: Case, evaluations: int) -> float:
-    """The best value that a solver of ours finds."""
+    """Returns the best value that a solver of ours finds."""
     box, stop = np.full(DIMENSION, case.reach), bik.Stop(max_evaluations=evaluations)
     return bik.minimize(case, -box, box, solver=solver, stop=stop, seed=case.seed, vectorized=True).value
 
 
 def rivals_best(seeds: int, evaluations: int) -> dict[tuple[str, str], list[float]]:
-    """What each rival finds of each function over the seeds, in two processes."""
+    """Returns the results of each rival on each function over the seeds, in two processes."""
     rivals = list({str(pair.rival): pair.rival for pair in PAIRS}.values())
     jobs = [(rival, name, seed) for rival in rivals for name in FUNCTIONS for seed in range(seeds)]
     found: dict[tuple[str, str], list[float]] = {}
@@ -208,7 +208,7 @@ def rivals_best(seeds: int, evaluations: int) -> dict[tuple[str, str], list[floa
 
 
 def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: int) -> str:
-    """The settings and the table, in Markdown."""
+    """Returns the settings and the table, in Markdown."""
     lines = [
         "# Solvers on standard functions",
         "",
@@ -263,7 +263,7 @@ NOTES = (
 
 
 def main() -> None:
-    """Measure everything and write the page."""
+    """Measures everything and writes the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=25)
     parser.add_argument("--evaluations", type=int, default=10_000)

@@ -1,4 +1,4 @@
-//! The times of a million ticks of a tracker: median, 99.99th percentile and largest, in ns.
+//! Times of a million ticks of a tracker: median, 99.99th percentile and largest, in ns.
 //!
 //! Under jerk limits, with targets that jump every half second and have 1 mm of noise. A mean says nothing about a control
 //! loop; the largest time is mostly that of the operating system.
@@ -31,7 +31,7 @@ fn main() {
     }
 }
 
-/// The times of all ticks, sorted (ns).
+/// Times of all ticks, sorted (ns).
 #[allow(clippy::disallowed_methods)] // The library itself reads clocks only in `solver/stopwatch.rs`.
 fn times(arm: &Robot, limits: &Limits, noise: f64) -> Vec<u128> {
     let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };

@@ -1,4 +1,4 @@
-//! The fastest timing of random splines for seven joints.
+//! Fastest timing of random splines for seven joints.
 
 use std::hint::black_box;
 
@@ -33,7 +33,7 @@ fn limits(jerk: Option<f64>) -> ConstantLimits {
     ConstantLimits::new(&limits, "time_optimal").expect("constant limits")
 }
 
-/// From the path to the trajectory; in proportion to the number of grid points.
+/// Time from path to trajectory; proportional to the number of grid points.
 fn grids(criterion: &mut Criterion) {
     let (path, limits) = (path(), limits(None));
     let mut group = criterion.benchmark_group("time_optimal/7_joints");

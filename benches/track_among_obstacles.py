@@ -11,7 +11,7 @@ with velocity limits, on the first `--slow` scenes. Coal judges the clearance, a
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -43,7 +43,7 @@ COLUMNS = [
 
 @dataclass(frozen=True)
 class Run:
-    """One mover in one scene, tick by tick."""
+    """Run of one mover in one scene, tick by tick."""
 
     clearance: np.ndarray  # the least in each tick, m
     by_sphere: np.ndarray  # whether that is to the sphere
@@ -86,7 +86,7 @@ def main() -> None:
 
 
 def run(mover: type[ClearMover], scene: Scene, scratch: Path, arm: str, notes: list[str]) -> Run:
-    """One mover in one scene, with the obstacles and without."""
+    """Runs one mover in one scene, with the obstacles and without."""
     among, free = (mover(scene, scratch, among=is_among) for is_among in (True, False))
     q, times = drive(among, scene)
     free_q, _ = drive(free, scene)
@@ -106,7 +106,7 @@ def run(mover: type[ClearMover], scene: Scene, scratch: Path, arm: str, notes: l
 
 
 def drive(mover: ClearMover, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """What the mover commands (k + 1, n), and the time of the processor for each tick (us)."""
+    """Returns the commands of the mover (k + 1, n), and the processor time of each tick (us)."""
     q, times = [scene.start], []
     gc.collect()
     gc.disable()
@@ -119,12 +119,12 @@ def drive(mover: ClearMover, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def on_path(scene: Scene, q: np.ndarray) -> np.ndarray:
-    """Whether the tip is at its target after each tick."""
+    """Returns whether the tip is at its target after each tick."""
     return np.linalg.norm(scene.robot.fk(q[1:])[:, :3, 3] - scene.targets[:, :3, 3], axis=1) < ON_PATH
 
 
 def line(arm: str, mover: type[ClearMover], runs: list[Run]) -> list[str]:
-    """The figures of all runs of a mover."""
+    """Figures of all runs of a mover."""
     clearance, by_sphere, on_path, on_free_path, times = (
         np.concatenate([getattr(each, name) for each in runs])
         for name in ("clearance", "by_sphere", "on_path", "on_free_path", "times")
@@ -143,7 +143,7 @@ def line(arm: str, mover: type[ClearMover], runs: list[Run]) -> list[str]:
 
 
 def write(out: Path, lines: list[list[str]], notes: list[str]) -> None:
-    """The table and the notes."""
+    """Writes the table and the notes."""
     write_table(out / "track_clear.csv", COLUMNS, lines)
     text = plain_section(f"Tracking among obstacles, margin {1e3 * MARGIN:g} mm", COLUMNS, lines)
     (out / "track_clear.md").write_text("\n".join([text, *notes]) + "\n", encoding="utf-8")

@@ -15,7 +15,7 @@ use ikcore::tracking::{Integrator, TickRule, TrackOptions, WeightedPseudoInverse
 
 const SEEDS: u64 = 20;
 
-/// A circle, and where the arm begins: beside it.
+/// Circle, and a start beside it.
 struct Scene {
     robot: Robot,
     reference: Reference,
@@ -25,7 +25,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// On the circle the arm would begin at `on_path`; it begins `offset` away from there.
+    /// Scene with a start `offset` away from `on_path`, a configuration on the circle.
     fn new(name: &str, center: [f64; 3], diameter: f64, on_path: &[f64], offset: &[f64], velocity: f64) -> Self {
         let plane = Plane::xy(center).expect("a plane");
         let reference =
@@ -83,7 +83,7 @@ fn circles(c: &mut Criterion) {
         ("planar5 Levenberg-Marquardt 1 nm", &planar5, lm, 1e-9),
         ("iiwa14 model-based 1 nm", &iiwa14, TickRule::MidStep, 1e-9),
         ("planar5 model-based 1 nm", &planar5, TickRule::MidStep, 1e-9),
-        // These make one step a tick, whatever the band.
+        // Rules that make one step a tick, whatever the band.
         ("iiwa14 weighted pseudo-inverse, Euler", &iiwa14, weighted_pseudo_inverse(Integrator::Euler), 1e-3),
         ("iiwa14 weighted pseudo-inverse, RK4", &iiwa14, weighted_pseudo_inverse(Integrator::RungeKutta4), 1e-3),
     ] {

@@ -12,7 +12,7 @@ shows.
 
 import os
 
-# Read by numerical libraries when they are loaded, so before the first import.
+# Environment variables that numerical libraries read when they are loaded, so set before the first import.
 for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
     os.environ[f"{variable}_NUM_THREADS"] = "1"
 
@@ -42,7 +42,7 @@ FAST = (BeetleIk, OneAfterTheOther, FromStart)  # get every pair
 
 @dataclass
 class Measured:
-    """Times of calls (ms), and how many of them met both poses."""
+    """Times of calls (ms), and the number of calls that met both poses."""
 
     times: list[float] = field(default_factory=list)
     met: int = 0
@@ -70,14 +70,14 @@ def main() -> None:
 
 
 def installed() -> Path:
-    """Where the robots of example-robot-data are."""
+    """Folder of the robots of example-robot-data."""
     import example_robot_data
 
     return Path(example_robot_data.getModelPath("panda_description/urdf/panda.urdf")) / "example-robot-data" / "robots"
 
 
 def rigs(robots: Path) -> list[TwoHands]:
-    """The robots."""
+    """Robots of the benchmark."""
     pandas = two_arms_on_a_torso(robots / "panda_description/urdf/panda.urdf")
     return [
         reduced("Baxter", robots / "baxter_description/urdf/baxter.urdf", ("left_gripper", "right_gripper")),
@@ -91,7 +91,7 @@ def rigs(robots: Path) -> list[TwoHands]:
 
 
 def measure(rig: TwoHands, pairs: int, slow: int) -> dict[type[Library], Measured]:
-    """All libraries, alternating after every pair of poses."""
+    """Measures all libraries, alternating after every pair of poses."""
     lower, upper = rig.model.lowerPositionLimit, rig.model.upperPositionLimit
     libraries = {library: library(rig, 0.5 * (lower + upper)) for library in LIBRARIES}
     outcome = {library: Measured() for library in LIBRARIES}

@@ -1,4 +1,4 @@
-"""How long poses take that an arm cannot reach, beside those that it can: `solve_batch` in one thread, processor time.
+"""Time of poses that an arm cannot reach, beside those that it can: `solve_batch` in one thread, processor time.
 
 Targets without a solution are configurations' positions with random orientations, as far as a long search finds none.
 """

@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def problems(tag: str) -> list[str]:
-    """Everything that is in the way of a release, as sentences."""
+    """Returns everything that prevents the release, as sentences."""
     found = []
     version = tomllib.loads(_text("Cargo.toml"))["workspace"]["package"]["version"]
     if tag != f"v{version}":

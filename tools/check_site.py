@@ -1,4 +1,4 @@
-"""Looks at the built site in a browser: `python tools/check_site.py docs/build/html`.
+"""Checks the built site in a browser: `python tools/check_site.py docs/build/html`.
 
 A block of code or output is clipped if part of it is only seen after scrolling. On a phone, nothing may be wider than
 the page, except a table that scrolls by itself. Searches have to find their page. `--pictures DIR` also takes pictures
@@ -21,7 +21,7 @@ LAPTOP, PHONE = (1366, 768), (390, 844)  # pixels
 PICTURED = ("index", "gallery/index", "first_ten_minutes", "planning", "scenes", "api/solving")
 NOT_OURS = ("genindex", "py-modindex", "search")  # pages that Sphinx writes
 
-# What is searched for, and a page that has to be among the first.
+# Search terms, each with a page that must be among the first results.
 SEARCHES = {
     "pick and place": "pick_and_place.html",
     "quaternion": "solving.html",
@@ -34,7 +34,7 @@ SEARCHES = {
 }
 _FIRST = 3  # results
 
-# The first line of each block that is clipped.
+# First line of each clipped block.
 _CLIPPED = """() => [...document.querySelectorAll("article pre")]
     .filter(block => [block, block.parentElement].some(box => box.scrollWidth > box.clientWidth + 1))
     .map(block => block.innerText.trim().split("\\n")[0].slice(0, 80))"""
@@ -73,7 +73,7 @@ def pages(site: Path) -> list[str]:
 
 
 def misfits(browser: Any, address: str, names: list[str]) -> dict[str, list[str]]:
-    """Returns what is clipped or too wide, by page and width of the window."""
+    """Returns the blocks that are clipped or too wide, by page and width of the window."""
     found: dict[str, list[str]] = {}
     laptop = browser.new_page(viewport={"width": LAPTOP[0], "height": LAPTOP[1]})
     phone = browser.new_page(viewport={"width": PHONE[0], "height": PHONE[1]})
@@ -94,7 +94,7 @@ def lost(browser: Any, address: str) -> list[str]:
     for words, wanted in SEARCHES.items():
         page.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
         page.wait_for_selector("ul.search li a")
-        page.wait_for_timeout(500)  # until all results are there
+        page.wait_for_timeout(500)  # waits for all results
         links = "[...document.querySelectorAll('ul.search li > a')].map(link => link.getAttribute('href'))"
         found = [link.split("#")[0] for link in page.evaluate(links)]
         if wanted not in found[:_FIRST]:
@@ -103,7 +103,7 @@ def lost(browser: Any, address: str) -> list[str]:
 
 
 def take_pictures(browser: Any, address: str, folder: Path, names: tuple[str, ...]) -> None:
-    """Pictures pages on a laptop, on a phone and in dark mode."""
+    """Takes pictures of pages on a laptop, on a phone and in dark mode."""
     folder.mkdir(parents=True, exist_ok=True)
     for (width, height), scheme in ((LAPTOP, "light"), (PHONE, "light"), (LAPTOP, "dark")):
         page = browser.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
@@ -115,7 +115,7 @@ def take_pictures(browser: Any, address: str, folder: Path, names: tuple[str, ..
 
 
 def main() -> int:
-    """Prints what does not fit or is not found, and returns 1 if there is anything."""
+    """Prints misfits and failed searches, and returns 1 if there are any."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("site", type=Path)
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="take pictures of some pages too")

@@ -1,6 +1,6 @@
 """Checks a source distribution and a wheel before they are published: `python tools/check_wheel.py FOLDER`.
 
-`make release-check` builds both into the folder. What twine checks (metadata, the long description) is left to it.
+`make release-check` builds both into the folder. Metadata and the long description are checked by twine.
 """
 
 import re
@@ -14,12 +14,12 @@ from zipfile import ZipFile
 
 ROOT = Path(__file__).parents[1]
 PROMISES = ROOT / "docs" / "stability.md"
-_OF_CORE = ["numpy"]  # what the wheel needs without extras
+_OF_CORE = ["numpy"]  # requirements of the wheel without extras
 _MODULE = ("beetle_ik/_core.abi3.so", "beetle_ik/_core.pyd")
 
 
 def problems(folder: Path) -> list[str]:
-    """Everything that is in the way of publishing the files in the folder, as sentences."""
+    """Returns everything that prevents publishing the files in the folder, as sentences."""
     wheels, sources = list(folder.glob("*.whl")), list(folder.glob("*.tar.gz"))
     if len(wheels) != 1 or len(sources) != 1:
         return [f"{folder} must have one wheel and one source distribution."]
@@ -47,14 +47,14 @@ def _of_wheel(file: Path) -> list[str]:
 
 
 def _of_metadata(file: Path, metadata: Message) -> list[str]:
-    """What a plain `pip install` brings."""
+    """Checks that a plain `pip install` brings numpy alone."""
     needed = [text for text in metadata.get_all("Requires-Dist", []) if "extra ==" not in text]
     names = [re.match(r"[\w-]+", text)[0] for text in needed]  # type: ignore[index]
     return [] if names == _OF_CORE else [f"{file.name} needs {', '.join(needed)}, but should need numpy alone."]
 
 
 def _of_tag(file: Path) -> list[str]:
-    """A wheel for Linux must run where the page on stability says."""
+    """Checks that a wheel for Linux runs where the page on stability says."""
     tag = re.search(r"manylinux_(\d+)_(\d+)", file.name)
     promised = re.search(r"manylinux (\d+)\.(\d+)", PROMISES.read_text(encoding="utf-8"))
     if tag is None or promised is None:

@@ -1,4 +1,4 @@
-"""Takes the pictures that stand for the recordings of the site, and in the gallery for its examples.
+"""Takes the still pictures of the site's recordings, which the gallery shows for its examples too.
 
     python tools/recording_pictures.py [NAME ...]
 
@@ -28,7 +28,7 @@ _NO_NOTES = ".mantine-Notification-root, .mantine-ActionIcon-root { display: non
 
 
 def take(browser: Any, address: str, name: str) -> bytes:
-    """Returns a picture of a recording that is under way, without its controls."""
+    """Returns a picture of a playing recording, without its controls."""
     page = browser.new_page(device_scale_factor=1, viewport={"width": _SIZE[0], "height": _SIZE[1] + _BAR})
     page.set_default_timeout(_PATIENCE)
     page.goto(f"{address}/player.html?playbackPath={name}.viser")
@@ -40,7 +40,7 @@ def take(browser: Any, address: str, name: str) -> bytes:
 
 
 def main() -> None:
-    """Takes the pictures that are named, or all."""
+    """Takes the named pictures, or all."""
     recorded_scenes = importlib.import_module("recorded_scenes")
     PICTURES.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:

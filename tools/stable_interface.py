@@ -1,4 +1,4 @@
-"""Lists names and signatures of the stable interface, as tests/python/stable_interface.txt keeps them.
+"""Lists names and signatures of the stable interface, in the form of tests/python/stable_interface.txt.
 
 docs/stability.md says which names are stable. Run this after adding to them; before you remove or change one, read
 "Deprecation" in CONTRIBUTING.md.
@@ -19,13 +19,13 @@ KEPT = ROOT / "tests" / "python" / "stable_interface.txt"
 
 
 def names(group: str) -> list[str]:
-    """The names of beetle_ik that the page lists under this heading."""
+    """Returns the names of beetle_ik that the page lists under this heading."""
     section = PAGE.read_text(encoding="utf-8").split(f"\n## {group}\n")[1].split("\n## ")[0]
     return [name for name in re.findall(r"`(\w+)`", section) if name != "beetle_ik"]
 
 
 def lines() -> Iterator[str]:
-    """One line for each stable name, method and attribute."""
+    """Yields one line for each stable name, method and attribute."""
     for name in sorted(names("Stable")):
         thing = getattr(bik, name)
         if isinstance(thing, ModuleType):
@@ -53,7 +53,7 @@ def _described(name: str, thing: object) -> Iterator[str]:
 
 
 def _signature(thing: object) -> str:
-    """Arguments and defaults, without types, which the stub has."""
+    """Returns arguments and defaults, without the types, which are in the stub."""
     try:
         signature = inspect.signature(thing)  # type: ignore[arg-type]
     except ValueError:

@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parents[1] / "tests" / "python" / "stored"
 
 
 def values() -> dict[str, object]:
-    """Values by name, small and quick to compute."""
+    """Returns values by name, small and quick to compute."""
     robot = bik.Robot.named("panda").with_capsules(radius=0.05)
     start = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
     target = robot.fk(start + 0.1)
@@ -57,7 +57,7 @@ def values() -> dict[str, object]:
 
 
 def attributes(value: object) -> dict[str, Any]:
-    """Public attributes that JSON can hold."""
+    """Returns the public attributes that JSON can hold."""
     held = {}
     for name in dir(value):
         if name.startswith("_") or name == "elapsed":
@@ -69,7 +69,7 @@ def attributes(value: object) -> dict[str, Any]:
 
 
 def as_plain(value: object) -> Any:
-    """The value as JSON has it; None for other values and long arrays."""
+    """Returns the value for JSON; None for other values and long arrays."""
     if isinstance(value, np.ndarray) and value.size <= 100:
         return [[str(number) for number in value.ravel()], list(value.shape)]
     return value if isinstance(value, (bool, float, int, str)) and value == value else None

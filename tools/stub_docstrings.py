@@ -23,7 +23,7 @@ Definition: TypeAlias = ast.ClassDef | ast.FunctionDef
 def definitions(scope: ast.Module | ast.ClassDef, owner: Any) -> Iterator[tuple[Definition, str]]:
     """Yields the classes and functions of the stub with their docstrings in the module.
 
-    Special methods are left out: theirs say nothing that Python's own documentation does not say.
+    Special methods are left out: Python's own documentation describes them.
     """
     for node in scope.body:
         if not isinstance(node, ast.ClassDef | ast.FunctionDef) or node.name.startswith("__"):
@@ -72,7 +72,7 @@ def with_docstrings(stub: str) -> str:
     """Returns the text of the stub with the docstrings of the module."""
     lines = stub.splitlines()
     found = sorted(definitions(ast.parse(stub), module), key=lambda pair: pair[0].lineno)
-    # From the end: an insertion moves the lines below it.
+    # Works from the end: an insertion moves the lines below it.
     for node, docstring in reversed(found):
         document(lines, node, docstring)
     return "\n".join(lines) + "\n"

@@ -24,7 +24,7 @@ Written by tools/third_party.py.
 
 
 def built_in() -> list[dict[str, Any]]:
-    """The crates of others that the binding links, by name, without those that only run while it is built."""
+    """Returns the third-party crates that the binding links, by name, without those used only at build time."""
     command = ["cargo", "metadata", "--format-version", "1", "--locked"]
     metadata = json.loads(subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
     packages = {package["id"]: package for package in metadata["packages"]}
@@ -47,7 +47,7 @@ def _is_macro(package: dict[str, Any]) -> bool:
 
 
 def texts(package: dict[str, Any]) -> Iterator[str]:
-    """The texts that a crate comes with: that of MIT alone where it leaves the choice."""
+    """Yields the licence texts of a crate: the MIT text alone if the crate offers a choice."""
     folder = Path(package["manifest_path"]).parent
     files = sorted(file for file in folder.iterdir() if file.is_file() and _TEXTS.match(file.name))
     mit = [file for file in files if "mit" in file.name.lower()]
@@ -56,7 +56,7 @@ def texts(package: dict[str, Any]) -> Iterator[str]:
 
 
 def written() -> str:
-    """The file: each text once, after the crates that it belongs to."""
+    """Returns the content of the file: each text once, after its crates."""
     crates: dict[str, list[str]] = defaultdict(list)
     for package in built_in():
         origin = f", {package['repository']}" if package["repository"] else ""

@@ -25,26 +25,26 @@ _SOFTWARE = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
 ]
-_WIDTH, _HEIGHT = 1050, 660  # of the pictures, in pixels
-_REDRAWS = 10  # until the resolution is full again
-_GRIP = 0.5  # where an arrow of a handle is taken, as a fraction of the size of the handle
-_MOVES = 8  # of the mouse, in a drag
-_DELIVERY = 100  # ms: messages to a page are sent a few times a second or more often
-_PATIENCE = 20_000  # ms: a page takes seconds to appear where other programs run
+_WIDTH, _HEIGHT = 1050, 660  # pixels of the pictures
+_REDRAWS = 10  # redraws until full resolution
+_GRIP = 0.5  # grip on an arrow, as a fraction of the size of the handle
+_MOVES = 8  # mouse moves in a drag
+_DELIVERY = 100  # ms: longest delay of a message to a page
+_PATIENCE = 20_000  # ms: a page takes seconds to appear beside other programs
 
 
 def chromium() -> str | None:
-    """Returns the browser of the system, if there is one."""
+    """Returns the system's browser, if there is one."""
     return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
 def hide_notes(page: Any) -> None:
-    """Hides notes of viser, of which the first says that this browser draws without a graphics card."""
+    """Hides notes of viser; the first is about drawing without a graphics card."""
     page.add_style_tag(content=".mantine-Notification-root { display: none }")
 
 
 class Visitor:
-    """Someone who looks at a viewer and uses it, with a mouse."""
+    """A user of a viewer, with a mouse."""
 
     def __init__(self, browser: Any, viewer: bik.Viewer, *, width: int = 800, height: int = 500) -> None:
         """Opens the page, and waits until it shows the state of the arm."""
@@ -59,10 +59,10 @@ class Visitor:
         hide_notes(self.page)
 
     def until(self, happened: Callable[[], object]) -> None:
-        """Waits until something has happened.
+        """Waits until `happened` returns something true.
 
         Raises:
-            TimeoutError: it has not.
+            TimeoutError: it did not happen in time.
         """
         for _ in range(_PATIENCE // 20):
             if happened():
@@ -71,7 +71,7 @@ class Visitor:
         raise TimeoutError(f"still {self.text()!r}, {self.viewer.outcome}")
 
     def picture(self, file: Path) -> None:
-        """Writes what the page shows, once it has drawn all of it, and leaves."""
+        """Writes a picture of the page once everything is drawn, and closes the page."""
         for _ in range(_REDRAWS):
             self.settle()
         self.page.mouse.move(1, 1)
@@ -79,7 +79,7 @@ class Visitor:
         self.page.close()
 
     def settle(self) -> None:
-        """Waits until the page has drawn what it was sent."""
+        """Waits until the page has drawn the messages sent so far."""
         self.page.wait_for_timeout(_DELIVERY)
         self.page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
@@ -96,7 +96,7 @@ class Visitor:
         self.page.get_by_role("button", name=name, exact=True).click()
 
     def pixel(self, point: Array) -> Array:
-        """Returns where on the page a point (3,) of the scene is (2,)."""
+        """Returns the pixel (2,) of a point (3,) of the scene."""
         import viser.transforms
 
         camera = self.viewer.server.get_clients()[self._client].camera
@@ -106,9 +106,9 @@ class Visitor:
         return np.asarray(center + focal * seen[:2] / seen[2])
 
     def enter(self, number: float, happened: Callable[[], object]) -> None:
-        """Types a number into the first field that is shown, until it has had its effect.
+        """Types a number into the first visible field, until it has taken effect.
 
-        What the server sent just before may arrive while the number is typed, and replace it.
+        Earlier messages of the server may arrive while the number is typed, and replace it.
         """
         field = self.page.locator("input[type=text]:visible").first
 
@@ -122,14 +122,14 @@ class Visitor:
         self.until(typed)
 
     def drag(self, name: str, axis: int, distance: float) -> None:
-        """Drags an arrow of a handle, such as "/target", by a distance along its axis (m)."""
-        self.settle()  # until the handle is where the server put it
+        """Drags an arrow of a handle, for example "/target", by a distance along its axis (m)."""
+        self.settle()  # waits for the handle to arrive
         handle: Any = self.viewer.server.scene.get_handle_by_name(name)
         place = bik.pose(handle.position, wxyz=handle.wxyz)
         along = place[:3, axis]
         grip = place[:3, 3] + _GRIP * handle.scale * along
         self.page.mouse.move(*self.pixel(grip))
-        self.settle()  # until the arrow lights up
+        self.settle()  # waits for the arrow to light up
         self.page.mouse.down()
         for i in range(1, _MOVES + 1):
             self.page.mouse.move(*self.pixel(grip + distance * i / _MOVES * along))
@@ -200,7 +200,7 @@ def played(browser: Any, file: Path) -> None:
 
 
 def mapped(browser: Any, file: Path) -> None:
-    """Pictures a slice of a map of reach."""
+    """Pictures a slice of a reachability map."""
     robot = bik.Robot.named("ur5e")
     with bik.view(robot, START[:6], port=0) as viewer:
         viewer.show(bik.reachability(robot, voxel=0.05))

@@ -1,1 +1,1 @@
-"""The libraries that the benchmarks measure, and what is needed to measure them fairly."""
+"""Libraries that the benchmarks measure, and tools for measuring them fairly."""

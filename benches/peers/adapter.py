@@ -1,4 +1,4 @@
-"""What `compare.py` asks of a library."""
+"""Interface of `compare.py` to a library."""
 
 # ruff: noqa: D102, D107, N818
 
@@ -13,7 +13,7 @@ from .chain import Chain
 
 
 class Unsupported(Exception):
-    """The library says that it cannot solve this robot."""
+    """Refusal of a library to solve this robot."""
 
 
 class Adapter:
@@ -35,7 +35,7 @@ class Adapter:
         raise NotImplementedError
 
     def chosen(self, answer: Any) -> np.ndarray | None:
-        """The joint values in an answer of `solve_pose` or `solve_position`; not timed."""
+        """Joint values in an answer of `solve_pose` or `solve_position`; not timed."""
         return answer
 
     def solve_position(self, point: np.ndarray, start: np.ndarray) -> np.ndarray | None:
@@ -68,7 +68,7 @@ class Adapter:
 
 
 def load(libraries: Iterable[type], chain: Chain, options: Any) -> tuple[list[Any], dict[str, str]]:
-    """The libraries that are there and take this robot, and why the others are not or do not."""
+    """Loads the libraries that are installed and accept this robot, and the reasons for the missing ones."""
     taken, missing = [], {}
     for library in libraries:
         try:

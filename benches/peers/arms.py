@@ -1,4 +1,4 @@
-"""The seventy-two arms whose geometry is part of `ssik`, as URDF files; most are not in our own catalog."""
+"""Seventy-two arms whose geometry is part of `ssik`, as URDF files; most are not in our own catalog."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from .chain import Chain, load_chains, some_mass
 
-# All structures with a closed form, and arms without one.
+# Structures with a closed form, and arms without one.
 SIX_JOINTS = (
     *("irb120", "irb6700", "vs060", "lrmate200id", "kr6_r900", "rv4fr", "rx160", "viperx300s", "puma560", "gp8"),
     *("ur3e", "ur5", "ur5e", "ur16e", "z1", "standardbots_core"),
@@ -75,7 +75,7 @@ def _chain(name: str, import_path: str, scratch: Path) -> Chain:
 
 
 def _frame_about(axis: np.ndarray) -> np.ndarray:
-    """A frame (4, 4) at the origin whose z axis is this one."""
+    """Frame (4, 4) at the origin with this z axis."""
     z = axis / np.linalg.norm(axis)
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
@@ -85,12 +85,12 @@ def _frame_about(axis: np.ndarray) -> np.ndarray:
 
 
 def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, float] | None, np.ndarray]]:
-    """Placement before the joint, axis, limits and placement after it, of each joint."""
+    """Transform before the joint, axis, limits and transform after it, for each joint."""
     return zip(module._JOINT_T_LEFTS, module._JOINT_AXES, module._JOINT_LIMITS, module._JOINT_T_RIGHTS, strict=True)
 
 
 def _add(robot: ET.Element, name: str, kind: str, parent: str, child: str, placement: np.ndarray) -> ET.Element:
-    """A joint and the link that it carries, with the mass that simulators insist on."""
+    """Adds a joint and the link that it carries, with the mass that simulators require."""
     joint = ET.SubElement(robot, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)

@@ -33,7 +33,7 @@ SETTINGS = (
 
 
 class Barriers:
-    """The loop that such a library leaves to its user: starts, steps, and a check of the answer."""
+    """Loop that such a library leaves to its user: starts, steps, and a check of the answer."""
 
     name: str
     slow = True
@@ -43,7 +43,7 @@ class Barriers:
         raise NotImplementedError
 
     def solve(self, target: np.ndarray, judge: CoalScene, lower: np.ndarray, upper: np.ndarray) -> np.ndarray | None:
-        """A clear configuration at the pose, or None when the time is up."""
+        """Returns a clear configuration at the pose, or None when the time is up."""
         random, end = np.random.default_rng(0), process_time() + SECONDS
         self._aim(target)
         while process_time() < end:
@@ -88,7 +88,7 @@ class Barriers:
 
 
 class Mink(Barriers):
-    """`CollisionAvoidanceLimit`, distances by MuJoCo."""
+    """Barrier `CollisionAvoidanceLimit`, distances by MuJoCo."""
 
     name = "mink, CollisionAvoidanceLimit"
 
@@ -143,7 +143,7 @@ class Mink(Barriers):
 
 
 class Pink(Mink):
-    """`SelfCollisionBarrier`, distances by Pinocchio and coal; the obstacles are geometry of the base."""
+    """Barrier `SelfCollisionBarrier`, distances by Pinocchio and coal; the obstacles are geometry of the base."""
 
     name = "pink, SelfCollisionBarrier"
 
@@ -205,7 +205,7 @@ BARRIERS_OF_PINK = 30  # its nearest pairs
 
 
 class Placo(Barriers):
-    """`AvoidSelfCollisionsKinematicsConstraint`; the obstacles are links fixed to the base."""
+    """Barrier `AvoidSelfCollisionsKinematicsConstraint`; the obstacles are links fixed to the base."""
 
     name = "placo, AvoidSelfCollisions"
 
@@ -255,7 +255,7 @@ class Placo(Barriers):
 
 
 class RoboticsToolbox(Barriers):
-    """`ets.ik_LM` from random starts of its own, each answer tested by coal."""
+    """Solver `ets.ik_LM` from random starts of its own, each answer tested by coal."""
 
     name = "rejection: roboticstoolbox and coal"
     slow = False
@@ -278,14 +278,14 @@ class RoboticsToolbox(Barriers):
 
 
 def placed(at: np.ndarray) -> dict[str, Any]:
-    """A pose as keywords of MuJoCo."""
+    """Pose as keywords of MuJoCo."""
     import pinocchio as pin
 
     return {"pos": at[:3, 3], "quat": np.roll(pin.Quaternion(at[:3, :3]).coeffs(), 1)}
 
 
 def held(arm: MotionBenchArm, *, for_mujoco: bool = False) -> str:
-    """The arm's file without what is drawn, and with joints off the chain fixed."""
+    """Removes the visuals from the arm's file, and fixes joints off the chain."""
     robot = ET.parse(arm.urdf).getroot()
     moving = set(arm.robot.joint_names)
     for link in robot.iter("link"):
@@ -305,7 +305,7 @@ def held(arm: MotionBenchArm, *, for_mujoco: bool = False) -> str:
 
 
 def with_things(urdf: str, problem: dict[str, Any]) -> tuple[str, list[str]]:
-    """The file with a link for each obstacle, fixed to the root; and their names."""
+    """Adds a link for each obstacle to the file, fixed to the root; returns the names too."""
     import pinocchio as pin
 
     robot = ET.fromstring(urdf)

@@ -1,6 +1,6 @@
 """beetle-ik's `Tracker` in the loops of `noisy_targets.py`."""
 
-# The methods are described in mover.py.
+# Methods are described in mover.py.
 # ruff: noqa: D101, D102, D107
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Robots as every library gets them: one serial chain, one file, one set of limits."""
+"""Robots in the form that every library gets: one serial chain, one file, one set of limits."""
 
 # ruff: noqa: D102
 
@@ -21,7 +21,7 @@ TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class Chain:
-    """A serial robot of revolute and prismatic joints, with Pinocchio's model of it as the judge."""
+    """Serial robot of revolute and prismatic joints, with Pinocchio's model of it as the judge."""
 
     name: str
     urdf: Path
@@ -54,12 +54,12 @@ class Chain:
         return self.model.createData()
 
     def pose(self, q: np.ndarray) -> np.ndarray:
-        """Tip in the base frame, (4, 4)."""
+        """Pose of the tip in the base frame, (4, 4)."""
         pin.framesForwardKinematics(self.model, self._data, q)
         return self._data.oMf[self.tip_frame].homogeneous.copy()
 
     def unwound(self, q: np.ndarray) -> np.ndarray:
-        """The same postures (n,) or (k, n) by whole turns: each joint at its least value not below its limit."""
+        """Shifts joints (n,) or (k, n) by whole turns to their least values not below the limits."""
         return q + TURN * np.ceil((self.lower - q) / TURN)
 
     def targets(self, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -71,7 +71,7 @@ class Chain:
 
 
 def load_chains(places: Iterable[Path], scratch: Path) -> list[Chain]:
-    """The chain of every URDF file named or in a directory; a `robots.json` beside it may name base and tip links."""
+    """Loads the chain of every URDF file named or in a directory; `robots.json` beside it may name base and tip."""
     chains = []
     for place in places:
         files = [place] if place.suffix == ".urdf" else sorted(place.glob("*.urdf"))
@@ -85,7 +85,7 @@ def load_chains(places: Iterable[Path], scratch: Path) -> list[Chain]:
 
 
 def cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
-    """Write the chain from base to tip alone, without shapes, continuous joints as one turn about zero.
+    """Writes the chain from base to tip alone, without shapes, continuous joints as one turn about zero.
 
     Libraries differ in how they choose a tip, order the joints of a tree and draw restarts for a joint without limits.
     This takes the difference away.
@@ -121,7 +121,7 @@ def cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
 
 
 def some_mass() -> ET.Element:
-    """The simulators among the libraries insist on it."""
+    """Adds some mass to a link, which the simulators among the libraries require."""
     inertial = ET.Element("inertial")
     ET.SubElement(inertial, "mass", value="1")
     ET.SubElement(inertial, "inertia", ixx="1", ixy="0", ixz="0", iyy="1", iyz="0", izz="1")

@@ -18,7 +18,7 @@ from .adapter import Adapter, load
 from .chain import Chain, cut
 
 ARMS = {"panda": "panda_hand", "ur5": "robotiq_85_base_link"}
-# Overlap always, though the SRDF does not list them (README of the data).
+# Pairs that overlap always, though the SRDF does not list them (README of the data).
 ALWAYS_TOUCH = {frozenset(("wrist_2_link", "fts_robotside"))}
 SAMPLES = (16, 128, 1024)  # values of the redundant joint that rejection tries
 
@@ -26,7 +26,7 @@ Reject = Callable[[np.ndarray, "CoalScene"], "np.ndarray | None"]
 
 
 class MotionBenchArm:
-    """An arm of the set: the spheres that decide what is valid, and its problems."""
+    """Arm of the set: the spheres that decide what is valid, and its problems."""
 
     def __init__(self, data: Path, name: str) -> None:
         folder = data / "robots" / name
@@ -37,12 +37,12 @@ class MotionBenchArm:
         self.robot = robot.with_collision_pairs(pairs)
 
     def problems(self) -> list[dict[str, Any]]:
-        """The problems whose goal is valid, each with the name of its scene."""
+        """Problems with a valid goal, each with the name of its scene."""
         scenes = json.loads((self.data / f"{self.name}.json").read_text(encoding="utf-8"))["scenes"]
         return [problem | {"scene": name} for name, each in scenes.items() for problem in each if problem["goal_valid"]]
 
     def scene(self, problem: dict[str, Any]) -> bik.Scene:
-        """The obstacles of a problem."""
+        """Obstacles of a problem."""
         boxes = [bik.obstacles.Box(at[:3, 3], size, at[:3, :3]) for at, size in boxes_of(problem)]
         cylinders = [
             bik.obstacles.Cylinder(at[:3, 3], at[:3, 2], radius, length) for at, radius, length in cylinders_of(problem)
@@ -63,7 +63,7 @@ def cylinders_of(problem: dict[str, Any]) -> Iterator[tuple[np.ndarray, float, f
 
 
 class CoalScene:
-    """The distances of an arm in a scene by coal: spheres against shapes, and against each other."""
+    """Distances of an arm in a scene by coal: spheres against shapes, and against each other."""
 
     def __init__(self, arm: MotionBenchArm, problem: dict[str, Any]) -> None:
         import coal
@@ -82,7 +82,7 @@ class CoalScene:
         self.centers = np.array([a for _, a, _, _ in arm.robot.capsules])
         self.radii = np.array([radius for *_, radius in arm.robot.capsules])
         self.spheres = [coal.Sphere(radius) for radius in self.radii]
-        # As a user would: one call of the broad phase for all pairs.
+        # Broad phase as a user would call it: once for all pairs.
         self.scene, self.arm = coal.DynamicAABBTreeCollisionManager(), coal.DynamicAABBTreeCollisionManager()
         self.still = [coal.CollisionObject(shape, at) for shape, at in self.things]
         self.moved = [coal.CollisionObject(sphere) for sphere in self.spheres]
@@ -102,12 +102,12 @@ class CoalScene:
         return np.einsum("kij,kj->ki", poses[:, :3, :3], self.centers) + poses[:, :3, 3]
 
     def apart(self, centers: np.ndarray) -> float:
-        """The smallest distance between two spheres of the arm that must not touch."""
+        """Smallest distance between two spheres of the arm that must not touch."""
         distances = np.linalg.norm(centers[:, None] - centers[None], axis=2) - self.radii[:, None] - self.radii[None]
         return float(distances[self.tested].min())
 
     def clearance(self, q: np.ndarray) -> float:
-        """The smallest distance of all."""
+        """Smallest distance of all."""
         centers = self.placed(q)
         least = self.apart(centers)
         for sphere, center in zip(self.spheres, centers, strict=True):
@@ -118,7 +118,7 @@ class CoalScene:
         return least
 
     def is_clear(self, q: np.ndarray) -> bool:
-        """Whether nothing touches."""
+        """Whether no bodies touch."""
         centers = self.placed(q)
         if self.apart(centers) < 0.0:
             return False
@@ -132,12 +132,12 @@ class CoalScene:
 
 
 def first_clear(solutions: Iterable[np.ndarray], scene: CoalScene) -> np.ndarray | None:
-    """The first solution without contact."""
+    """Returns the first solution without contact."""
     return next((q for q in solutions if scene.is_clear(q)), None)
 
 
 def rejections(arm: MotionBenchArm, scratch: Path, notes: list[str]) -> dict[str, Reject]:
-    """Ways that take all solutions of a library, or many of them, and test them with coal one by one."""
+    """Methods that take all solutions of a library, or many of them, and test them with coal one by one."""
 
     def own(target: np.ndarray, scene: CoalScene) -> np.ndarray | None:
         for samples in SAMPLES:
@@ -154,7 +154,7 @@ def rejections(arm: MotionBenchArm, scratch: Path, notes: list[str]) -> dict[str
 
 
 def rejection(chain: Chain, adapter: Adapter) -> Reject:
-    """All solutions of a library inside the limits, tested one by one."""
+    """Tests all solutions of a library inside the limits one by one."""
     start = 0.5 * (chain.lower + chain.upper)
 
     def reject(target: np.ndarray, scene: CoalScene) -> np.ndarray | None:

@@ -39,7 +39,7 @@ class ClearMover:
         raise NotImplementedError
 
     def step(self, target: np.ndarray, time: float) -> np.ndarray:
-        """The configuration to command at the end of the tick that begins at `time` (s)."""
+        """Returns the configuration to command at the end of the tick that begins at `time` (s)."""
         raise NotImplementedError
 
 
@@ -77,7 +77,7 @@ class OursSmoother(Ours):
 
 
 class Mink(ClearMover):
-    """`CollisionAvoidanceLimit`. Its bound on a displacement is divided by dt: the default gain acts at the margin."""
+    """Limit `CollisionAvoidanceLimit`. Its displacement bound is divided by dt: the default gain acts at the margin."""
 
     name = "mink, default gain"
     gain = GAIN
@@ -144,7 +144,7 @@ class SlowingMink(Mink):
 
 
 class Pink(Mink):
-    """`SelfCollisionBarrier`; its gain is per second."""
+    """Barrier `SelfCollisionBarrier`; its gain is per second."""
 
     name = "pink, gain 0.85 / dt"
 
@@ -209,7 +209,7 @@ class Pink(Mink):
 
 
 class Placo(ClearMover):
-    """`AvoidSelfCollisionsKinematicsConstraint`; the obstacles are links, and the sphere has three sliding joints."""
+    """`AvoidSelfCollisionsKinematicsConstraint`: the obstacles are links, the sphere has three sliding joints."""
 
     name = "placo"
 
@@ -259,7 +259,7 @@ class Placo(ClearMover):
 
 
 def place_for_mujoco(thing: Thing) -> dict[str, Any]:
-    """The pose of a thing as keywords of MuJoCo."""
+    """Pose of a thing as keywords of MuJoCo."""
     import pinocchio as pin
 
     return {"pos": thing.at[:3, 3], "quat": np.roll(pin.Quaternion(thing.at[:3, :3]).coeffs(), 1)}

@@ -34,7 +34,7 @@ BETWEEN = 5  # judged steps of a tick
 
 @dataclass(frozen=True)
 class Thing:
-    """A box or a sphere by its pose (4, 4) at t = 0, its shape for coal, and its velocity (3,) (m/s)."""
+    """Box or sphere by its pose (4, 4) at t = 0, its shape for coal, and its velocity (3,) (m/s)."""
 
     at: np.ndarray
     shape: coal.Box | coal.Sphere
@@ -42,15 +42,15 @@ class Thing:
 
     @property
     def moves(self) -> bool:
-        """Whether it is not at rest."""
+        """Whether the thing is in motion."""
         return bool(self.velocity.any())
 
     def center(self, time: float) -> np.ndarray:
-        """Its centre (3,) at this time (s)."""
+        """Centre (3,) of the thing at this time (s)."""
         return self.at[:3, 3] + time * self.velocity
 
     def obstacle(self, time: float) -> bik.obstacles.Obstacle:
-        """As an obstacle of this library."""
+        """Converts the thing to an obstacle of this library."""
         if isinstance(self.shape, coal.Sphere):
             return bik.obstacles.Sphere(self.center(time), self.shape.radius)
         return bik.obstacles.Box(self.center(time), 2.0 * self.shape.halfSide, self.at[:3, :3])
@@ -58,7 +58,7 @@ class Thing:
 
 @dataclass(frozen=True)
 class Scene:
-    """A robot with capsules, its start (n,), one target (4, 4) for the end of each tick, and what is around."""
+    """Robot with capsules, its start (n,), one target (4, 4) for the end of each tick, and the things around it."""
 
     number: int
     kind: str
@@ -69,7 +69,7 @@ class Scene:
 
 
 def scene(robot: bik.Robot, number: int) -> Scene:
-    """The scene of this number: a circle or jumps, with or without the sphere, by turns."""
+    """Draws the scene of this number: a circle or jumps, with or without the sphere, by turns."""
     random = np.random.default_rng([SEED, number])
     circling, crossed = number % 2 == 0, number // 2 % 2 == 1
     start, targets = next(streams(robot, random, circling=circling))
@@ -83,7 +83,7 @@ def scene(robot: bik.Robot, number: int) -> Scene:
 def streams(
     robot: bik.Robot, random: np.random.Generator, *, circling: bool
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Starts and targets that can be reached where nothing is in the way."""
+    """Starts and targets that can be reached without obstacles."""
     middle, half = (robot.lower + robot.upper) / 2.0, (robot.upper - robot.lower) / 2.0
     while True:
         start = middle + 0.6 * half * random.uniform(-1.0, 1.0, robot.dof)
@@ -160,7 +160,7 @@ class Judge:
         self.request.gjk_tolerance = 1e-9
 
     def clearance(self, q: np.ndarray, time: float) -> tuple[float, bool]:
-        """The smallest distance, and whether it is to the sphere."""
+        """Smallest distance, and whether it is to the sphere."""
         poses = list(self.scene.robot.all_link_poses(q)[self.links] @ self.local)
         for thing in self.scene.things:
             at = thing.at.copy()
@@ -182,7 +182,7 @@ class Judge:
         return least, with_sphere
 
     def clearances(self, q: np.ndarray, *, smooth: bool) -> tuple[np.ndarray, np.ndarray]:
-        """The smallest distance in each tick of `q` (k + 1, n), and whether it is to the sphere.
+        """Smallest distance in each tick of `q` (k + 1, n), and whether it is to the sphere.
 
         The arm moves straight between its commands, or along their cubic B-spline if `smooth`.
         """
@@ -195,7 +195,7 @@ class Judge:
 
 
 def between(q: np.ndarray, tick: int, *, smooth: bool) -> Iterator[tuple[float, np.ndarray]]:
-    """Yields configurations between two rows of `q` and their shares of the tick, the end included."""
+    """Yields configurations between two rows of `q` and their fractions of the tick, the end included."""
     rows = np.clip(np.arange(tick - 1, tick + 3), 0, len(q) - 1)
     before, here, there, after = q[rows]
     for s in np.arange(1, BETWEEN + 1) / BETWEEN:
@@ -207,7 +207,7 @@ def between(q: np.ndarray, tick: int, *, smooth: bool) -> Iterator[tuple[float, 
 
 
 def pose_of_capsule(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The pose (4, 4) of a capsule from `a` to `b`, along its z axis."""
+    """Pose (4, 4) of a capsule from `a` to `b`, along its z axis."""
     z = (b - a) / np.linalg.norm(b - a)
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
@@ -217,7 +217,7 @@ def pose_of_capsule(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def bounding_radius(shape: coal.Box | coal.Sphere | coal.Capsule) -> float:
-    """The radius of a sphere about the centre of the shape that holds it."""
+    """Radius of a sphere about the centre of the shape that contains it."""
     if isinstance(shape, coal.Box):
         return float(np.linalg.norm(shape.halfSide))
     return float(shape.radius) + (shape.halfLength if isinstance(shape, coal.Capsule) else 0.0)

@@ -1,4 +1,4 @@
-"""A robot of this library as a URDF file that others read, with capsules and obstacles if they are asked for."""
+"""Export of a robot of this library as a URDF file for others, with capsules and obstacles on request."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .clear_streams import Thing, pose_of_capsule
 
 
 def urdf(robot: bik.Robot, velocity: float, things: list[Thing] | None = None, *, for_mujoco: bool = False) -> str:
-    """The arm as URDF text, with a link "tip"; with `things`, also the bodies of all, as links of their own.
+    """Returns the arm as URDF text, with a link "tip"; with `things`, also the bodies of all, as links of their own.
 
     Joints turn about axes as they are at zero, all frames of moved links being parallel to the base there.
     """
@@ -56,7 +56,7 @@ def add_bodies(root: ET.Element, robot: bik.Robot, things: list[Thing]) -> None:
         ET.SubElement(collision, "origin", xyz=text(at[:3, 3]), rpy=text(turn))
         length = repr(float(np.linalg.norm(b - a)))
         ET.SubElement(ET.SubElement(collision, "geometry"), "cylinder", radius=repr(radius), length=length)
-        # How Pinocchio is told that a cylinder is a capsule.
+        # Element by which Pinocchio recognises a cylinder as a capsule.
         told = links[link].find("collision_checking")
         told = ET.SubElement(links[link], "collision_checking") if told is None else told
         ET.SubElement(told, "capsule", name=f"capsule{number}")
@@ -81,7 +81,7 @@ def add_bodies(root: ET.Element, robot: bik.Robot, things: list[Thing]) -> None:
 def add_joint(
     root: ET.Element, name: str, kind: str, parent: str, child: str, xyz: np.ndarray, rpy: np.ndarray | None = None
 ) -> ET.Element:
-    """A joint and the link that it carries, with the mass that simulators insist on."""
+    """Adds a joint and the link that it carries, with the mass that simulators require."""
     joint = ET.SubElement(root, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
@@ -91,7 +91,7 @@ def add_joint(
 
 
 def check(written: str, robot: bik.Robot) -> None:
-    """Refuses a file whose tip is not that of the robot."""
+    """Rejects a file whose tip is not that of the robot."""
     model = pin.buildModelFromXML(written)
     data, tip = model.createData(), model.getFrameId("tip")
     q = robot.random_configurations(1, seed=0)[0]
@@ -101,5 +101,5 @@ def check(written: str, robot: bik.Robot) -> None:
 
 
 def text(vector: np.ndarray) -> str:
-    """Numbers as URDF has them."""
+    """Formats numbers for URDF."""
     return " ".join(repr(float(value)) for value in vector)

@@ -1,6 +1,6 @@
 """Libraries that derive the solution from the robot's geometry."""
 
-# The methods are described in adapter.py.
+# Methods are described in adapter.py.
 # ruff: noqa: ARG002, D101, D102, D107
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ class Opw(Adapter):
         return self._zero + self._signs * np.array(solutions).reshape(-1, 6)
 
     def _check(self, chain: Chain) -> None:
-        """Its forward kinematics against Pinocchio's."""
+        """Checks the library's forward kinematics against Pinocchio's."""
         for q in np.random.default_rng(0).uniform(chain.lower, chain.upper, (5, 6)):
             its = self._robot.forward(tuple(self._signs * (q - self._zero))).as_matrix()
             if not np.allclose(its, self._from_base @ chain.pose(q) @ self._from_tip, rtol=0.0, atol=1e-9):
@@ -138,7 +138,7 @@ class Opw(Adapter):
 
 
 def _built(chain: Chain) -> ModuleType:
-    """The module that `ssik build` writes for this arm."""
+    """Builds and loads the module that `ssik build` writes for this arm."""
     module = chain.urdf.with_name(f"{chain.name}_ssik.py")
     if complaint := _build(chain, module):
         raise Unsupported(complaint)
@@ -150,7 +150,7 @@ def _built(chain: Chain) -> ModuleType:
 
 @functools.cache
 def _build(chain: Chain, module: Path) -> str:
-    """Write the robot's module; what went wrong, or nothing. For an arm without a known structure this is long."""
+    """Writes the robot's module; returns the error, if any. For an arm without a known structure this takes long."""
     command = "import sys; from ssik.cli import main; sys.exit(main())"
     request = ["build", chain.urdf, "--base", chain.base, "--ee", chain.tip, "--out", module, "--no-validate"]
     try:

@@ -20,7 +20,7 @@ CHUNK = 100_000  # descents at once
 
 @dataclass
 class Verdict:
-    """The result of the comparison on one arm."""
+    """Result of the comparison on one arm."""
 
     known: int = 0  # solutions of the union, each counted once
     missing: list[tuple[int, np.ndarray]] = field(default_factory=list)  # number of the pose, solution
@@ -55,7 +55,7 @@ def judge(chain: Chain, targets: np.ndarray, ours: list[np.ndarray], theirs: lis
 
 
 def smallest_singular_value(chain: Chain, q: np.ndarray) -> float:
-    """Of the Jacobian, m and rad mixed."""
+    """Smallest singular value of the Jacobian, m and rad mixed."""
     return float(np.linalg.svd(jacobian(chain, q), compute_uv=False)[-1])
 
 
@@ -66,20 +66,20 @@ def apart(some: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 def distinct(solutions: np.ndarray) -> np.ndarray:
-    """The solutions without repetitions."""
+    """Removes repeated solutions."""
     near = np.triu(apart(solutions, solutions) < SAME, 1)
     return solutions[~near.any(axis=0)]
 
 
 def verified(chain: Chain, target: np.ndarray, solutions: np.ndarray) -> np.ndarray:
-    """The solutions that reach the pose inside the limits, after whole turns."""
+    """Selects the solutions that reach the pose inside the limits, after whole turns."""
     inside = chain.unwound(np.asarray(solutions, dtype=float).reshape(-1, chain.dof) + LIMIT_SLACK) - LIMIT_SLACK
     inside = inside[(inside <= chain.upper + LIMIT_SLACK).all(axis=1)]
     return inside[[bool(np.abs(_error(chain, q, target)).max() <= REACHED) for q in inside]] if len(inside) else inside
 
 
 def polish(chain: Chain, target: np.ndarray, q: np.ndarray) -> np.ndarray | None:
-    """The solution inside the limits beside `q`, to rounding, by Newton's method; None if there is none."""
+    """Refines `q` to a solution inside the limits, to rounding, by Newton's method; None if there is none."""
     for _ in range(20):
         error = _error(chain, q, target)
         if np.abs(error).max() < 1e-13:
@@ -90,7 +90,7 @@ def polish(chain: Chain, target: np.ndarray, q: np.ndarray) -> np.ndarray | None
 
 
 def jacobian(chain: Chain, q: np.ndarray) -> np.ndarray:
-    """(6, n), world-aligned at the tip."""
+    """Jacobian (6, n), world-aligned at the tip."""
     data = chain.model.createData()
     frame = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
     return pin.computeFrameJacobian(chain.model, data, q, chain.tip_frame, frame)
@@ -103,7 +103,7 @@ def _error(chain: Chain, q: np.ndarray, target: np.ndarray) -> np.ndarray:
 
 
 def descents(robot: Any, chain: Chain, targets: np.ndarray, count: int) -> Iterable[np.ndarray]:
-    """The distinct solutions (k, n) found by `count` Levenberg-Marquardt descents from random starts, pose by pose."""
+    """Distinct solutions (k, n) of `count` Levenberg-Marquardt descents from random starts, pose by pose."""
     import beetle_ik
 
     random = np.random.default_rng(1)

@@ -1,6 +1,6 @@
 """Differential inverse kinematics, one quadratic program a tick: velocity limits, and none on acceleration or jerk."""
 
-# The methods are described in mover.py.
+# Methods are described in mover.py.
 # ruff: noqa: D101, D102, D107
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .stepping import DAMPING, LM_DAMPING, for_mujoco
 
 
 class FrameTasks(Mover):
-    """What mink and pink have in common."""
+    """Base of mink and pink."""
 
     gain = 1.0
     _library: Any

@@ -1,6 +1,6 @@
 """Libraries that follow one descent from the start, without restarts: each iterates to the tolerance or 200 steps."""
 
-# The methods are described in adapter.py.
+# Methods are described in adapter.py.
 # ruff: noqa: D101, D102, D107
 
 from __future__ import annotations

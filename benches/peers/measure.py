@@ -19,7 +19,7 @@ LIMIT_SLACK = 1e-9  # rad or m: what a library may lose in rounding at a limit
 
 @dataclass(frozen=True)
 class Times:
-    """One library on one robot and task."""
+    """Times of one library on one robot and task."""
 
     solved: int  # calls, of all below
     calls: int
@@ -34,7 +34,7 @@ Choice = Callable[[Any], np.ndarray | None]
 
 @dataclass(frozen=True)
 class Calls:
-    """What one library took and answered: `times` (rounds, targets) in µs, `answers` one list a round."""
+    """Times and answers of one library: `times` (rounds, targets) in µs, `answers` one list a round."""
 
     times: np.ndarray
     answers: list[list[Any]]
@@ -43,7 +43,7 @@ class Calls:
 def interleave(
     solvers: dict[str, Solver], targets: np.ndarray, starts: np.ndarray, *, in_a_row: int, rounds: int
 ) -> dict[str, Calls]:
-    """Every call of every solver, `in_a_row` targets by one before the next solver gets the same.
+    """Makes every call of every solver, `in_a_row` targets by one before the next solver gets the same.
 
     With 1, each call comes after other work and finds the caches cold; with more, the caches are its own. The order is
     drawn anew each time, so that none always follows the same other. A busy machine hurts long calls more than short
@@ -73,7 +73,7 @@ def interleave(
 
 
 def judge(chain: Chain, targets: np.ndarray, calls: Calls, tolerance: float, chosen: Choice) -> Times:
-    """Solved means within the tolerance by Pinocchio's forward kinematics and inside the limits, in every round.
+    """Judges answers: solved means within the tolerance by Pinocchio and inside the limits, in every round.
 
     `chosen` takes the configuration from an answer.
 
@@ -100,7 +100,7 @@ def _reaches(chain: Chain, q: np.ndarray, target: np.ndarray, tolerance: float) 
 
 
 def per_call(functions: dict[str, Callable[[np.ndarray], object]], configurations: np.ndarray) -> dict[str, float]:
-    """Nanoseconds a call of each function, its best of five interleaved passes over the configurations."""
+    """Measures nanoseconds a call of each function, its best of five interleaved passes over the configurations."""
     rows = list(configurations)
     best = dict.fromkeys(functions, np.inf)
     for _ in range(5):
@@ -113,7 +113,7 @@ def per_call(functions: dict[str, Callable[[np.ndarray], object]], configuration
 
 
 def batch_rate(adapter: Adapter, targets: np.ndarray, threads: int) -> float:
-    """Poses a second of beetle-ik's `solve_batch`, best of three."""
+    """Measures poses a second of beetle-ik's `solve_batch`, best of three."""
     import beetle_ik
 
     rates = []

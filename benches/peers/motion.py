@@ -18,7 +18,7 @@ SETTLED_DEVIATIONS = 3.0  # of the noise
 
 @dataclass(frozen=True)
 class Commanded:
-    """What one library commanded: `q` (k + 1, n) from the start on, `times` (k,) in µs."""
+    """Commands of one library: `q` (k + 1, n) from the start on, `times` (k,) in µs."""
 
     q: np.ndarray
     times: np.ndarray
@@ -79,7 +79,7 @@ def lag(points: np.ndarray, path: np.ndarray, dt: float) -> float:
 
 
 def delayed(path: np.ndarray, ticks: float) -> np.ndarray:
-    """The path (k, 3), delayed by `ticks`."""
+    """Delays the path (k, 3) by `ticks`."""
     time = np.arange(len(path))
     return np.column_stack([np.interp(time - ticks, time, axis) for axis in path.T])
 
@@ -113,7 +113,7 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
 
 
 def median(values: Iterable[float]) -> float:
-    """The median; NaN counts as infinite, and an infinite median is returned as NaN."""
+    """Median with NaN as infinite; an infinite median is returned as NaN."""
     finite = np.nan_to_num(np.fromiter(values, float), nan=np.inf)
     middle = float(np.median(finite))
     return middle if np.isfinite(middle) else np.nan

@@ -1,4 +1,4 @@
-"""The interface of `noisy_targets.py` to a library: one configuration per tick, towards a moving target."""
+"""Interface of `noisy_targets.py` to a library: one configuration per tick, towards a moving target."""
 
 # ruff: noqa: ARG002, D107
 
@@ -14,7 +14,7 @@ from .chain import Chain
 
 @dataclass(frozen=True)
 class Setting:
-    """The tick and the limits of every joint; `jerk` None where there is none."""
+    """Tick and limits of every joint; `jerk` None without a limit."""
 
     dt: float  # s
     velocity: float  # rad/s, m/s
@@ -41,7 +41,7 @@ class Mover:
         raise NotImplementedError
 
     def listen(self, target: np.ndarray | None, stamp: float | None) -> np.ndarray:
-        """As `step`, from a slow stream: `target` is None in a tick without a new one.
+        """Steps like `step`, from a slow stream: `target` is None in a tick without a new one.
 
         `stamp` is the time of its measurement (s). A library without support for streams gets the last target again.
         """

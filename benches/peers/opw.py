@@ -15,7 +15,7 @@ PARALLEL = 1e-6
 
 @dataclass(frozen=True)
 class OpwArm:
-    """The arm in the zero position of the paper, stretched upwards; `lengths` has the names of the paper."""
+    """Arm in the zero position of the paper, stretched upwards; `lengths` has the names of the paper."""
 
     lengths: dict[str, float]  # m
     base: np.ndarray  # (4, 4), the arm's frame in that of the chain's base: z along axis 1, y along axis 2
@@ -62,7 +62,7 @@ def opw_parameters(chain: Chain) -> OpwArm:
 
 
 def _joints(chain: Chain, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A point on each axis and its direction, (6, 3) each."""
+    """Point on each axis and its direction, (6, 3) each."""
     data = chain.model.createData()
     jacobian = pin.computeJointJacobians(chain.model, data, q)
     return np.array([data.oMi[i + 1].translation for i in range(6)]), jacobian[3:].T.copy()
@@ -73,13 +73,13 @@ def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
 
 
 def _turn(axis: np.ndarray, vector: np.ndarray, wanted: np.ndarray) -> float:
-    """The angle about the axis that brings the vector to the wanted direction."""
+    """Angle about the axis that brings the vector to the wanted direction."""
     if np.linalg.norm(_across(vector, axis)) < PARALLEL or np.linalg.norm(_across(wanted, axis)) < PARALLEL:
         raise Unsupported("neighbouring axes are parallel")
     return float(np.arctan2(np.cross(vector, wanted) @ axis, _across(vector, axis) @ _across(wanted, axis)))
 
 
 def _meeting(p: np.ndarray, q: np.ndarray, r: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """The point nearest to three lines; forward kinematics tells later whether they meet."""
+    """Point nearest to three lines; forward kinematics tells later whether they meet."""
     across = [np.eye(3) - np.outer(axis, axis) for axis in axes]
     return np.linalg.solve(sum(across), sum(each @ point for each, point in zip(across, (p, q, r), strict=True)))

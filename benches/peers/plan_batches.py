@@ -18,7 +18,7 @@ LOOP = "import time; begin = time.perf_counter()\nfor _ in range(20_000_000): pa
 
 
 def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration: float) -> list[list[str]]:
-    """The line of the table for an arm, the best of several rounds by wall time; none without `plan_batch`."""
+    """Measures the line of the table for an arm, the best of several rounds by wall time; none without `plan_batch`."""
     if not hasattr(bik, "plan_batch"):
         return []
     limits = bik.Limits(acceleration=acceleration)
@@ -35,20 +35,20 @@ def batch_line(arm: MotionBenchArm, problems: list[dict[str, Any]], acceleration
 
 
 def gain_of_loops() -> float:
-    """How much more two loops without memory do at once than one alone: what two cores of this machine can give."""
+    """Speedup of two loops without memory over one: the most that two cores of this machine can give."""
     alone, both = (min(looped(count) for _ in range(ROUNDS)) for count in (1, 2))
     return 2.0 * alone / both
 
 
 def looped(count: int) -> float:
-    """The time (s) of so many loops at once, each in a process of its own; of the slowest."""
+    """Time (s) of this many loops at once, each in a process of its own; of the slowest."""
     command = [sys.executable, "-c", LOOP]
     processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(count)]
     return max(float(process.communicate()[0]) for process in processes)
 
 
 def best(call: Callable[[], object]) -> float:
-    """The shortest time (s)."""
+    """Shortest time (s)."""
     times = []
     for _ in range(ROUNDS):
         begin = time.perf_counter()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-# Arm, scene, number, and how it is seen: elevation and azimuth (degrees), zoom.
+# Arm, scene, number, and view: elevation and azimuth (degrees), zoom.
 PICTURED = (
     ("panda", "bookshelf_small", 3, 30, 60, 1.3),
     ("panda", "cage", 1, 25, 140, 1.3),
@@ -15,7 +15,7 @@ PICTURED = (
 
 
 def success(rows: list[dict[str, str]], names: list[str], file: Path) -> None:
-    """The share of the problems that are solved within a time, for each planner."""
+    """Fraction of the problems that are solved within a time, for each planner."""
     import matplotlib as mpl
 
     mpl.use("Agg")

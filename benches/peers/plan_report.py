@@ -57,7 +57,7 @@ IMPROVING = (planners.Within1Second, planners.Within5Seconds)
 
 @dataclass(frozen=True)
 class Result:
-    """One planner on one problem; `verdict` None where it claims no plan."""
+    """Result of one planner on one problem; `verdict` None if it claims no plan."""
 
     planner: str
     arm: str
@@ -67,7 +67,7 @@ class Result:
 
     @property
     def key(self) -> tuple[str, int]:
-        """Which problem of the arm it is."""
+        """Identity of the problem of the arm."""
         return self.problem["scene"], self.problem["index"]
 
     @property
@@ -77,7 +77,7 @@ class Result:
 
     @property
     def milliseconds(self) -> float:
-        """The time of the call."""
+        """Time of the call."""
         return 1e3 * self.answer.seconds
 
 
@@ -98,7 +98,7 @@ def write(out: Path, results: list[Result], batches: list[list[str]]) -> None:
 
 
 def problem_line(result: Result) -> list[str]:
-    """One planner on one problem."""
+    """Line of one planner on one problem."""
     verdict, problem = result.verdict, result.problem
     line = [result.planner, result.arm, problem["scene"], str(problem["index"]), str(result.answer.claimed)]
     line += [str(result.kept), f"{result.milliseconds:.4g}", str(result.answer.margin_0)]
@@ -109,7 +109,7 @@ def problem_line(result: Result) -> list[str]:
 
 
 def summary(results: list[Result]) -> list[list[str]]:
-    """A line for each planner and arm; times of all calls, lengths and durations of what is kept."""
+    """Lines of each planner and arm; times of all calls, lengths and durations of valid plans."""
     grouped: dict[tuple[str, str], list[Result]] = {}
     for result in results:
         if result.planner not in {each.name for each in IMPROVING}:
@@ -121,7 +121,7 @@ def summary(results: list[Result]) -> list[list[str]]:
 
 
 def summary_line(mine: list[Result], old: list[Result]) -> list[str]:
-    """The figures of one planner on one arm, compared with those of the earlier one."""
+    """Figures of one planner on one arm, compared with those of the earlier one."""
     verdicts = [each.verdict for each in mine if each.verdict is not None]
     kept = [each for each in mine if each.kept]
     of_old = {each.key: each.verdict.length for each in old if each.kept}
@@ -145,12 +145,12 @@ def summary_line(mine: list[Result], old: list[Result]) -> list[str]:
 
 
 def digits(value: float) -> str:
-    """Three digits, without an exponent."""
+    """Formats three digits, without an exponent."""
     return f"{float(f'{value:.3g}'):g}"
 
 
 def improvement(results: list[Result]) -> list[list[str]]:
-    """How long the motions of the first plan and of 1 s are, compared with those of 5 s, where all are kept."""
+    """Durations of the motions of the first plan and of 1 s, compared with those of 5 s, where all are valid."""
     lines = []
     kept = {(each.arm, each.planner, each.key): each for each in results if each.kept and each.planner in BUDGETS}
     for arm in dict.fromkeys(arm for arm, *_ in kept):
@@ -171,7 +171,7 @@ def improvement(results: list[Result]) -> list[list[str]]:
 
 
 def publish(out: Path, docs: Path, data: Path, acceleration: float) -> None:
-    """Brings the site up to date with the results in `out`: tables and pictures."""
+    """Updates the site with the results in `out`: tables and pictures."""
     for name in ("planning.csv", "planning_improved.csv", "planning_batch.csv"):
         (docs / name).write_bytes((out / name).read_bytes())
     plan_figures.success(table(out, "planning_problems.csv"), NAMES, docs / "images" / "planning_success.png")
@@ -181,19 +181,19 @@ def publish(out: Path, docs: Path, data: Path, acceleration: float) -> None:
 
 
 def with_section(page: str, text: str) -> str:
-    """The page with another text between the two marks."""
+    """Replaces the text between the two marks of a page."""
     before, rest = page.split(BEGIN)
     return f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}"
 
 
 def table(folder: Path, name: str) -> list[dict[str, str]]:
-    """A table that was written."""
+    """Reads a table that was written."""
     with (folder / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def section(docs: Path) -> str:
-    """What the tables of the site say, in a narrow one: a line for each planner, a figure for each arm."""
+    """Tables of the site in narrow form: a line for each planner, a figure for each arm."""
     rows = {(row["planner"], row["arm"]): row for row in table(docs, "planning.csv")}
     arms = list(dict.fromkeys(arm for _, arm in rows))
     lines = [

@@ -1,4 +1,4 @@
-"""A planner in a process of its own, with its own interpreter and path: two states of beetle-ik have one name.
+"""Planner in a process of its own, with its own interpreter and path: two versions of beetle-ik have one name.
 
     python -m peers.plan_worker FILE_DESCRIPTOR CLASS
 
@@ -31,7 +31,7 @@ BENCHES = Path(__file__).parents[1]
 
 @dataclass(frozen=True)
 class Answer:
-    """What a planner answered to one problem, and the time it took."""
+    """Answer of a planner to one problem, and the time taken."""
 
     claimed: bool
     seconds: float  # of the processor
@@ -42,7 +42,7 @@ class Answer:
 
 
 class Worker:
-    """The other end of the pipe: a planner that is called from here."""
+    """Client of a planner in another process."""
 
     def __init__(self, planner: type[Planner], arm: Arm, python: str, folder: Path | None) -> None:
         """Starts `planner` under the interpreter `python`, with `folder` first on its path.
@@ -72,7 +72,7 @@ class Worker:
         return self._ask(problem)
 
     def motion(self, answer: Answer) -> Motion:
-        """The last motion, sampled by the worker."""
+        """Last motion, sampled by the worker."""
         return Motion(self._ask, answer.duration, answer.spacing)
 
     def close(self) -> None:
@@ -128,5 +128,5 @@ def answered(planner: Planner, problem: dict[str, Any]) -> Answer:
 
 
 if __name__ == "__main__":
-    # Under its own name, so that what is sent is of the same class on both sides.
+    # Canonical name of the module, so that both sides use the same class.
     importlib.import_module("peers.plan_worker").main()

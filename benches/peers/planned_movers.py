@@ -1,6 +1,6 @@
 """Inverse kinematics and then a planned motion in every tick, as users combine two libraries; and servo-py."""
 
-# The methods are described in mover.py.
+# Methods are described in mover.py.
 # ruff: noqa: D101, D102, D107
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ IK_TOLERANCE = 1e-6  # m and rad
 
 
 class ThenRuckig(Mover):
-    """In each tick, joint angles of the target, solved from the last ones, and a Ruckig motion to them."""
+    """Solver and Ruckig: in each tick, joint angles of the target, solved from the last ones, and a motion to them."""
 
     distribution = "ruckig"
     library: type[Adapter]

@@ -24,7 +24,7 @@ SECONDS = 5.0  # that the other libraries get for a problem
 
 @dataclass(frozen=True)
 class Arm:
-    """What a planner needs to know of an arm: files for all, and spheres for one that reads fewer of them."""
+    """Description of an arm for planners: files for all, and spheres for one that reads fewer of them."""
 
     name: str
     urdf: str  # spheres as collision shapes, all joints off the chain fixed
@@ -41,7 +41,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Planned:
-    """What is known of a motion before it is sampled."""
+    """Properties of a motion before it is sampled."""
 
     duration: float  # s
     spacing: float  # s, see `sphere_judge.Motion`
@@ -58,15 +58,15 @@ class Planner:
         raise NotImplementedError
 
     def prepare(self, problem: dict[str, Any]) -> None:
-        """Makes the obstacles of a problem of MotionBenchMaker known."""
+        """Loads the obstacles of a problem of MotionBenchMaker."""
         raise NotImplementedError
 
     def plan(self, start: np.ndarray, goal: np.ndarray) -> object | None:
-        """What the library calls a solution; None where it has none. This call is timed."""
+        """Plans, and returns the library's solution; None without one. This call is timed."""
         raise NotImplementedError
 
     def planned(self, found: object) -> Planned:
-        """Takes what `plan` returned as the motion to be sampled."""
+        """Prepares the result of `plan` for sampling."""
         raise NotImplementedError
 
     def at(self, times: np.ndarray) -> np.ndarray:
@@ -75,7 +75,7 @@ class Planner:
 
 
 class BeetleIk(Planner):
-    """`plan_point_to_point`, called with `options` too."""
+    """Planner `plan_point_to_point`, called with `options` too."""
 
     name = "beetle-ik"
     settings = "margin 1 mm (0 where an end is nearer), limits of the URDF and 5 rad/s² (all planners)"
@@ -138,7 +138,7 @@ class BeetleIkTravel(BeetleIk):
 
 
 class Within(BeetleIk):
-    """With a budget of time."""
+    """Planner with a budget of time."""
 
     seconds: ClassVar[float]
 
@@ -170,7 +170,7 @@ class Within5Seconds(Within):
 
 
 class Old(BeetleIk):
-    """Its first planner: spheres are capsules without length on links of the chain, cylinders are prisms."""
+    """Earlier planner: spheres are capsules without length on links of the chain, cylinders are prisms."""
 
     name = "beetle-ik, commit c1eaf41"
     settings = "as beetle-ik; cylinders are prisms of 24 sides around them, and it chooses the pairs of links itself"
@@ -213,7 +213,7 @@ def prism(cylinder: dict[str, Any], sides: int = 24) -> np.ndarray:
 
 
 class Sampled(Planner):
-    """A planner whose motion is a list of positions and velocities: cubics join them."""
+    """Planner whose motion is a list of positions and velocities, joined by cubics."""
 
     step = 0.01  # s
 
@@ -232,7 +232,7 @@ class Sampled(Planner):
 
 
 class RoboPlan(Sampled):
-    """RRT-Connect, shortcuts and TOPP-RA, as in its examples."""
+    """Planner RRT-Connect, shortcuts and TOPP-RA, as in its examples."""
 
     name = "roboplan 0.7.0"
     settings = (
@@ -293,7 +293,7 @@ class RoboPlan(Sampled):
 
 
 class MpLib(Sampled):
-    """`plan_qpos`: OMPL's RRT-Connect, simplified, and toppra along a spline through its points."""
+    """Planner `plan_qpos`: OMPL's RRT-Connect, simplified, and toppra along a spline through its points."""
 
     name = "mplib 0.2.1"
     settings = f"`plan_qpos` with planning_time={SECONDS:g} and time_step=0.01, all else as by default"
@@ -334,7 +334,7 @@ class MpLib(Sampled):
 
 
 def placed(thing: dict[str, Any]) -> np.ndarray:
-    """The pose (4, 4) of a box or cylinder of a problem."""
+    """Pose (4, 4) of a box or cylinder of a problem."""
     at = np.eye(4)
     at[:3, :3], at[:3, 3] = turn(thing["xyzw"]), thing["position"]
     return at

@@ -35,7 +35,7 @@ Thing = tuple[bik.obstacles.Obstacle, object, coal.Transform3s]  # ours, coal's,
 
 @dataclass(frozen=True)
 class Scene:
-    """Two ends and what is around; `to_pose`: only the pose of the end is asked for."""
+    """Scene with two ends and obstacles; `to_pose`: only the pose of the end is given."""
 
     number: int
     robot: bik.Robot
@@ -47,7 +47,7 @@ class Scene:
 
     @property
     def kept(self) -> float:
-        """The margin (m)."""
+        """Margin (m)."""
         return DEFAULT_MARGIN if self.margin is None else self.margin
 
     def plan(self, stop: bik.Stop | None = None) -> bik.Plan:
@@ -65,7 +65,7 @@ class Scene:
 
 
 def scene(number: int) -> Scene:
-    """The scene of this number."""
+    """Draws the scene of this number."""
     random = np.random.default_rng([SEED, number])
     robot = list(ARMS.values())[number % len(ARMS)]
     margin = MARGINS[number // len(ARMS) % len(MARGINS)]
@@ -89,47 +89,47 @@ def clear_configurations(robot: bik.Robot, beside: float, random: np.random.Gene
 
 
 def between(robot: bik.Robot, ends: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """A place near a link on the straight way between the ends."""
+    """Draws a position near a link on the straight motion between the ends."""
     q = ends[0] + random.uniform() * (ends[1] - ends[0])
     near = robot.link_poses(q)[random.integers(2, robot.dof + 1), :3, 3]
     return near + random.normal(0.0, 0.12, 3)
 
 
 def box(center: np.ndarray, random: np.random.Generator) -> Thing:
-    """A box."""
+    """Draws a box."""
     turn, edges = turned(random), random.uniform(0.03, 0.5, 3)
     return bik.obstacles.Box(center, edges, turn), coal.Box(*edges), coal.Transform3s(turn, center)
 
 
 def sphere(center: np.ndarray, random: np.random.Generator) -> Thing:
-    """A sphere."""
+    """Draws a sphere."""
     radius = float(random.uniform(0.02, 0.2))
     return bik.obstacles.Sphere(center, radius), coal.Sphere(radius), coal.Transform3s(np.eye(3), center)
 
 
 def cylinder(center: np.ndarray, random: np.random.Generator) -> Thing:
-    """A cylinder along its z axis."""
+    """Draws a cylinder along its z axis."""
     turn, radius, length = turned(random), float(random.uniform(0.02, 0.15)), float(random.uniform(0.05, 0.8))
     place = coal.Transform3s(turn, center)
     return bik.obstacles.Cylinder(center, turn[:, 2], radius, length), coal.Cylinder(radius, length), place
 
 
 def capsule(center: np.ndarray, random: np.random.Generator) -> Thing:
-    """A capsule along its z axis."""
+    """Draws a capsule along its z axis."""
     turn, radius, length = turned(random), float(random.uniform(0.02, 0.12)), float(random.uniform(0.05, 0.8))
     half, place = 0.5 * length * turn[:, 2], coal.Transform3s(turn, center)
     return bik.obstacles.Capsule(center - half, center + half, radius), coal.Capsule(radius, length), place
 
 
 def half_space(center: np.ndarray, random: np.random.Generator) -> Thing:
-    """A half-space that ends at `center`."""
+    """Draws a half-space that ends at `center`."""
     normal = turned(random)[:, 2]
     offset = float(normal @ center)
     return bik.obstacles.HalfSpace(normal, offset), coal.Halfspace(normal, offset), coal.Transform3s.Identity()
 
 
 def turned(random: np.random.Generator) -> np.ndarray:
-    """A random rotation (3, 3)."""
+    """Draws a random rotation (3, 3)."""
     turn, _ = np.linalg.qr(random.standard_normal((3, 3)))
     return turn * np.sign(np.linalg.det(turn))
 
@@ -138,7 +138,7 @@ MAKERS: list[Callable[[np.ndarray, np.random.Generator], Thing]] = [box, sphere,
 
 
 def judge(scene: Scene, trajectory: bik.Trajectory) -> list[str]:
-    """What is wrong with a motion that was called clear; empty: nothing."""
+    """Returns the faults of a motion that was reported as clear; empty if there are none."""
     robot, wrong = scene.robot, []
     motion = Motion(lambda times: trajectory.at(times)[0], trajectory.duration, spacing=1e-3)
     q, ends = dense(lambda q: capsule_ends(robot, q), motion)
@@ -179,7 +179,7 @@ def poses_of_links(robot: bik.Robot, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def least_distance(scene: Scene, q: np.ndarray, ends: np.ndarray) -> float:
-    """The smallest distance on samples (m, n), where it is below the margin; otherwise one above it."""
+    """Smallest distance on samples (m, n) if it is below the margin; otherwise one above it."""
     capsules, request = scene.robot.capsules, coal.DistanceRequest()
     request.gjk_tolerance = 1e-9
     bodies = [coal.Capsule(radius, float(np.linalg.norm(b - a))) for _, a, b, radius in capsules]
@@ -210,7 +210,7 @@ def least_distance(scene: Scene, q: np.ndarray, ends: np.ndarray) -> float:
 
 
 def least_along(distance: Callable[[int], float], moved: np.ndarray, enough: float) -> float:
-    """The smallest distance of two bodies on the samples where it is below `enough`.
+    """Smallest distance of two bodies on the samples where it is below `enough`.
 
     A distance changes by no more than the bodies move: samples on which it cannot be below `enough` are left out.
     """
@@ -224,7 +224,7 @@ def least_along(distance: Callable[[int], float], moved: np.ndarray, enough: flo
 
 @dataclass
 class Outcome:
-    """What became of many scenes."""
+    """Outcome of many scenes."""
 
     scenes: int = 0
     solved: int = 0
@@ -232,7 +232,7 @@ class Outcome:
 
 
 def run(numbers: Iterable[int], stop: bik.Stop | None = None) -> Outcome:
-    """Plans in the scenes of these numbers and judges every plan that is called solved."""
+    """Plans in the scenes of these numbers and judges every plan that is reported as solved."""
     outcome = Outcome()
     for number in numbers:
         each = scene(number)

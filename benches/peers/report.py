@@ -1,4 +1,4 @@
-"""The measurements as CSV, Markdown and a picture."""
+"""Measurements as CSV, Markdown and a picture."""
 
 # ruff: noqa: D103
 
@@ -20,7 +20,7 @@ Cells = dict[tuple[str, str], "Row"]  # by library and robot
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table: a library on a robot and task; `times` None with a note where it was not measured."""
+    """Line of the table: a library on a robot and task; `times` None with a note if it was not measured."""
 
     task: str
     order: str
@@ -48,7 +48,7 @@ def summary_columns(orders: Iterable[str]) -> list[str]:
 
 
 def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: dict[str, str]) -> list[list[str]]:
-    """A line a library, over all arms that it takes."""
+    """Lines of the summary, one a library, over all arms that it supports."""
     measured = [row for row in rows if row.task == task and row.times]
     lines = []
     for library in dict.fromkeys(row.library for row in rows if row.task == task):
@@ -63,14 +63,14 @@ def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: d
 
 
 def _solved(rows: list[Row]) -> str:
-    """The fewest and the most calls solved on an arm, of how many: "599 to 600 of 600"."""
+    """Fewest and most calls solved on an arm, of how many: "599 to 600 of 600"."""
     times = [row.times for row in rows if row.times]
     lowest, highest = min(each.solved for each in times), max(each.solved for each in times)
     return f"{lowest if lowest == highest else f'{lowest} to {highest}'} of {times[0].calls}"
 
 
 def times_section(task: str, order: str, rows: list[Row]) -> str:
-    """Success, median, mean and p99 of each library on each robot, and what the library takes beside beetle-ik."""
+    """Success, median, mean and p99 of each library on each robot, and its time relative to beetle-ik."""
     cells = {(row.library, row.robot): row for row in rows if (row.task, row.order) == (task, order)}
     libraries = list(dict.fromkeys(library for library, _ in cells))
     robots = list(dict.fromkeys(robot for _, robot in cells))
@@ -97,13 +97,13 @@ def _ratio(cells: Cells, library: str, figure: str) -> str:
 
 
 def _ratios(cells: Cells, library: str, figure: str) -> list[float]:
-    """What the library takes over what beetle-ik takes, on the robots that both have."""
+    """Ratio of times to those of beetle-ik, on the robots that both have."""
     pairs = [(row.times, cells[REFERENCE, robot].times) for (name, robot), row in cells.items() if name == library]
     return [getattr(its, figure) / getattr(ours, figure) for its, ours in pairs if its and ours]
 
 
 def _rounded(value: float) -> str:
-    """Two digits, without an exponent."""
+    """Formats two digits, without an exponent."""
     return f"{float(f'{value:.2g}'):g}"
 
 
@@ -155,7 +155,7 @@ def _line(cells: list[str]) -> str:
 
 
 def plot(rows: list[Row], task: str, order: str, title: str, path: Path) -> None:
-    """Success against mean time: one colour a library, one point a robot, its geometric mean ringed."""
+    """Plots success against mean time: one colour a library, one point a robot, its geometric mean ringed."""
     import matplotlib as mpl
 
     mpl.use("Agg")

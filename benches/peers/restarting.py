@@ -1,6 +1,6 @@
-"""Numerical libraries that start again until they have the target."""
+"""Numerical libraries that restart until they reach the target."""
 
-# The methods are described in adapter.py.
+# Methods are described in adapter.py.
 # ruff: noqa: ARG002, D101, D102, D107
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ CLOSED = ("spherical", "axes")  # beginnings of `closed_form` for arms solved wi
 
 
 def summary_lines(times: list[Row]) -> list[list[str]]:
-    """One line per kind of arm and library: range of the times, geometric mean of the ratios, mean of the counts."""
+    """Lines of the table, one per kind of arm and library: range of times, geometric mean of ratios, mean of counts."""
     groups: dict[tuple[str, str], list[Row]] = defaultdict(list)
     for row in times:
         groups[_kind(row), row["library"]].append(row)

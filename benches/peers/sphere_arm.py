@@ -1,4 +1,4 @@
-"""An arm as spheres, read from URDF and SRDF by numpy alone, for a judge that shares no code with any planner."""
+"""Arm as spheres, read from URDF and SRDF by numpy alone, for a judge that shares no code with any planner."""
 
 # ruff: noqa: D107
 
@@ -14,7 +14,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint of the file: the constant transform before it, and its axis if it turns the arm."""
+    """Joint of the file: the constant transform before it, and its axis if it turns the arm."""
 
     child: str
     parent: str
@@ -25,7 +25,7 @@ class Joint:
 
 
 class SphereArm:
-    """The spheres of an arm, and which two of them must not touch.
+    """Spheres of an arm, and the pairs of them that must not touch.
 
     Two spheres are tested if their links are on different sides of a joint and the SRDF does not leave the pair out.
     Joints other than `moving` stay at zero. Positions are in the frame of the root link.
@@ -65,7 +65,7 @@ class SphereArm:
         self.pairs = np.array(tested).reshape(-1, 2)
 
     def tested_links(self) -> set[frozenset[str]]:
-        """The pairs of links that must not touch."""
+        """Pairs of links that must not touch."""
         return {frozenset((self.links[i], self.links[j])) for i, j in self.pairs}
 
     def centers(self, q: np.ndarray) -> np.ndarray:
@@ -87,7 +87,7 @@ class SphereArm:
         return turns, places
 
     def _bodies(self) -> dict[str, str]:
-        """The link that carries each link without a joint between them."""
+        """First link of the rigid body that each link belongs to."""
         carrier = {self.root: self.root}
         for joint in self.joints:
             carrier[joint.child] = carrier[joint.parent] if joint.axis is None else joint.child
@@ -117,7 +117,7 @@ def _joint(name: str, joint: ET.Element, moving: list[str]) -> Joint:
 
 
 def _sorted(joints: list[Joint]) -> list[Joint]:
-    """The joints, each after the one that carries it."""
+    """Joints sorted so that each follows the one that carries it."""
     children = {joint.child for joint in joints}
     known, rest, sorted_joints = {joint.parent for joint in joints} - children, joints, []
     while rest:

@@ -1,4 +1,4 @@
-"""The judge of planned motions: spheres against boxes, cylinders and spheres, on samples at most 1 mm apart.
+"""Judge of planned motions: spheres against boxes, cylinders and spheres, on samples at most 1 mm apart.
 
 It shares no code with any planner. A motion is *kept* if on no sample two spheres that must not touch do so, no sphere
 is inside an obstacle, the ends are those of the problem, and no joint leaves its range.
@@ -25,7 +25,7 @@ CHUNK = 256  # samples at once, so that arrays stay in the cache
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A box, cylinder or sphere by its pose."""
+    """Box, cylinder or sphere by its pose."""
 
     rotation: np.ndarray  # (3, 3)
     center: np.ndarray  # (3,)
@@ -54,7 +54,7 @@ def obstacles_of(problem: dict[str, Any]) -> Iterator[Obstacle]:
 
 
 def turn(xyzw: list[float]) -> np.ndarray:
-    """The rotation (3, 3) of a quaternion."""
+    """Rotation (3, 3) of a quaternion."""
     x, y, z, w = np.array(xyzw) / np.linalg.norm(xyzw)
     return np.array(
         [
@@ -67,7 +67,7 @@ def turn(xyzw: list[float]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Motion:
-    """A planned motion as the judge sees it."""
+    """Planned motion as input of the judge."""
 
     at: Callable[[np.ndarray], np.ndarray]  # configurations (m, n) at times (m,) from 0 to `duration`
     duration: float  # s
@@ -76,7 +76,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a motion is like."""
+    """Verdict on a motion."""
 
     clearance: float  # the least on all samples, m
     off_ends: float  # rad
@@ -92,14 +92,14 @@ class Verdict:
 
 
 class SphereJudge:
-    """An arm in the scene of one problem."""
+    """Arm in the scene of one problem."""
 
     def __init__(self, arm: SphereArm, problem: dict[str, Any]) -> None:
         self.arm, self.obstacles = arm, list(obstacles_of(problem))
         self.start, self.goal = np.array(problem["start"]), np.array(problem["goal"])
 
     def clearances(self, q: np.ndarray) -> np.ndarray:
-        """The smallest distance of all (m,) at configurations (m, n)."""
+        """Smallest distance of all (m,) at configurations (m, n)."""
         return self._all_distances(self.arm.centers(q)).min(axis=1)
 
     def judge(self, motion: Motion, acceleration: float) -> Verdict:
@@ -113,10 +113,10 @@ class SphereJudge:
         return Verdict(self._least(centers), float(ends), float(outside), float(length), float(speed), float(rise))
 
     def _least(self, centers: np.ndarray) -> float:
-        """The smallest distance on all samples: of all pairs on few, of those that can be nearest on all."""
+        """Smallest distance on all samples: of all pairs on few, of those that can be nearest on all."""
         coarse = self._all_distances(np.concatenate([centers[::COARSE], centers[-1:]]))
         least = coarse.min()
-        # A sample is at most half as many away from a coarse one; both spheres of a pair may move.
+        # Bound on the change between coarse samples: COARSE // 2 + 1 steps, by both spheres of a pair.
         near = np.flatnonzero(coarse.min(axis=0) < least + 2 * APART * (COARSE // 2 + 1))
         for chunk in np.array_split(centers, -(-len(centers) // CHUNK)):
             least = min(least, self._distances(chunk, near).min())

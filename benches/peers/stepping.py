@@ -1,6 +1,6 @@
 """Libraries of differential kinematics: a call is one step by a quadratic program, iterated to the tolerance."""
 
-# The methods are described in adapter.py.
+# Methods are described in adapter.py.
 # ruff: noqa: D101, D102, D107
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ QUADRATIC_PROGRAM = (
 
 
 class Stepping(Adapter):
-    """The loop that such a library leaves to its user."""
+    """Loop that such a library leaves to its user."""
 
     _tolerance: float
     _no_step: type[Exception]  # what the library raises where the program has no solution
@@ -57,7 +57,7 @@ class Stepping(Adapter):
         raise NotImplementedError
 
     def _error(self) -> float:
-        """The larger of the errors of position (m) and rotation (rad), where both are asked."""
+        """Larger of the errors of position (m) and rotation (rad), if both are required."""
         raise NotImplementedError
 
     def _step(self) -> None:
@@ -119,7 +119,7 @@ class Placo(Stepping):
 
 
 class FrameTasks(Stepping):
-    """What mink and pink have in common."""
+    """Base of mink and pink."""
 
     _library: Any
     _state: Any
@@ -170,7 +170,7 @@ class Mink(FrameTasks):
 
 
 def for_mujoco(urdf: Path) -> str:
-    """The same chain, none of its frames merged away."""
+    """URDF text for MuJoCo, with fixed frames kept apart."""
     robot = ET.parse(urdf).getroot()
     extension = ET.SubElement(robot, "mujoco")
     ET.SubElement(extension, "compiler", fusestatic="false")

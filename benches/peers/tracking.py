@@ -1,4 +1,4 @@
-"""A circle followed from Python, each point from the configuration before: `track` and `Tracker` beside the others."""
+"""Circle followed from Python, each point from the configuration before: `track` and `Tracker` beside the others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .chain import Chain
 from .restarting import BeetleIk
 
 ROBOT = "iiwa14"
-# The circle of Cheng et al. (2020), 0.2 m across, in 30 s, from a configuration on it.
+# Circle of Cheng et al. (2020), 0.2 m across, in 30 s, from a configuration on it.
 CENTER, RADIUS, DURATION = np.array([0.3, 0.3, 1.0]), 0.1, 30.0
 START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0])
 TOLERANCE = 1e-6  # m, at every point
@@ -23,13 +23,13 @@ ROUNDS = 10
 
 
 class BeetleIkTracker(BeetleIk):
-    """The arm's own loop in Python."""
+    """Loop of the arm in Python."""
 
     name = "beetle-ik, Tracker.step"
     settings = "defaults, one call a point"
 
     def follow(self, points: np.ndarray, start: np.ndarray) -> list[np.ndarray]:
-        """As in `Adapter`."""
+        """Follows as in `Adapter`."""
         import beetle_ik
 
         tracker = beetle_ik.Tracker(self.robot, start, dt=DURATION / len(points), position_tolerance=TOLERANCE)
@@ -37,13 +37,13 @@ class BeetleIkTracker(BeetleIk):
 
 
 class BeetleIkTrack(BeetleIk):
-    """The whole path in one call."""
+    """Whole path in one call."""
 
     name = "beetle-ik, track"
     settings = "defaults, one call for the path"
 
     def follow(self, points: np.ndarray, start: np.ndarray) -> np.ndarray:
-        """As in `Adapter`."""
+        """Follows as in `Adapter`."""
         import beetle_ik
 
         step = DURATION / len(points)
@@ -53,7 +53,7 @@ class BeetleIkTrack(BeetleIk):
 
 @dataclass(frozen=True)
 class Followed:
-    """One library on one number of steps."""
+    """Result of one library on one number of steps."""
 
     library: str
     steps: int
@@ -63,13 +63,13 @@ class Followed:
 
 
 def circle(steps: int) -> np.ndarray:
-    """Points (steps, 3) once round, the last one where the arm begins."""
+    """Points (steps, 3) once round, the last one at the start of the arm."""
     angle = 2.0 * np.pi * np.arange(1, steps + 1) / steps
     return CENTER + RADIUS * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(steps)])
 
 
 def compare_tracking(chain: Chain, adapters: Iterable[Adapter]) -> list[Followed]:
-    """Every library round the circle, in rounds, so that a busy machine hurts all alike."""
+    """Runs every library round the circle, in rounds, so that a busy machine hurts all alike."""
     adapters = list(adapters)
     rows = []
     for steps in STEPS:
@@ -100,7 +100,7 @@ def compare_tracking(chain: Chain, adapters: Iterable[Adapter]) -> list[Followed
 
 
 def _errors(chain: Chain, points: np.ndarray, configurations: Iterable[np.ndarray | None]) -> np.ndarray:
-    """By Pinocchio's forward kinematics, in m; NaN where the library gave up."""
+    """Errors by Pinocchio's forward kinematics, in m; NaN if the library gave up."""
     distances = [
         np.nan if q is None else np.linalg.norm(chain.pose(np.asarray(q, dtype=float))[:3, 3] - point)
         for q, point in zip(configurations, points, strict=True)

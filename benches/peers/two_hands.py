@@ -26,7 +26,7 @@ Poses = dict[str, np.ndarray]  # (4, 4) by the name of the tip
 
 @dataclass(frozen=True)
 class TwoHands:
-    """A robot of which only the joints on the way to two tips move: no meshes, and masses for simulators."""
+    """Robot with only the joints on the way to two tips free: no meshes, and masses for simulators."""
 
     name: str
     text: str
@@ -42,7 +42,7 @@ class TwoHands:
 
     @cached_property
     def joints(self) -> list[str]:
-        """In the order of Pinocchio's q."""
+        """Joints in the order of Pinocchio's q."""
         return [str(name) for name in self.model.names][1:]
 
     def poses(self, q: np.ndarray) -> Poses:
@@ -50,7 +50,7 @@ class TwoHands:
         return {tip: self._data.oMf[self.model.getFrameId(tip)].homogeneous.copy() for tip in self.tips}
 
     def is_met(self, q: np.ndarray, wanted: Poses) -> bool:
-        """Whether q is inside the limits, and each tip within the tolerance (and what rounding adds)."""
+        """Whether q is inside the limits, and each tip within the tolerance (and rounding)."""
         inside = (q >= self.model.lowerPositionLimit - 1e-9) & (q <= self.model.upperPositionLimit + 1e-9)
         return bool(inside.all()) and all(
             self._error(pose, wanted[tip]) <= 1.001 * TOLERANCE for tip, pose in self.poses(q).items()
@@ -63,7 +63,7 @@ class TwoHands:
 
 
 def reduced(name: str, urdf: Path | str, tips: tuple[str, str]) -> TwoHands:
-    """The robot of a file or text, without what does not move its tips."""
+    """Robot of a file or text, reduced to the links that move its tips."""
     robot = ET.fromstring(urdf) if isinstance(urdf, str) else ET.parse(urdf).getroot()
     above = {child(joint): joint for joint in robot.iter("joint") if joint.find("child") is not None}
     moving = {id(joint) for tip in tips for joint in way(tip, above)}
@@ -86,13 +86,13 @@ def reduced(name: str, urdf: Path | str, tips: tuple[str, str]) -> TwoHands:
 
 
 def child(joint: ET.Element) -> str:
-    """The link that a joint carries."""
+    """Link that a joint carries."""
     found = joint.find("child")
     return "" if found is None else found.get("link", "")
 
 
 def way(tip: str, above: dict[str, ET.Element]) -> Iterator[ET.Element]:
-    """The joints from a link to the root."""
+    """Joints from a link to the root."""
     while tip in above:
         joint = above[tip]
         yield joint
@@ -101,7 +101,7 @@ def way(tip: str, above: dict[str, ET.Element]) -> Iterator[ET.Element]:
 
 
 def two_arms_on_a_torso(arm: Path) -> str:
-    """Two arms of a file on a torso that turns and lifts: their links and joints are called `left_` and `right_`."""
+    """Two arms of a file on a torso that turns and lifts, with links and joints named `left_` and `right_`."""
     robot = ET.Element("robot", name="two arms")
     ET.SubElement(robot, "link", name="floor")
     for name, kind, parent, axis, upper in (
@@ -185,7 +185,7 @@ class OneAfterTheOther(Library):
 
 
 class Iterated(Library, Stepping):
-    """A library whose call is one step by a quadratic program."""
+    """Library whose call is one step by a quadratic program."""
 
     _tolerance = TOLERANCE
     _no_step = Exception  # each library has its own for a program without a solution
@@ -199,7 +199,7 @@ class Iterated(Library, Stepping):
 
 
 class FrameTasks(Iterated):
-    """What mink and pink have in common."""
+    """Base of mink and pink."""
 
     settings = f"one task a hand, {QUADRATIC_PROGRAM}, {MAX_STEPS} steps"
     _library: Any

@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
     from .viewing import Viewer, view
 
-# Silent unless the application configures logging.
+# Keeps logging silent unless the application configures it.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 __all__ = [
@@ -157,7 +157,7 @@ __all__ = [
     "vision",
 ]
 
-# Imported when they are first used, and where they are: `import beetle_ik` stays quick.
+# Names imported at their first use, with their modules: `import beetle_ik` stays quick.
 _LATER = {
     "interop": "interop",
     "plot": "plot",
@@ -172,7 +172,7 @@ _LATER = {
     "view": "viewing",
 }
 
-# Results: annotations name them, calls do not.
+# Classes of results, which users never construct themselves.
 _MADE_BY_CALLS = frozenset(
     {
         "BasePlacement",
@@ -197,14 +197,14 @@ _MADE_BY_CALLS = frozenset(
 
 
 def __dir__() -> list[str]:
-    """Returns what a completion offers: public names without those of results."""
+    """Returns the names that a completion offers: public names except the classes of results."""
     return sorted(set(__all__) - _MADE_BY_CALLS)
 
 
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Returns what is imported when it is first used, or a method of the papers under its old name."""
+        """Imports a name at its first use, or returns a method of the papers under its old name."""
         if name in _LATER:
             module = import_module(f".{_LATER[name]}", __name__)
             value = module if name == _LATER[name] else getattr(module, name)

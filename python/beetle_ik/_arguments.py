@@ -26,7 +26,7 @@ def require_one_tip(call: str, robot: Robot) -> None:
 
 
 def require_text(name: str, value: object) -> None:
-    """Raises `InvalidInputError` unless the value is text that can be encoded; half a surrogate pair cannot."""
+    """Raises `InvalidInputError` unless the value is text without unpaired surrogates."""
     require(name, value, str)
     try:
         str(value).encode()
@@ -41,5 +41,5 @@ def require_count(name: str, value: object) -> None:
 
 
 def read_once(things: Any) -> Any:
-    """Returns an iterable as a list, which can be read again, and anything else as it is: the core refuses that."""
+    """Returns an iterable as a list, which can be read again; other values unchanged, for the core to refuse."""
     return list(things) if isinstance(things, Iterable) and not isinstance(things, str) else things

@@ -1,7 +1,7 @@
-"""Words errors of calls whose arguments do not fit: the argument, its value, and what is expected.
+"""Messages for calls whose arguments do not fit: the argument, its value, and what is expected.
 
-Each call of the native module ends here when PyO3 could not read its arguments (`crates/ikpy-bind/src/gate.rs`), and
-each function in Python that is `worded_call`.
+The native module calls `worded` when PyO3 cannot read arguments (`crates/ikpy-bind/src/gate.rs`). Functions in Python
+use the decorator `worded_call`.
 """
 
 import inspect
@@ -35,12 +35,12 @@ _EXAMPLES = {
     "Robot": "Robot.named('panda')",
     "Stop": "Stop(max_evaluations=1000)",
 }
-_SHOWN = 60  # letters of a value
+_SHOWN = 60  # characters of a value
 _NAMELESS = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
 
 def worded(error: Exception, call: Any, arguments: tuple[Any, ...], keywords: Mapping[str, Any]) -> Exception:
-    """Returns the error of a call in words of this library; the error itself if it is not one of its arguments."""
+    """Returns the error of a call in words of this library; an error that is not about its arguments unchanged."""
     text = str(error)
     signature = _signature(call)
     if signature is None:
@@ -59,7 +59,7 @@ def worded(error: Exception, call: Any, arguments: tuple[Any, ...], keywords: Ma
 
 
 def worded_call(function: Callable[_Arguments, _Made]) -> Callable[_Arguments, _Made]:
-    """Decorates a function in Python so that calls which do not fit its signature are worded too."""
+    """Decorates a Python function so that calls with wrong arguments get the messages of this library."""
 
     @wraps(function)
     def call(*arguments: _Arguments.args, **keywords: _Arguments.kwargs) -> _Made:
@@ -67,7 +67,7 @@ def worded_call(function: Callable[_Arguments, _Made]) -> Callable[_Arguments, _
             return function(*arguments, **keywords)
         except TypeError as error:
             if error.__traceback__ is None or error.__traceback__.tb_next is not None:
-                raise  # from within the function
+                raise  # raised within the function
             raise worded(error, function, arguments, keywords) from None
 
     return call
@@ -79,7 +79,7 @@ def _name(call: Any) -> str:
 
 
 def _signature(call: Any) -> inspect.Signature | None:
-    """Returns the signature of a call without the instance it belongs to."""
+    """Returns the signature of a call without `self`."""
     try:
         signature = inspect.signature(call)
     except (TypeError, ValueError):
@@ -97,7 +97,7 @@ def _given(signature: inspect.Signature, arguments: tuple[Any, ...], keywords: M
 
 
 def misfit(argument: str, value: object, error: Exception) -> str:
-    """Says that a value is of the wrong kind, and how to come by the right one."""
+    """Returns the message for a value of the wrong kind, with a way to make a right one."""
     kind = _kind(str(error))
     if kind is None:
         return f"{argument}: {error}, got {shown(value)}"
@@ -105,7 +105,7 @@ def misfit(argument: str, value: object, error: Exception) -> str:
 
 
 def example(kind: str, value: object) -> str:
-    """Returns how a value of this kind is made, such as ", such as Robot.named('panda')"; nothing for most kinds."""
+    """Returns an example of a value of this kind, as in ", such as Robot.named('panda')"; empty for most kinds."""
     if kind == "Robot" and isinstance(value, str | os.PathLike):
         return f", such as {_robot_from(os.fspath(value))}"
     return f", such as {_EXAMPLES[kind]}" if kind in _EXAMPLES else ""
@@ -114,7 +114,7 @@ def example(kind: str, value: object) -> str:
 def _misfit_of(
     call: Any, signature: inspect.Signature, argument: str, error: Exception, given: Mapping[str, Any]
 ) -> str:
-    """Says the same of an argument of a call; also where two arguments have changed places."""
+    """Returns the message for an argument of the wrong kind; recognises two arguments in swapped order."""
     message, kind = misfit(argument, given.get(argument), error), _kind(str(error))
     swapped = any(type(value).__name__ == kind for name, value in given.items() if name != argument)
     if swapped and argument in _positional(signature):
@@ -124,7 +124,7 @@ def _misfit_of(
 
 
 def _kind(text: str) -> str | None:
-    """Returns the kind that PyO3 says is expected; None if it says something else."""
+    """Returns the kind that an error of PyO3 expects; None for other errors."""
     if "object cannot be interpreted as an integer" in text:
         return "int"
     found = _NO_INSTANCE.search(text) or _NO_CONVERSION.search(text)
@@ -145,19 +145,19 @@ def _robot_from(text: str) -> str:
 
 
 def shown(value: object) -> str:
-    """Returns the repr of a value on one line, cut where it is long; of an array its shape."""
+    """Returns the repr of a value on one line, cut if it is long; the shape of an array."""
     shape = getattr(value, "shape", None)
     if isinstance(shape, tuple) and shape:
         return f"an array of shape {shape}"
     try:
         text = " ".join(repr(value).split())
-    except Exception:  # of a class of the caller
+    except Exception:  # a repr of the caller's class may raise anything
         return f"an object of class {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
 def _instead(unknown: str, signature: inspect.Signature) -> str:
-    """Suggests the argument that is probably meant, and lists all."""
+    """Returns a suggestion of the intended argument, and the list of all."""
     known = list(signature.parameters)
     if not known:
         return "; it takes none"
@@ -165,7 +165,7 @@ def _instead(unknown: str, signature: inspect.Signature) -> str:
 
 
 def _shape(signature: inspect.Signature) -> str:
-    """Returns the arguments that a call needs, such as "(robot, path, *, dt, ...)"."""
+    """Returns the arguments of a call in short, for example "(robot, path, *, dt, ...)"."""
     parts, optional = [], False
     for parameter in signature.parameters.values():
         if parameter.default is not inspect.Parameter.empty:
@@ -178,7 +178,7 @@ def _shape(signature: inspect.Signature) -> str:
 
 
 def _by_keyword(name: str, signature: inspect.Signature) -> str:
-    """Says which arguments have to be named."""
+    """Returns the advice to name keyword-only arguments."""
     named = [key for key, value in signature.parameters.items() if value.kind is inspect.Parameter.KEYWORD_ONLY]
     if not named:
         return f"call it as {name}{_shape(signature)}"

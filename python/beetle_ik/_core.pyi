@@ -84,8 +84,9 @@ class Robot:
     """A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
     Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
 
-    Joint vectors hold the n independent joints in chain order (rad, m), those of several chains one chain after another, shared ones
-    once; mimic joints follow them, and joints beside the chains are held. Poses are 4x4 matrices in the frame of the robot's base.
+    A joint vector q holds the n independent joints in chain order (rad, m): with several tips one chain after another,
+    shared joints once. Mimic joints follow their masters, and joints beside the chains are held. Poses are 4x4 matrices
+    in the frame of the robot's base.
     """
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
@@ -108,19 +109,21 @@ class Robot:
             path_or_xml: a file, or text that contains "<". A file of xacro is expanded by the package xacro, of the extra
                 "robots".
             base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
-            tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
-                several, q holds the joints of one chain after another, shared ones once.
-            hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
-                the limit nearest to it.
+            tip: link at the end of the chain, or a list of several, for example ["left_tool", "right_tool"]; None: the
+                only leaf. With several tips, q holds the joints of one chain after another, shared joints once.
+            hold: values (rad, m) of joints beside the chain, for example {"finger_joint": 0.04}; the others are held at
+                zero, or at the limit nearest to zero.
             srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
-            collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become capsules that
-                enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
-                hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. "hulls": meshes become
-                their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
-            package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
-                AMENT_PREFIX_PATH, and the folders above the file.
-            trusted: whether a xacro file may do all that xacro can: execute expressions of any kind, read the environment and
-                any file. False: it may come from anyone; what it may do is on the page on robots, and all else is refused.
+            collision: treatment of collision shapes. "primitives": spheres, cylinders, capsules and boxes become
+                capsules that enclose them; meshes are listed in `unread_collision_shapes`. "fit": in
+                addition, each mesh (STL, OBJ, DAE) becomes a few capsules that enclose it; `mesh_fits` gives their
+                quality. The fits are kept in the user's cache directory. "hulls": meshes become their convex hulls, and
+                the other shapes keep their form: closer than capsules, and slower. None: no shape is read.
+            package_dirs: folders that are searched first for `package://`, before the variables ROS_PACKAGE_PATH and
+                AMENT_PREFIX_PATH and the folders above the file.
+            trusted: whether a xacro file may do everything that xacro offers: execute any expression, read the
+                environment and any file. False: the file may come from anyone; whatever the page on robots does not
+                list is refused.
 
         Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
         `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
@@ -146,15 +149,17 @@ class Robot:
             base: body whose frame is the reference frame; None: "world".
             tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
             hold, collision: as in `from_urdf`.
-            trusted: whether the model may name files outside its folder, and plugins. False: it may come from anyone.
+            trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
+                anyone.
 
-        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
-        follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
+        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples
+        linearly follow their master. Geoms that collide become bodies, except ellipsoids, planes and height fields,
+        which are listed in `unread_collision_shapes`.
 
         Raises:
             BeetleIkError: MuJoCo is not installed.
             UnknownNameError: no body or site of that name; the message lists them.
-            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
+            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or a joint coupled in
                 another way.
         """
     @staticmethod
@@ -168,13 +173,14 @@ class Robot:
         collision: Literal["primitives", "fit", "hulls"] | None = None,
         trusted: bool = False,
     ) -> Robot:
-        """Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, such as
-        "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra "robots".
+        """Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
+        example "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra
+        "robots".
 
         Args:
             name: a name of robot_descriptions; of example-robot-data, that of a folder or of a URDF.
             base, tip, hold: as in `from_urdf`.
-            srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
+            srdf, collision: as in `from_urdf`; None: the default of that constructor. MuJoCo models take no SRDF.
             trusted: as in `from_urdf` and `from_mjcf`.
 
         Raises:
@@ -245,15 +251,15 @@ class Robot:
     def joint_kinds(self) -> list[str]:
         """Kinds of the independent joints: "revolute", "continuous" or "prismatic"."""
     def _links_to_tips(self) -> list[list[str]]:
-        """For drawings: the names of the links from the base to each tip."""
+        """Returns the names of the links from the base to each tip, for drawings."""
     @property
     def tips(self) -> list[str]:
-        """Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of
-        results.
+        """Names of the tips' links, one for a single chain. They are the keys of dicts of targets, tasks, paths and
+        tolerances, and of `errors` in results.
         """
     @property
     def link_names(self) -> list[str]:
-        """Names of the links along the chain (of several, that to the first tip), base first, tip last."""
+        """Names of the links along the chain, base first, tip last; with several tips, along the chain to the first."""
     @property
     def all_link_names(self) -> list[str]:
         """Names of all links: those of the chain as in `link_names`, then those that branch off it."""
@@ -262,37 +268,39 @@ class Robot:
         """The joints beside the chain, with the values (rad, m) at which they are held."""
     @property
     def mesh_fits(self) -> list[tuple[str, str, float, float]]:
-        """Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
-        of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+        """Quality of the capsules fitted to meshes, each (link, file, volume ratio, largest distance): the volume of the
+        capsules over that of the mesh, NaN for an open mesh, and the largest distance (m) of the capsules from the
+        mesh.
         """
     def collision_meshes(self) -> list[tuple[str, Mesh]]:
-        """Reads the meshes of the collision shapes whose files were found when the robot was loaded from a URDF file, each (link,
-        `obstacles.Mesh` in the frame of the link).
+        """Reads the collision meshes of a robot from a URDF, each (link, `obstacles.Mesh` in the frame of the link). Only
+        files that were found when the URDF was loaded are read.
 
         Raises:
             InvalidInputError: a file that is no longer there, or cannot be read.
         """
     @property
     def unread_collision_shapes(self) -> list[str]:
-        """Collision shapes that did not become `bodies`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` and
-        `"hulls"` read meshes.
+        """Collision shapes that did not become `bodies`, for example "a mesh of link 'hand'".
+        `from_urdf(..., collision="fit")` and `"hulls"` read meshes.
         """
     @property
     def visuals(self) -> list[tuple[str, Obstacle | str, _Array, _Array | None]]:
-        """The visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of `bik.obstacles`, or the
-        path of a mesh file, as the URDF names it where it was not found; the placement takes it to the frame of the link, to scale.
-        Colours are red, green, blue and opacity, from 0 to 1; materials of the file come before them.
+        """Visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of
+        `bik.obstacles`, or the path of a mesh file, as written in the URDF if the file was not found. The placement
+        maps it to the frame of the link and includes its scale. Colours are red, green, blue and opacity, from 0 to 1;
+        materials of a mesh file take precedence.
         """
     @property
     def collision_pairs(self) -> list[tuple[str, str]]:
-        """Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
-        an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
-        ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the
-        first call, always alike.
+        """Pairs of links that are tested against each other, each (link, link). Links fixed to each other are left out.
+        Without an SRDF and `with_collision_pairs`, three more kinds of pairs are left out: neighbours, links that touch
+        with all joints in the middle of their ranges or in nearly all of 1,000 random configurations, and links that
+        come no nearer than 20 mm in 10,000. Determined at the first access, with a fixed seed.
         """
     @property
     def stances(self) -> dict[str, _Array]:
-        """Named configurations (n,) of an SRDF, such as "ready"."""
+        """Named configurations (n,) of an SRDF, for example "ready"."""
     @property
     def lower(self) -> _Array:
         """Lower position limits (n,) (rad, m); -inf for none."""
@@ -304,8 +312,9 @@ class Robot:
         """Velocity limits (n,) (rad/s, m/s); inf if unknown, 0 for a locked joint."""
     @property
     def closed_form(self) -> str:
-        """The structure that the closed form of the inverse kinematics rests on, and how many solutions a pose has at most, such as
-        "spherical wrist; at most 8 solutions"; or "none: " and the reason. Decided at the first call.
+        """Structure of the arm on which its closed-form inverse kinematics rests, and the largest number of solutions of a
+        pose, for example "spherical wrist; at most 8 solutions"; or "none: " and the reason. Determined at the first
+        access.
         """
     @property
     def limits(self) -> Limits:
@@ -320,27 +329,27 @@ class Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
     def rated_limits(self) -> Limits:
-        """The limits that the maker rates the arm for: `limits`, with acceleration and jerk limits where it publishes them
-        (`panda` and `fr3`, from the maker's "Robot and interface specifications"). Give them as `limits=` where they are
-        wanted; nothing uses them on its own.
+        """The maker's rated limits: `limits`, plus acceleration and jerk limits where the maker publishes them (`panda`
+        and `fr3`, from the maker's "Robot and interface specifications"). Pass them as `limits=`: no call uses them by
+        default.
         """
 
     @property
     def bodies(self) -> list[Body]:
-        """The bodies on the links, by which collisions are found: those given by `with_capsules`, attached by `with_attached`, or
-        read from the collision shapes of a file.
+        """Bodies of the links, used for collision tests: given by `with_capsules`, attached by `with_attached`, or read
+        from the collision shapes of a file.
         """
     @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """A capsule around each of the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment from a
-        (3,) to b (3,) in the frame of the link. Spheres and capsules are their own.
+        """Capsules that enclose the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment
+        from a (3,) to b (3,) in the frame of the link. Spheres and capsules are unchanged.
         """
     def with_capsules(
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot:
-        """Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
-        b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the tip:
-        set a tool first. The gap that a prismatic joint opens between two links is not covered.
+        """Returns a copy with collision capsules: one of `radius` (m) along each link, or the given ones, each (link, a,
+        b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the
+        tip, so set a tool first. The gap that a prismatic joint opens between two links is not covered.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
@@ -354,8 +363,9 @@ class Robot:
         velocity: ArrayLike | None = None,
         acceleration: ArrayLike | None = None,
     ) -> Robot:
-        """Returns a copy on a mobile base, whose joints come first in `q`. Poses are then those in the frame of a new first link,
-        "world"; the base pose of this robot is how it is mounted. In named configurations the base is at zero.
+        """Returns a copy on a mobile base, whose joints come first in `q`. Poses then refer to a new first link, "world",
+        and the base pose of this robot becomes its mounting on the mobile base. In named configurations the base is at
+        zero.
 
         Args:
             kind: "planar": base_x, base_y (m) and base_yaw (rad). "floating": base_x, base_y, base_z (m) and base_rx, base_ry,
@@ -368,7 +378,8 @@ class Robot:
             acceleration: acceleration limits for `rated_limits`, likewise (m/s^2, rad/s^2).
         """
     def with_held(self, hold: Mapping[str, float]) -> Robot:
-        """Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+        """Returns a copy with other values (rad, m) of joints beside the chain, for example
+        `with_held({"finger_joint": 0.04})`.
 
         Raises:
             UnknownNameError: no held joint of that name; the message lists them.
@@ -377,30 +388,31 @@ class Robot:
     def with_attached(
         self, link: str, shape: Obstacle, *, touch: Sequence[str] | None = None, name: str | None = None
     ) -> Robot:
-        """Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, such as a grasped part.
+        """Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, for example a grasped part.
 
         Args:
             link: the link that carries it.
             shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`.
-            touch: links that it may touch, besides those that move with `link`.
-            name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
+            touch: links that the shape may touch, besides those that move with `link`.
+            name: name of the body in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
     def with_collision_pairs(self, pairs: Sequence[tuple[str, str]]) -> Robot:
-        """Returns a copy with these pairs of links tested against each other, and no others: each (link, link). To leave some out:
+        """Returns a copy that tests exactly these pairs of links against each other, each (link, link). To exclude a link:
         `robot.with_collision_pairs([pair for pair in robot.collision_pairs if "camera" not in pair])`.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
     def with_srdf(self, path_or_xml: str | os.PathLike[str]) -> Robot:
-        """Returns a copy with what an SRDF says: `path_or_xml` is a file, or text that contains "<". Pairs of links that it disables
-        are not tested against each other, and its states that give all joints of the robot become `stances`.
+        """Returns a copy with the disabled pairs and named states of an SRDF; `path_or_xml` is a file, or text that
+        contains "<". Disabled pairs of links are not tested against each other, and states that give all joints of the
+        robot become `stances`.
 
         Raises:
-            UrdfError: no SRDF, or that of another robot.
+            UrdfError: not an SRDF, or the SRDF of another robot.
         """
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
         """Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
@@ -409,7 +421,7 @@ class Robot:
         """
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
-        """For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`."""
+        """Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`."""
     @staticmethod
     def _from_chain(
         name: str,
@@ -417,13 +429,13 @@ class Robot:
         joints: Sequence[tuple[str, str, float, float, float]],  # name, kind, lower, upper, velocity
         elements: Sequence[tuple[object, ...]],
     ) -> Robot:
-        """For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
-        joint, turns, axis (3,), scale, offset) or ("link", name).
+        """Makes a robot for `beetle_ik.interop`. Joints are (name, kind, lower, upper, velocity); elements are ("fixed",
+        pose (4, 4)), ("moving", joint, turns, axis (3,), scale, offset) or ("link", name).
         """
     def fk(self, q: ArrayLike, *, link: str | None = None) -> _Array:
-        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. Of a robot with several tips
-        those of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`, that of any link of the robot;
-        `all_link_names` lists them.
+        """Returns the pose of the tip by forward kinematics: (4, 4) for q (n,), (m, 4, 4) for q (m, n). A robot with
+        several tips gives the poses of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`,
+        returns the pose of any link of the robot; `all_link_names` lists them.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
@@ -435,15 +447,18 @@ class Robot:
     def all_link_poses(self, q: ArrayLike) -> _Array:
         """Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4)."""
     def jacobian(self, q: ArrayLike, *, link: str | None = None) -> _Array:
-        """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-        then angular rows, along the axes of the base. Of a robot with several tips those of all, (tips, 6, n) or (m, tips, 6, n).
-        With `link`, that of the origin of any link of the robot; `all_link_names` lists them.
+        """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or
+        m), then angular rows, along the axes of the base. A robot with several tips gives the Jacobians of all, (tips,
+        6, n) or (m, tips, 6, n). With `link`, returns the Jacobian at the origin of any link of the robot;
+        `all_link_names` lists them.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
     def random_configurations(self, m: int, seed: int = 0) -> _Array:
-        """Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero."""
+        """Draws m configurations uniformly within the limits, (m, n); joints without limits within one turn, or 2 m,
+        around zero.
+        """
     def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any:
         """Returns Yoshikawa's manipulability index, a number for q (n,), (m,) for q (m, n): sqrt(det(J J')), the product of the
         singular values of the Jacobian, over the directions in which the tip can move at all.
@@ -454,13 +469,14 @@ class Robot:
     def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array:
         """Returns the exact gradient (n,) of `manipulability` at q (n,)."""
     def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array:
-        """Returns the manipulability of the tip of each moving link, moved by the joints before it, times the volume of the unit
-        ball (pi in the plane): (links,), the tip's last. The sum measures the manipulability of the whole arm.
+        """Returns the manipulability of each moving link (links,), the tip's last: of the link's tip, moved by the joints
+        before it, times the volume of the unit ball (pi in the plane). The sum measures the manipulability of the whole
+        arm.
 
-        A link with fewer joints before it than directions has zero. `motion` as in `manipulability`.
+        It is zero for a link with fewer joints before it than directions. `motion` is as in `manipulability`.
         """
     def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid:
-        """Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` as in `manipulability`."""
+        """Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` is as in `manipulability`."""
 
 @final
 class VelocityEllipsoid:
@@ -505,6 +521,14 @@ def pose(
         matrix: rotation matrix (3, 3).
 
     Without an orientation the axes are those of the base.
+
+    For example:
+
+        >>> bik.pose([0.4, 0.1, 0.3])
+        array([[1. , 0. , 0. , 0.4],
+               [0. , 1. , 0. , 0.1],
+               [0. , 0. , 1. , 0.3],
+               [0. , 0. , 0. , 1. ]])
     """
 
 # --- limits -------------------------------------------------------------------------------------
@@ -547,8 +571,8 @@ class Limits:
         acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
 
     Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
-    are sampled at the ends and in the middle of each tick. A method that cannot keep a field raises `UnsupportedLimit`;
-    none ignores one.
+    are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
+    no limit is ignored.
     """
 
     def __new__(
@@ -647,13 +671,13 @@ class APPS:
         """
     @property
     def learning_rate(self) -> float | Literal["auto"]:
-        """eta of eq. (13), or "auto"."""
+        """Learning rate eta of eq. (13), or "auto"."""
     @property
     def step_limit(self) -> float:
         """Largest change of a joint per iteration (rad or m)."""
     @property
     def error_threshold(self) -> float | None:
-        """E_0, or None."""
+        """Error threshold E_0, or None."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -687,7 +711,7 @@ class BAS:
     ) -> BAS: ...
     @property
     def variant(self) -> str:
-        """ "star", "chain" or "greedy"."""
+        """Variant of the algorithm: "star", "chain" or "greedy"."""
     @property
     def c1(self) -> float:
         """Ratio of antenna length to error (rad per m)."""
@@ -871,7 +895,7 @@ class BeetleSwarm:
         """Ratio of delta to the distance between the antennae."""
     @property
     def direction(self) -> str:
-        """ "printed" or "downhill"."""
+        """Sign of eq. (28): "printed" or "downhill"."""
     @property
     def max_generations(self) -> int | None:
         """Largest number of generations; None: as many as the budget allows."""
@@ -919,7 +943,7 @@ class DifferentialEvolution:
         """Probability that a coordinate comes from the mutant."""
     @property
     def update(self) -> str:
-        """ "generation" or "immediate"."""
+        """Time of replacement: "generation" or "immediate"."""
     @property
     def max_generations(self) -> int | None:
         """Largest number of generations; None: as many as the budget allows."""
@@ -930,7 +954,7 @@ class DifferentialEvolution:
 
 @final
 class Firefly:
-    """Firefly algorithm (Yang 2009): needs only values. In turn, each firefly attracts all less bright ones.
+    """Firefly algorithm (Yang 2009): needs only values. Each firefly in turn attracts all less bright fireflies.
 
     Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     max_generations=None, stall_generations=50)`.
@@ -991,7 +1015,7 @@ class Genetic:
     Args:
         population: size of a generation.
         elite_share: fraction that survives unchanged, rounded up.
-        crossover_share: fraction of the others produced by crossover; the rest is produced by mutation.
+        crossover_share: fraction of the remaining members produced by crossover; mutation produces the rest.
         tournament: size of a tournament; its best member becomes a parent.
         mutation_rate: probability that a coordinate of a mutant changes; at least one does. 1 changes all, as in MATLAB.
         mutation_scale: initial standard deviation of mutations, as a fraction of the box's width.
@@ -1022,7 +1046,7 @@ class Genetic:
         """Fraction that survives unchanged."""
     @property
     def crossover_share(self) -> float:
-        """Fraction of the others produced by crossover."""
+        """Fraction of the remaining members produced by crossover."""
     @property
     def tournament(self) -> int:
         """Size of a tournament."""
@@ -1086,7 +1110,7 @@ class PSO:
         """Size of a generation."""
     @property
     def form(self) -> str:
-        """ "constriction" or "inertia"."""
+        """Form of the velocity update: "constriction" or "inertia"."""
     @property
     def inertia(self) -> float | None:
         """Weight of the old velocity; None with constriction."""
@@ -1101,10 +1125,10 @@ class PSO:
         """Largest velocity per generation, as a fraction of the box's width."""
     @property
     def accept(self) -> str:
-        """ "always" or "improving"."""
+        """Rule for accepting a position: "always" or "improving"."""
     @property
     def walls(self) -> str:
-        """ "absorbing" or "random"."""
+        """Behaviour at the walls of the box: "absorbing" or "random"."""
     @property
     def max_generations(self) -> int | None:
         """Largest number of generations; None: as many as the budget allows."""
@@ -1152,7 +1176,7 @@ class QPSO:
 @final
 class LevenbergMarquardt:
     """Levenberg-Marquardt with the analytic Jacobian, inside the limits: joints at a bound are held, and the step is solved
-    again for the others.
+    again for the other joints.
 
     Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
 
@@ -1171,7 +1195,7 @@ class MultiStart:
     """Restarts a solver from random starts when it stalls or makes too little progress.
 
     Args:
-        solver: any other solver, such as `BAS` or `LevenbergMarquardt`.
+        solver: any other solver, for example `BAS` or `LevenbergMarquardt`.
         max_starts: largest number of starts; None: as many as the evaluation budget allows.
     """
 
@@ -1239,7 +1263,7 @@ class WeightedPseudoInverse:
         """Feedback gain of the tip error (1/s); None: half of the error in each tick."""
     @property
     def integrator(self) -> str:
-        """ "euler" or "rk4"."""
+        """Integration scheme: "euler" or "rk4"."""
     @property
     def weights(self) -> _Array | None:
         """Weights of the squared joint velocities (n,); None: from the velocity limits."""
@@ -1293,11 +1317,11 @@ class Stop:
 
 @disjoint_base
 class Task:
-    """Which part of a target counts: `Pose`, `Position`, `Orientation` or `Pointing`.
+    """The part of a target that counts: `Pose`, `Position`, `Orientation` or `Pointing`.
 
     A `region` keeps the tip in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside the box is
-    approached as far as the box allows, and the status is `HELD_IN_REGION`. The tip of a solution with status `SOLVED` or
-    `HELD_IN_REGION` is always inside, and so is the tip at the end of each tick of a track, with any solver. Within a tick
+    approached as far as the box allows, and the status is `HELD_IN_REGION`. A solution with status `SOLVED` or
+    `HELD_IN_REGION` always has its tip inside; so has a track at the end of each tick, with any solver. Within a tick
     the joints move linearly, so that the tip can leave the box by the curvature of its path.
     """
 
@@ -1339,7 +1363,7 @@ class Pose(Task):
 
 @final
 class Position(Task):
-    """The position only; the orientation is free. A target given as a pose counts by its position.
+    """The position only; the orientation is free. Of a target given as a pose, only the position counts.
 
     Args:
         weights: (3,), for x, y and z of the base; 0 leaves a component free.
@@ -1467,8 +1491,9 @@ class LinkManipulability(Goal):
 
 @final
 class Clearance(Goal):
-    """Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of bodies
-    whose distance d is below `up_to`. For calls with `obstacles=` or `self_collision=True`, whose margin is kept besides.
+    """Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of
+    bodies whose distance d is below `up_to`. It needs a call with `obstacles=` or `self_collision=True`, whose margin
+    holds in addition.
 
     Args:
         weight: weight relative to other goals.
@@ -1504,23 +1529,26 @@ def solve(
 
     Args:
         robot: the arm.
-        target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips` a dict of them, such
-            as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the first.
-        task: which part of the target counts, one of `tasks`, or a dict for several tips; None: all of it.
-        start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
-            where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
-            inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
+        target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
+            dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
+            "right_tool") gives the pose of the second tip in the frame of the first.
+        task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
+        start: configuration (n,). For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+            search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
+            solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
+            target.
         solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
             Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error, a geodesic angle (rad); for several tips also a dict.
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
-        prefer: which solution to return.
-            "any": the first one found.
-            "nearest": of those found, the one with the smallest |q - start| (rad, m). Each is moved along its self-motion
-            and by whole turns towards the start; the search ends when 24 in a row are no nearer.
-            "best": of those found, the best one for the goals. Each is optimised along its self-motion; the search ends
-            when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
+        prefer: solution to return.
+            "any": the first solution found.
+            "nearest": of the solutions found, the one with the smallest |q - start| (rad, m). Each is moved along its
+            self-motion and by whole turns towards the start; the search ends when 24 in a row are no nearer.
+            "best": of the solutions found, the best one for the goals. Each is optimised along its self-motion; the
+            search
+            ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
         limits: position limits; None: the robot's.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
@@ -1531,25 +1559,34 @@ def solve(
         seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
-        A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With obstacles a
-        solution counts as solved only if it is clear by the margin; if none is found, its status is IN_COLLISION, and
-        `message` names the two bodies and says whether the hand itself is in the way.
+        A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With
+        obstacles, a solution counts as solved only if it is clear by the margin. If none is found, the status is
+        IN_COLLISION, and `message` names the two bodies and says whether the hand itself is in the way.
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
         LimitError: a start outside the limits.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> solution = bik.solve(robot, bik.pose([0.4, 0.1, 0.3], rpy=[3.14, 0, 0]))
+        >>> solution.status
+        <Status.SOLVED: 0>
+        >>> solution.q.shape
+        (6,)
     """
 
 @final
 class Solution:
-    """The best configuration found, and how the search ended."""
+    """The best configuration found, and the outcome of the search."""
 
     @property
     def success(self) -> bool:
         """Whether the target was reached within the tolerances."""
     @property
     def status(self) -> Status:
-        """Why the search ended, a `Status`."""
+        """Reason why the search ended, a `Status`."""
     @property
     def message(self) -> str:
         """A sentence that says what happened and what to try."""
@@ -1611,26 +1648,28 @@ def solve_all(
     stop: Stop | None = None,
     seed: int = 0,
 ) -> SolutionSet:
-    """Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
+    """Returns all solutions of a pose for an arm with a closed form (`Robot.closed_form`); otherwise searches for distinct
+    solutions.
 
     The closed form serves whole poses without a `solver`, weights or region. `SolutionSet.complete` says whether it is
-    proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
+    proven that no solution is missing. A search ends after a hundred known solutions in a row, or when the budget is
+    spent.
 
-    Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-    start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
-    are returned; found by search, they are at least `separation` apart.
+    Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if
+    no start is given. A redundant arm has infinitely many solutions: a closed form returns those at `redundancy` values
+    of its parameter, a search returns some that are at least `separation` apart.
 
     Args:
         robot: the arm.
         target: pose (4, 4), or position (3,) (m).
-        start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
+        start: (n,); solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
         limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
         separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
             a closed form are returned, those of a search differ by 0.1.
-        redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
-            limits allow. 0: its solutions are searched for.
+        redundancy: number of parameter values at which a redundant arm with a closed form is solved, spread over the
+            range that its limits allow. 0: a search is used instead.
         turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
-        task: which part of the target counts, one of `tasks`; None: all of it.
+        task: part of the target that counts, one of `tasks`; None: all of it.
         solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
@@ -1649,6 +1688,13 @@ def solve_all(
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
             configurations.
         LimitError: a start outside the limits.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> solutions = bik.solve_all(robot, bik.pose([0.4, 0.1, 0.3], rpy=[3.14, 0, 0]))
+        >>> len(solutions), solutions.complete
+        (8, True)
     """
 
 def self_motion(
@@ -1662,9 +1708,10 @@ def self_motion(
 ) -> list[SelfMotion]:
     """Returns the curves of the self-motion: all configurations, inside the limits, that keep the tip at a target.
 
-    The arm has one joint more than the target takes: seven joints and a pose, or four and a position. With a closed form
-    (`Robot.closed_form`), curves are looked for at 64 values of its parameter, on every branch; elsewhere by search. Each is followed in
-    short steps past the joint limits, which then cut it, so that short parts between two limits are found too.
+    The arm must have one joint more than the target constrains: seven joints for a pose, four for a position. With a
+    closed form (`Robot.closed_form`), curves are sought at 64 values of its parameter, on every branch; otherwise by
+    search. Each curve is followed in short steps past the joint limits and then cut there, so that short parts between
+    two limits are found too.
 
     Args:
         robot: the arm.
@@ -1678,14 +1725,22 @@ def self_motion(
         A list of `SelfMotion`; empty if the target is not reached. Every configuration reaches the target to 2e-9 m and rad.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or an arm without one joint more than the target takes.
+        InvalidInputError: wrong shape, NaN, or an arm that does not have one joint more than the target constrains.
+
+    For example:
+
+        >>> robot = bik.Robot.named("panda")
+        >>> curves = bik.self_motion(robot, robot.fk([0.3, 0.2, -0.4, -1.7, 0.2, 1.9, 0.5]))
+        >>> len(curves)
+        3
     """
 
 @final
 class MapGrid:
-    """The poses of a map: cubic voxels, and the orientations at the centre of each, counted from 0.
+    """Poses of a reachability map: cubic voxels, and orientations at the centre of each, numbered from 0.
 
-    `axis` is None, or the point (2,) (m) of a vertical axis; orientations then turn with the azimuth of the voxel about it.
+    `axis` is None, or the point (2,) (m) of a vertical axis; orientations then turn with the azimuth of the voxel about
+    this axis.
     """
 
     def __new__(
@@ -1712,7 +1767,9 @@ class MapGrid:
         """Number of voxels along x, y and z."""
     @property
     def axis(self) -> _Array | None:
-        """The vertical axis about which orientations turn with the azimuth of the voxel: its point (2,) (m), or None."""
+        """Point (2,) (m) of the vertical axis about which orientations turn with the azimuth of the voxel; None without
+        one.
+        """
     @property
     def orientations(self) -> int:
         """Number of orientations of each voxel."""
@@ -1721,20 +1778,22 @@ class MapGrid:
         """Number of rolls of each direction."""
     @property
     def bytes(self) -> int:
-        """Bytes of the bits of a voxel."""
+        """Number of bytes that hold a bit for each orientation of a voxel."""
     @property
     def chunk_shape(self) -> list[int]:
-        """Largest shape of a chunk; those at the upper ends are smaller."""
+        """Largest shape of a chunk; chunks at the upper ends may be smaller."""
     @property
     def chunks(self) -> list[int]:
         """Number of chunks along x, y and z."""
     def chunk(self, number: int) -> list[list[int]]:
-        """First and last + 1 voxel of chunk `number` along x, y and z. Numbers count along z first."""
+        """Returns the first voxel of chunk `number` and the one after its last, along x, y and z. Chunk numbers increase
+        along z first.
+        """
     def poses(self, voxel: Sequence[int]) -> _Array:
-        """The poses (orientations, 4, 4) of the voxel (x, y, z)."""
+        """Returns the poses (orientations, 4, 4) of the voxel (x, y, z)."""
     def locate(self, T: ArrayLike) -> NDArray[np.int64]:  # noqa: N803
-        """The voxel of a pose (4, 4), or of each pose (n, 4, 4), and the number of the orientation nearest to its own: (n, 4), with n = 1
-        for a pose; -1 outside the map.
+        """Returns the voxel and the nearest orientation of a pose (4, 4), or of each pose (n, 4, 4), as rows (x, y, z,
+        orientation): (n, 4), with n = 1 for a single pose; -1 outside the map.
         """
     def __eq__(self, other: object, /) -> bool: ...
 
@@ -1752,17 +1811,19 @@ def map_chunks(
     threads: int | None = None,
     progress: _Progress = None,
 ) -> list[tuple[NDArray[np.uint8], NDArray[np.float32] | None, NDArray[np.float32] | None]]:
-    """Computes `chunks` of the map of a robot, by number; each has the same bits whatever the others are, on any number of threads.
+    """Computes chunks of the reachability map of a robot. The bits of a chunk depend neither on the other chunks nor on
+    the number of threads.
 
     Args:
         robot, grid: the robot, and the poses of its map.
         chunks: numbers of chunks.
-        task, obstacles, margin, self_collision, evaluations, quality, threads, progress: as for `reachability`; the first four are those
-            of the grid.
+        task, obstacles, margin, self_collision, evaluations, quality, threads, progress: as for `reachability`. The
+            first four must be those of the grid.
 
     Returns:
-        For each chunk (reached, manipulability, clearance): (x, y, z, grid.bytes) uint8, a bit for each orientation, the lowest first;
-        (x, y, z) float32 of the best configuration found, NaN where there is none, or None without `quality`.
+        (reached, manipulability, clearance) for each chunk: (x, y, z, grid.bytes) uint8, a bit for each orientation,
+        the lowest first; then two arrays (x, y, z) float32 for the best configuration found, NaN where there is none,
+        or None without `quality`.
     """
 
 @final
@@ -1777,10 +1838,14 @@ class SelfMotion:
         """Whether the last configuration is followed by the first, modulo whole turns of joints without limits."""
     @property
     def lower_cut(self) -> str | None:
-        """Name of the joint whose limit ends the curve at its first configuration; None if it is closed, or followed no farther."""
+        """Name of the joint whose limit ends the curve at its first configuration; None if the curve is closed or not
+        followed so far.
+        """
     @property
     def upper_cut(self) -> str | None:
-        """Name of the joint whose limit ends the curve at its last configuration; None if it is closed, or followed no farther."""
+        """Name of the joint whose limit ends the curve at its last configuration; None if the curve is closed or not
+        followed so far.
+        """
     @property
     def complete(self) -> bool:
         """Whether the closed form proves that the call returned every curve: true for arms whose parameter is the arm angle."""
@@ -1798,7 +1863,7 @@ class SolutionSet:
         """Whether a solution was found."""
     @property
     def status(self) -> Status:
-        """SOLVED if a solution was found; otherwise why the last search ended."""
+        """SOLVED if a solution was found; otherwise the reason why the last search ended."""
     @property
     def message(self) -> str:
         """A sentence that says what happened and what to try."""
@@ -1816,16 +1881,16 @@ class SolutionSet:
         """The configurations (k, n) (rad, m), inside the limits."""
     @property
     def complete(self) -> bool:
-        """Whether it is proven that no other solution exists inside the limits, whole turns aside; False where a search found them, and
-        where `limit` or `separation` left some out.
+        """Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
+        and where `limit` or `separation` left solutions out.
         """
     @property
     def singular(self) -> bool:
-        """Whether the pose is singular, so that one solution at least stands for a family in which a joint is free."""
+        """Whether the pose is singular: at least one solution then represents a family in which a joint is free."""
     @property
     def miss(self) -> Solution | None:
-        """The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
-        is computed when first asked for.
+        """Nearest `Solution` that misses the target, if no solution was found; otherwise None. For a target proven out of
+        reach, it is computed at the first access.
         """
     def __len__(self) -> int: ...
     @overload
@@ -1835,7 +1900,7 @@ class SolutionSet:
     def __iter__(self) -> Iterator[Solution]: ...
 
 def _batch_message(counts: Sequence[int]) -> str:
-    """Sums up a batch of which `counts[status]` targets ended with `status`."""
+    """Returns the message of a batch in which `counts[status]` targets ended with `status`."""
 
 def solve_batch(
     robot: Robot,
@@ -1866,14 +1931,15 @@ def solve_batch(
 
     Args:
         robot: the arm.
-        targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
-            them, as for `solve`.
+        targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several
+            tips, a dict of targets as for `solve`.
         starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
-        first_row: the row of the first target in the batch that these are part of. `solve_batch(robot, targets[k:], first_row=k)` gives
-            the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of all.
+        first_row: row of the first of these targets in a larger batch. `solve_batch(robot, targets[k:], first_row=k)`
+            gives the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of the
+            larger batch.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
-        on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
-            other rows and marks this one `Status.INVALID`, with q NaN.
+        on_invalid: treatment of an invalid target or start. "raise": raises an error that names the row; "skip": solves
+            the other rows and marks this row `Status.INVALID`, with q NaN.
         progress: True shows a progress bar; a callable is called with (done, total).
         task: as for `solve`.
         solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
@@ -1892,6 +1958,14 @@ def solve_batch(
     Raises:
         InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
         LimitError: a start outside the limits (names the row).
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> targets = robot.fk(robot.random_configurations(100, seed=1))
+        >>> batch = bik.solve_batch(robot, targets)
+        >>> batch.q.shape, int(batch.success.sum())
+        ((100, 6), 100)
     """
 
 @final
@@ -1908,10 +1982,10 @@ class BatchSolution:
         """Whether each target was reached within the tolerances (m,)."""
     @property
     def status(self) -> NDArray[np.uint8]:
-        """Why each search ended (m,), values of `Status`."""
+        """Reason why each search ended (m,), values of `Status`."""
     @property
     def message(self) -> str:
-        """How many were solved, and what to try for the others."""
+        """Number of solved targets, and advice on the others."""
     @property
     def errors(self) -> dict[_TipKey, tuple[_Array, _Array]]:
         """Errors of each target, by the keys of the call or the name of the only tip: {tip: (position (m,) (m), rotation (m,) (rad))}."""
@@ -1966,8 +2040,8 @@ def minimize(
         function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
         lower: (n,), finite.
         upper: (n,), finite.
-        solver: a derivative-free solver, such as `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`. BAS suits
-            only functions with minimum zero, near it: see `BAS`.
+        solver: a derivative-free solver, for example `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`.
+            BAS suits few functions, whose minimum must be zero: see `BAS`.
         start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
         stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
         seed: seed of the random draws; the same seed gives the same bits.
@@ -1981,13 +2055,19 @@ def minimize(
         InvalidInputError: wrong shape, an infinite or empty box, a start outside it, a population larger than the budget, or
             a function that does not return numbers.
 
+    For example:
+
+        >>> minimum = bik.minimize(lambda x: (x[0] - 1) ** 2 + x[1] ** 2, [-5, -5], [5, 5])
+        >>> minimum.value < 1e-12
+        True
+
     Exceptions of the function and KeyboardInterrupt propagate unchanged. Their attribute `best` holds the best point so far,
     a `Minimum`, and a note on the exception says so.
     """
 
 @final
 class Minimum:
-    """The best point found by `minimize`, and how the search ended."""
+    """The best point found by `minimize`, and the outcome of the search."""
 
     @property
     def success(self) -> bool:
@@ -2084,7 +2164,7 @@ def planar_posture(
     For other arms, and for poses, use `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
 
     Args:
-        robot: an arm of 3 or more revolute joints about z in one plane, such as `Robot.planar([...])`.
+        robot: an arm of 3 or more revolute joints about z in one plane, for example `Robot.planar([...])`.
         target: position of the tip (3,) (m).
         measure: "tip": Yoshikawa's index of the tip; "overall": the sum of the indices of all links.
         region: (2, 2) (m), lower and upper corner (x, y) of a rectangle for the joint positions; None: no restriction.
@@ -2107,7 +2187,7 @@ class PlanarPosture:
         """Whether a posture was found."""
     @property
     def status(self) -> Status:
-        """Why the search ended, a `Status`."""
+        """Reason why the search ended, a `Status`."""
     @property
     def message(self) -> str:
         """A sentence that says what happened and what to try."""
@@ -2122,7 +2202,9 @@ class PlanarPosture:
         """The limits in force: the robot's."""
     @property
     def q(self) -> _Array:
-        """The configuration (n,) (rad). If no posture was found, the one that brings the tip nearest to the target."""
+        """The configuration (n,) (rad). If no posture was found, the configuration that brings the tip nearest to the
+        target.
+        """
     @property
     def index(self) -> float:
         """Manipulability of the posture: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
@@ -2149,7 +2231,9 @@ class Path:
     def position(self, t: ArrayLike) -> _Array:
         """Returns the position (m): (3,) for a number t (s), (k, 3) for t (k,)."""
     def velocity(self, t: ArrayLike) -> _Array:
-        """Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). For Python functions by central differences."""
+        """Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Velocities of Python functions are
+        central differences.
+        """
     def pose(self, t: ArrayLike) -> _Array:
         """Returns the pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation."""
     def sample(self, dt: float) -> tuple[_Array, _Array]:
@@ -2246,20 +2330,20 @@ def track(
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
 
-    In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the last
-    accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits reduce the
-    box further, so that joints can still brake before their position limits; the arm starts at rest.
+    In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the
+    last accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits
+    reduce the box further, so that joints can still brake before their position limits; the arm starts at rest.
 
     Args:
         robot: the arm.
-        path: reference positions or poses over time. For a robot with several `tips` a dict of paths, such as {"left_tool": path}, which
-            have one time; a constant pose (4, 4) or position (3,) counts as a path. A tip left out is free, and a pair
-            ("left_tool", "right_tool") is the second as seen from the first: it is held there before anything else, so that both
-            lag where one arm cannot follow.
+        path: reference positions or poses over time. For a robot with several `tips`, a dict of paths of equal
+            duration, for example {"left_tool": path}; a constant pose (4, 4) or position (3,) counts as a path, and a
+            tip left out is free. The key ("left_tool", "right_tool") gives the second tip in the frame of the first.
+            This relative pose has priority, so that both arms lag where one cannot follow.
         start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
             or, without goals, one far from singularities and limits.
         dt: time step (s).
-        task: which part of the path counts, one of `tasks`, or a dict for several tips; None: all of it.
+        task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
         solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
             two evaluations per step.
         limits: limits on the joint motion; None: the robot's.
@@ -2273,8 +2357,8 @@ def track(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         seed: seed of the random draws; the same seed gives the same bits.
-        limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
-            "start".
+        limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
+            at its "start".
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2285,7 +2369,18 @@ def track(
     Raises:
         InvalidInputError: wrong shape, NaN, or a time step that is not positive.
         LimitError: a start outside its limits, or a negative limit.
-        UnsupportedLimit: jerk limits, which this tracker does not keep.
+        UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
+            region; position, acceleration or jerk limits that vary in time, among obstacles.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> path = bik.paths.circle([0.5, 0.1, 0.4], 0.2, 5.0)
+        >>> track = bik.track(robot, path, dt=0.01)
+        >>> track.status
+        <Status.SOLVED: 0>
+        >>> track.q.shape
+        (501, 6)
     """
 
 @final
@@ -2327,7 +2422,7 @@ class TrackResult:
         """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
     @property
     def position(self) -> _Array:
-        """Positions of the tip (k, 3) (m); of several tips those of the first target, `positions` has all."""
+        """Positions of the tip (k, 3) (m); with several tips, of the first target: `positions` has all."""
     @property
     def reference(self) -> _Array:
         """Reference positions (k, 3) (m)."""
@@ -2366,12 +2461,12 @@ class TrackResult:
         """
     @property
     def positions(self) -> dict[_TipKey, _Array]:
-        """Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; of a pair as seen from
-        its first tip.
+        """Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; for a
+        pair, in the frame of its first tip.
         """
     @property
     def references(self) -> dict[_TipKey, _Array]:
-        """Reference positions of each target, as `positions`."""
+        """Reference positions of each target, in the form of `positions`."""
     @property
     def limit_margin(self) -> float:
         """Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits."""
@@ -2380,9 +2475,9 @@ class TrackResult:
         """The robot."""
     @property
     def trajectory(self) -> Trajectory:
-        """The joint trajectory. Without acceleration and jerk limits it is linear between the ticks: its velocities are exactly
-        `qd`. With them it is a cubic spline that keeps them at every instant, and passes each configuration at a sixth of
-        its acceleration times dt^2 (rad, m).
+        """The joint trajectory. Without acceleration and jerk limits it is linear between the ticks, with the velocities
+        `qd`. With them it is a cubic spline that keeps them at every instant; it passes each configuration at a
+        distance of a sixth of its acceleration times dt^2 (rad, m).
         """
     def plot(self) -> Figure:
         """Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
@@ -2439,7 +2534,7 @@ class Tracker:
         robot: the arm.
         start: (n,), configuration at t = 0.
         dt: time step (s).
-        task: as in `track`; also of tips that get their targets later.
+        task: as in `track`; it may also name tips that get their targets later.
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
         limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
             sample them.
@@ -2452,6 +2547,14 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> tracker = bik.Tracker(robot, [0.0, -1.5, 1.5, -1.5, -1.5, 0.0], dt=0.01)
+        >>> step = tracker.step([0.45, 0.13, 0.47])
+        >>> step.q.shape, step.inside_limits
+        ((6,), True)
     """
 
     def __new__(
@@ -2475,41 +2578,43 @@ class Tracker:
         timeout: float | None = None,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
-        """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot with several `tips` it is
-        a dict, such as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the
-        first. A pair that is where it is to be is held there, whatever else has to give way.
+        """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
+        with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
+        ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
+        is held there, with priority over all other targets.
 
-        Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
-        model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
-        otherwise the arm goes on towards the last target. A loop may also pass the last target again in each tick until the
-        next one comes: for two intervals of a stream of 10 Hz or more, the same target again counts as None. A target that is
-        not finite raises an error, after which the tracker is as before.
+        Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
+        jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
+        most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
+        target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
+        None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
 
         Args:
-            target: target of the tip, or of several, at the end of the tick; None: no new one.
+            target: target of the tip, or of several tips, at the end of the tick; None: no new target.
             velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
                 None: from the difference to the previous target.
-            stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
-                model-based rule follows the motion of the targets up to now, over 0.25 s at most, under acceleration or jerk
-                limits; without these a stamp is refused. A target older than the last one is ignored.
+            stamp: time at which the target was measured, on the tracker's own clock, `time` (s); None: the end of the
+                tick. The model-based rule follows the motion of the targets up to now, over 0.25 s at most, under
+                acceleration or jerk limits; without these a stamp is refused. A target older than the last one is
+                ignored.
         """
     def stop(self) -> float:
-        """Stops as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives. Pairs of tips that
-        are held stay held. The stop is the one that was certified with the last command; the arm does not give way to what moves, and
-        stands afterwards.
+        """Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
+        arrives. Held pairs of tips stay held. The stop is the one that was certified with the last command: the arm
+        does not give way to moving obstacles, and stays at rest afterwards.
 
         Returns:
-            How long the stop takes (s), to within a tick; 0 without acceleration and jerk limits.
+            Duration of the stop (s), to within a tick; 0 without acceleration and jerk limits.
         """
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
-        """What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
-        certified before goes on if the new ones are in the way.
+        """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
+        new obstacles are in the way, the arm carries on with the stop certified before.
         """
     @obstacles.setter
     def obstacles(self, value: Iterable[Obstacle | Moving] | None) -> None:
-        """What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
-        certified before goes on if the new ones are in the way.
+        """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
+        new obstacles are in the way, the arm carries on with the stop certified before.
         """
     def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
         """Resets to q (n,) and t = 0, at rest or in motion.
@@ -2544,8 +2649,9 @@ class Step:
         """Whether the tip is within the tolerances."""
     @property
     def status(self) -> Status:
-        """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links; HELD_BY_OBSTACLE if one
-        keeps the tip from the target; IMPROVED nearer than in the previous step, otherwise CAPPED.
+        """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
+        HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; IMPROVED if nearer than in the previous step;
+        otherwise CAPPED.
         """
     @property
     def message(self) -> str:
@@ -2578,7 +2684,9 @@ class Step:
         """Geodesic angle to the target's orientation (rad), the largest of several tips; NaN if the task leaves the orientation free."""
     @property
     def inside_limits(self) -> bool:
-        """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""
+        """Whether the step keeps all limits; False if a joint cannot be brought within its position limits, or slowed down
+        to its velocity limit.
+        """
     @property
     def clearance(self) -> float:
         """Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
@@ -2594,18 +2702,20 @@ class Step:
 class Obstacle:
     """The base class of obstacles: a shape, fixed in the frame of the robot's base.
 
-    Each takes `touch=`, a list of link names: those links are not kept clear of it. A floor is `HalfSpace((0, 0, 1), 0.0,
-    touch=["panda_link0"])`.
+    Each shape takes `touch=`, names of links that need not keep clear of it. A floor under the robot is
+    `HalfSpace((0, 0, 1), 0.0, touch=["panda_link0"])`.
     """
 
     @property
     def triangles(self) -> _Array:
-        """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
-        a point cloud octahedra about at most 2,000 of its points.
+        """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface. A half-space is drawn as
+        a square of 4 m, a point cloud as octahedra about at most 2,000 of its points.
         """
     @property
     def touch(self) -> tuple[str, ...]:
-        """Names of the links that may touch it, sorted. As the body of a robot (`robot.with_attached`) it may touch them too."""
+        """Sorted names of the links that may touch the shape. They remain allowed when it is attached to a robot
+        (`robot.with_attached`).
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -2635,7 +2745,7 @@ class Box(Obstacle):
         """Edge lengths (3,) (m)."""
     @property
     def rotation(self) -> _Array:
-        """Its axes as columns (3, 3)."""
+        """Rotation (3, 3); its columns are the axes of the shape."""
 
 @final
 class Capsule(Obstacle):
@@ -2644,10 +2754,10 @@ class Capsule(Obstacle):
     def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> Capsule: ...
     @property
     def a(self) -> _Array:
-        """One end of its axis (3,) (m)."""
+        """First end of the axis (3,) (m)."""
     @property
     def b(self) -> _Array:
-        """The other end (3,) (m)."""
+        """Second end of the axis (3,) (m)."""
     @property
     def radius(self) -> float:
         """Radius (m)."""
@@ -2706,7 +2816,7 @@ class Ellipsoid(Obstacle):
         """Lengths of the semi-axes (3,) (m)."""
     @property
     def rotation(self) -> _Array:
-        """Its axes as columns (3, 3)."""
+        """Rotation (3, 3); its columns are the axes of the shape."""
 
 @final
 class Ellipse(Obstacle):
@@ -2738,13 +2848,13 @@ class ConvexMesh(Obstacle):
 
 @final
 class Mesh(Obstacle):
-    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. What its closed parts
-    enclose counts too; the others are surfaces without thickness.
+    """A triangle mesh, convex or not: vertices (k, 3) (m) and faces (t, 3), indices of vertices. Closed parts are solid;
+    open parts are surfaces without thickness.
 
-    A part is a set of triangles connected along edges; vertices at one place count as one. It is closed if each edge belongs to two
-    triangles, in any orientation, or if the orientations of the triangles along each edge cancel. Parts that overlap, or are inside
-    out, all have an inside. A part is the wall of a cavity if it lies inside another one, apart from all others, and its triangles
-    are turned the other way.
+    A part is a set of triangles connected along edges; coincident vertices count as one. It is closed if each edge
+    belongs to two triangles, in any orientation, or if the orientations of the triangles along each edge cancel.
+    Overlapping and inside-out parts are solid too. A part is the wall of a cavity if it lies inside another part,
+    separate from all others, and its triangles have the opposite orientation.
     """
 
     def __new__(cls, vertices: ArrayLike, faces: ArrayLike, *, touch: Sequence[str] | None = None) -> Mesh: ...
@@ -2756,14 +2866,14 @@ class Mesh(Obstacle):
         """The faces (t, 3): indices of vertices."""
     @property
     def closed(self) -> bool:
-        """Whether all that the mesh encloses is known: all its parts are closed, and none has the outside on both sides of a triangle, by
-        winding numbers, as have two layers of opposite orientation that coincide but are not halved alike. Of large parts some 128
-        triangles are examined.
+        """Whether the inside of the mesh is known everywhere: all parts are closed, and by winding numbers no triangle has
+        the outside on both sides. Coincident layers of opposite orientation fail this test if their triangles differ.
+        In a large part, about 128 triangles are tested.
         """
 
 @final
 class PointCloud(Obstacle):
-    """Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera."""
+    """A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m)."""
 
     def __new__(cls, points: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> PointCloud: ...
     @property
@@ -2775,7 +2885,7 @@ class PointCloud(Obstacle):
 
 @final
 class Grid(Obstacle):
-    """The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
+    """An occupancy grid: cubic voxels with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
     `occupied` is a boolean array (nx, ny, nz).
     """
 
@@ -2798,13 +2908,13 @@ class Body:
 
     @property
     def link(self) -> str:
-        """The link that carries it."""
+        """Name of the link that carries the body."""
     @property
     def shape(self) -> Obstacle:
         """The shape, in the frame of the link: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`."""
     @property
     def source(self) -> str:
-        """Where it comes from: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
+        """Origin of the body: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
 
 @final
 class PreparedObstacles:
@@ -2814,24 +2924,24 @@ class PreparedObstacles:
 
 @final
 class Moving:
-    """An obstacle that moves, for a `Tracker`: where it is now, and its velocity.
+    """A moving obstacle for a `Tracker`: its present shape and its velocity.
 
-    Give the obstacles anew, `tracker.obstacles = [...]`, as often as they are seen. In between each counts as anywhere that its speed
-    could have taken it, in any direction: commands keep clear of all that, if it is no faster. An arm that is cornered, or too slow
-    to give way, is hit.
+    Assign `tracker.obstacles = [...]` at each new observation. Until then, an obstacle counts as everywhere that its
+    speed could have taken it, in any direction, and commands keep clear of this region. An obstacle faster than stated
+    can hit the arm, and so can any obstacle if the arm is cornered or too slow to give way.
 
     Args:
-        shape: a shape of `bik.obstacles`, where it is now.
+        shape: a shape of `bik.obstacles`, at its present position.
         velocity: (3,) (m/s), in the frame of the robot's base.
     """
 
     def __new__(cls, shape: Obstacle, velocity: ArrayLike) -> Moving: ...
     @property
     def shape(self) -> Obstacle:
-        """The shape, where it is now."""
+        """The shape, at its present position."""
     @property
     def velocity(self) -> _Array:
-        """Its velocity (3,) (m/s)."""
+        """Velocity (3,) (m/s), in the frame of the robot's base."""
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def __getnewargs__(self) -> tuple[Obstacle, list[float]]: ...
@@ -2845,13 +2955,13 @@ class Nearest:
         """The link of the robot."""
     @property
     def other(self) -> str:
-        """What it is near to: "obstacle 0 (Box)" or "link 'panda_link0'"."""
+        """The other body: "obstacle 0 (Box)" or "link 'panda_link0'"."""
     @property
     def distance(self) -> float:
-        """Distance between their surfaces (m); negative by how deep they reach into each other."""
+        """Distance between the two surfaces (m); minus the depth where they overlap."""
     @property
     def point(self) -> _Array:
-        """The nearest point of the link (3,) (m), in the frame of the robot's base. That of the other body is
+        """Nearest point of the link (3,) (m), in the frame of the robot's base. The nearest point of the other body is
         `point - distance * normal`.
         """
     @property
@@ -2859,11 +2969,11 @@ class Nearest:
         """Unit vector (3,) from the other body to the link, along which the distance grows fastest."""
     @property
     def gradient(self) -> _Array:
-        """Derivative of the distance by each joint (n,) (m/rad, m/m)."""
+        """Derivative of the distance with respect to each joint (n,) (m/rad, m/m)."""
 
 def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Nearest | None:
-    """Returns the two bodies that are nearest to each other: a link and an obstacle, or two links; the deepest overlap if
-    bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
+    """Returns the nearest two bodies: a link and an obstacle, or two links; if bodies overlap, the two with the deepest
+    overlap. None if nothing can touch. Pairs and distance are defined as in `clearance`.
 
     Args:
         robot: an arm with bodies.
@@ -2878,16 +2988,19 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
     """Returns the smallest distance (m) between the robot's bodies and obstacles, or between two of its bodies: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 
-    Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
-    the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
-    voxels of a grid, in the nearest ball of a point cloud. Where `Mesh.closed` is False, not all of the inside is known. Of coordinates
-    above a kilometre 1e-12 is lost; beyond 1e30 m whatever may be near gives -inf.
+    The result is never more than the true distance: for capsules at most 1e-9 m less, for bodies of other shapes about
+    1e-7 m. Farther than 1 km from the base, 1e-12 of the coordinates is lost; beyond 1e30 m, a body that may be near
+    gives -inf.
+
+    The depth of a capsule in an obstacle is the depth of the deepest point of its axis, plus its radius. It is measured
+    to the surface of a closed mesh (to 1 % or 0.1 mm), within the nearest block of voxels of a grid, or within the
+    nearest ball of a point cloud. The inside of a mesh with `Mesh.closed` False is known only in part.
 
     Args:
         robot: an arm with bodies.
         q: joint positions (n,) or (m, n) (rad, m).
-        obstacles: obstacles in the frame of the robot's base. All bodies are compared with them, those of the base and of held
-            links too, but for the links that an obstacle names in its `touch`.
+        obstacles: obstacles in the frame of the robot's base. Each is compared with all bodies, including those of the
+            base and of held links, except for the links in its `touch`.
 
     Two links of the robot are compared if they are among `robot.collision_pairs`.
 
@@ -2919,22 +3032,22 @@ def plan_point_to_point(
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan:
-    """Plans a motion between two ends, to rest at the end.
+    """Plans a motion between two ends, which comes to rest at the second.
 
     Args:
         robot: the arm.
-        start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
-            (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
-            For a robot with several `tips` dicts of them, as for `solve`; several ends are a list of dicts.
+        start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends,
+            (k, 3) or (k, 4, 4), are alternatives, for example grasps: the planner takes the one with the lowest cost,
+            `Plan.chosen_end`. For a robot with several `tips`, dicts as for `solve`; several ends are a list of dicts.
         start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
-        approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`. The
-            orientation is constant on it, and the tip stays within 0.1 mm of it. It begins and ends at rest.
-        retreat: the same after the start, against the z axis.
-        free_start: whether a start that is nearer to something than the margin moves out first, `Plan.freed`, by a piece on which
-            no two bodies come nearer than they are at the start.
-        task: which part of the poses counts, one of `tasks`, as for `solve`; None: all of it.
+        approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`.
+            The line has constant orientation, begins and ends at rest, and is followed within 0.1 mm.
+        retreat: straight line of the tip after the start, against the z axis, otherwise like `approach`.
+        free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
+            bodies come nearer than at the start; see `Plan.freed`.
+        task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -2955,6 +3068,15 @@ def plan_point_to_point(
         LimitError: limits that contradict each other or exclude an end.
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
         UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+        >>> limits = bik.Limits(acceleration=10.0)
+        >>> plan = bik.plan_point_to_point(robot, start_q=home, end=[0.4, 0.1, 0.3], limits=limits)
+        >>> plan.success
+        True
     """
 
 def state_to_state(
@@ -2968,7 +3090,7 @@ def state_to_state(
     qdd1: ArrayLike | None = None,
     joint_names: list[str] | None = None,
 ) -> Trajectory:
-    """Computes the fastest motion of all joints from one state to another, in which they arrive together.
+    """Computes the fastest joint motion from one state to another; all joints arrive together.
 
     The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
     qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
@@ -2993,6 +3115,13 @@ def state_to_state(
         InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
             limits.
         UnsupportedLimit: limits that vary in time.
+
+    For example:
+
+        >>> limits = bik.Limits(velocity=2.0, acceleration=5.0)
+        >>> motion = bik.state_to_state([0.0, 0.0], [1.0, -0.5], limits)
+        >>> round(motion.duration, 3)
+        0.9
     """
 
 def time_optimal(
@@ -3034,6 +3163,13 @@ def time_optimal(
         InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
         UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+
+    For example:
+
+        >>> limits = bik.Limits(velocity=2.0, acceleration=5.0)
+        >>> motion = bik.time_optimal([[0, 0], [1, 0.5], [0, 1]], limits)
+        >>> round(motion.duration, 1)
+        1.8
     """
 
 @final
@@ -3046,8 +3182,9 @@ class StraightLine:
         direction: (3,), direction of the motion, of any nonzero length; None: along the tip's z axis towards the end, against
             it from the start.
         frame: frame of the direction, "tip" or "base".
-        touch: contacts that are allowed on this line alone, such as those of a hand that closes on a part: names of links that may
-            touch any obstacle, or a dict from the index of an obstacle to the names of links that may touch it.
+        touch: contacts that are allowed on this line alone, for example of a hand that closes on a part: names of links
+            that may touch any obstacle, or a dict from the index of an obstacle to the names of links that may touch
+            it.
     """
 
     def __new__(
@@ -3080,7 +3217,7 @@ class BatchPlan:
 
     @property
     def plans(self) -> tuple[Plan | None, ...]:
-        """Each a `Plan`, or None where `errors` has an exception."""
+        """Plan of each problem, or None where `errors` has an exception."""
     @property
     def errors(self) -> tuple[Exception | None, ...]:
         """The exception that `plan_point_to_point` raises for each problem; None where there is a plan."""
@@ -3089,12 +3226,12 @@ class BatchPlan:
         """Whether each motion meets all requirements (m,)."""
     @property
     def status(self) -> NDArray[np.uint8]:
-        """How the planning of each ended (m,), values of `Status`: those of the plans; OUT_OF_REACH for an end that cannot be
-        reached, IN_COLLISION for one in collision, INVALID for any other error.
+        """Status of each problem (m,), values of `Status`: the status of its plan, or else OUT_OF_REACH for an end out of
+        reach, IN_COLLISION for an end in collision, INVALID for any other error.
         """
     @property
     def message(self) -> str:
-        """How many were planned, and why the others were not."""
+        """Number of planned motions, and the reasons for failures."""
     @property
     def cost(self) -> _Array:
         """Values of the objective (m,) (s, rad or m); NaN where there is no plan."""
@@ -3129,24 +3266,33 @@ def plan_batch(
 ) -> BatchPlan:
     """Plans many motions at once, on all cores.
 
-    Item i is bit-identical to what `plan_point_to_point` returns for problem i alone, for any number of threads.
+    Item i is bit-identical to the result of `plan_point_to_point` for problem i, for any number of threads.
 
     Args:
         robot: the arm.
-        problems: a sequence of dicts of arguments of `plan_point_to_point`: start or start_q, end or end_q, and any other. A
-            problem's own arguments override those given for all.
+        problems: a sequence of dicts of arguments of `plan_point_to_point`: start or start_q, end or end_q, and any
+            others. The arguments of a problem override the common ones.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         progress: True shows a progress bar; a callable is called with (done, total).
         approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
             `plan_point_to_point`, for all problems.
 
     Returns:
-        A `BatchPlan`. If planning one problem raises an error, such as for an end that cannot be reached or is in collision, the
-        others are planned all the same: the plan is None, and the exception is in `errors`.
+        A `BatchPlan`. A problem that raises an error, for example because an end is out of reach or in collision, does
+        not stop the others: its plan is None, and the exception is in `errors`.
 
     Raises:
         InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
             the argument), before anything is planned.
+
+    For example:
+
+        >>> robot = bik.Robot.named("ur5e")
+        >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+        >>> problems = [{"start_q": home, "end": [0.4, y, 0.3]} for y in (-0.2, 0.2, 5.0)]
+        >>> plans = bik.plan_batch(robot, problems)
+        >>> plans.success.tolist()
+        [True, True, False]
     """
 
 def plan_along_path(
@@ -3171,10 +3317,11 @@ def plan_along_path(
 
     Args:
         robot: the arm.
-        path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
+        path: a `Path`, whose timing is ignored, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
-        task: which part of the poses matters, with a tool if need be, and how far each component may be off: at every instant
-            within its `tolerance`; a component with weight 0 is free. The planner uses what is left free. None: all of it.
+        task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
+            `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
+            whole pose.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
@@ -3182,10 +3329,10 @@ def plan_along_path(
         obstacles: a `Scene` or a list of obstacles to keep clear of, with "timed".
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
-        accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
-            decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
-            the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. With a `task` that has
-            tolerances it is a part of them: no more than the smallest.
+        accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it
+            (rad). It determines how many points of the path the motion passes. None: a thousandth of the path's extent,
+            plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
+            has tolerances, the accuracy is part of them and must not exceed the smallest.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
             solver of its own.
         stop: budgets; None: the method's own.
@@ -3193,9 +3340,9 @@ def plan_along_path(
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
-        A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With obstacles
-        a plan with success is certified to keep the margin at every instant; if none is found, the status is IN_COLLISION, and
-        the message names the place on the path, the two bodies and the depth.
+        A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With
+        obstacles, a successful plan is certified to keep the margin at every instant; if none is found, the status is
+        IN_COLLISION, and the message names the place on the path, the two bodies and the depth.
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
@@ -3203,12 +3350,20 @@ def plan_along_path(
         LimitError: limits that contradict each other.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
+
+    For example:
+
+        >>> arm = bik.Robot.planar([1.0, 1.0, 1.0])
+        >>> star = bik.paths.pentagram((1.0, 1.0, 0.0), 5.0, radius=0.5)
+        >>> plan = bik.plan_along_path(arm, star, limits=bik.Limits(velocity=3.0, acceleration=10.0))
+        >>> plan.success
+        True
     """
 
 @final
 class TPBSO:
     """Trajectory planning by beetle swarm optimisation (Wang et al. 2019), as `method=` of `plan_point_to_point` and
-    `plan_along_path`. The string "tpbso" stands for `TPBSO()`.
+    `plan_along_path`. The string "tpbso" means `TPBSO()`.
 
     Args:
         elbows: sign of the second joint's angle at start and end of a planar arm's motion, 1 or -1. At an end given by
@@ -3229,14 +3384,14 @@ class TPBSO:
 
 @final
 class Plan:
-    """A planned motion, and how its search ended."""
+    """A planned motion, and the outcome of its search."""
 
     @property
     def success(self) -> bool:
         """Whether the trajectory meets all requirements."""
     @property
     def status(self) -> Status:
-        """SOLVED on `success`; otherwise why the search ended."""
+        """SOLVED on `success`; otherwise the reason why the search ended."""
     @property
     def message(self) -> str:
         """A sentence that says what happened and what to try."""
@@ -3260,8 +3415,8 @@ class Plan:
         """Value of the objective on the trajectory (s, rad or m)."""
     @property
     def history(self) -> _Array:
-        """Progress of the search (h, 2): number of evaluations, lowest cost from then on. The cost includes penalties while the
-        plan has violations.
+        """Progress of the search (h, 2): number of evaluations, lowest cost found by then. The cost includes penalties
+        while the plan has violations.
         """
     @property
     def clearance(self) -> float:
@@ -3270,15 +3425,15 @@ class Plan:
         """
     @property
     def nearest(self) -> Nearest | None:
-        """The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles."""
+        """Nearest two bodies over the whole trajectory, a `Nearest`; None without obstacles."""
     @property
     def freed(self) -> tuple[float, float] | None:
-        """How the motion got out of a contact at its start, with `free_start=True`: the smallest distance at the start (m), below the
-        margin, and the time (s) from which on the margin is kept; None if the start was clear.
+        """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and
+        the time (s) from which on the margin is kept; None if the start was clear.
         """
     @property
     def chosen_end(self) -> int | None:
-        """Index of the end that was taken, of those given; None for a plan along a path."""
+        """Index of the chosen end among those given; None for a plan along a path."""
     @property
     def violations(self) -> list[Violation]:
         """The bounds that the trajectory exceeds, a list of `Violation`; empty on success."""
@@ -3300,13 +3455,13 @@ class Plan:
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
     def retime(self, limits: Limits) -> Plan:
-        """Returns the plan with other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+        """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
 
-        A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as a
-        whole and passes the very same configurations.
+        A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
+        a whole and passes exactly the same configurations.
 
         Args:
-            limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
+            limits: position, velocity, acceleration and jerk limits; a field left out is the robot's.
 
         Raises:
             TypeError: limits that are no `Limits`.
@@ -3326,7 +3481,7 @@ class Violation:
 
     @property
     def what(self) -> str:
-        """The quantity that exceeds it, such as "velocity of joint 'elbow'"."""
+        """The quantity that exceeds the bound, for example "velocity of joint 'elbow'"."""
     @property
     def value(self) -> float:
         """Largest value on the trajectory, in `unit`."""
@@ -3335,7 +3490,7 @@ class Violation:
         """The bound, in `unit`."""
     @property
     def unit(self) -> str:
-        """The unit, such as "rad/s"."""
+        """Unit of value and bound, for example "rad/s"."""
 
 # --- tracking without a model -------------------------------------------------------------------
 
@@ -3354,13 +3509,14 @@ def track_model_free(
 ) -> ModelFreeResult:
     """Follows a path without a model: the controller commands joint positions and measures the tip.
 
-    If the path has orientations, the controller follows these too, and the plant must measure poses. A radian of error counts
-    as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
+    If the path has orientations, the controller follows these too, and the plant must measure poses; a radian of error
+    counts as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
 
     Args:
-        plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object with such a method
-            `move`; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
-            else, the run ends with the record so far; on the first measurement, the exception propagates.
+        plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object whose
+            method `move` does so; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an
+            exception or returns anything else, the run ends with the record so far; on the first measurement, the
+            exception propagates.
         path: reference positions, or poses, over time.
         start: (n,), configuration at t = 0 (rad, m).
         dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
@@ -3379,6 +3535,14 @@ def track_model_free(
         InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
         LimitError: a start outside the limits, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
+
+    For example:
+
+        >>> arm = bik.Robot.planar([0.5, 0.4, 0.3])
+        >>> path = bik.paths.circle([0.6, 0.3, 0.0], 0.2, 5.0)
+        >>> run = bik.track_model_free(bik.KinematicPlant(arm), path, [0.4, 0.5, 0.6], dt=0.01)
+        >>> run.settled_error < 1e-6
+        True
     """
 
 @final
@@ -3418,8 +3582,8 @@ class ModelFreeResult:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
     def command(self) -> _Array:
-        """Commands at which the positions were measured (k, n) (rad, m): equal to q for `BroydenBAS`, one antenna away from it
-        for `ZNNBAS`.
+        """Commands at which the positions were measured (k, n) (rad, m): equal to q for `BroydenBAS`, one antenna away
+        from q for `ZNNBAS`.
         """
     @property
     def position(self) -> _Array:
@@ -3499,7 +3663,7 @@ class ZNNBAS:
     ) -> ZNNBAS: ...
     @property
     def gain(self) -> float:
-        """k of eq. (14) (1/s)."""
+        """Gain k of eq. (14) (1/s)."""
     @property
     def antenna_length(self) -> Any:
         """Constant antenna length (rad), as given; None if it follows the error."""
@@ -3508,13 +3672,13 @@ class ZNNBAS:
         """Ratio of antenna length to error (rad per m); None if the antenna is constant."""
     @property
     def delay_steps(self) -> int:
-        """alpha, in ticks."""
+        """Delay alpha of eq. (13), in ticks."""
     @property
     def delay(self) -> str:
-        """ "sliding" or "held"."""
+        """Kind of delay: "sliding" or "held"."""
     @property
     def accept(self) -> str:
-        """ "always" or "improving"."""
+        """Rule for accepting a position: "always" or "improving"."""
     @property
     def sensor_delay(self) -> int:
         """Delay of the sensor, in ticks."""
@@ -3546,9 +3710,9 @@ class ControlSession:
     """
 
     def command(self, target: _Pose) -> _Array:
-        """Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
-        (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
-        last accepted configuration.
+        """Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position
+        (3,) (m), or a pose (4, 4) if the first target was one. The command is inside the limits, and within the
+        velocity limits from the last accepted configuration.
         """
     def observe(self, position: _Pose) -> Step | None:
         """Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
@@ -3570,7 +3734,7 @@ class ControlSession:
 @final
 class KinematicPlant:
     """A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
-    an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
+    an arm whose model is wrong, pass a modified robot, for example `robot.with_errors(...)`.
 
     Args:
         robot: the arm as built.
@@ -3596,7 +3760,7 @@ class KinematicPlant:
     def seed(self) -> int:
         """Seed of the noise."""
     def move(self, q: ArrayLike) -> _Array:
-        """Moves the arm to q (n,) (rad, m), and returns what the sensor measures: the position of the tip (3,) (m), or its
+        """Moves the arm to q (n,) (rad, m), and returns the measurement of the sensor: the position of the tip (3,) (m), or its
         pose (4, 4).
         """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
@@ -3611,6 +3775,13 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+
+    For example:
+
+        >>> motion = bik.Trajectory.from_samples([0.0, 1.0, 2.0], [[0.0], [0.5], [0.0]])
+        >>> q, qd, qdd = motion.at(0.5)
+        >>> float(q[0]), float(qd[0])
+        (0.25, 0.5)
     """
 
     def __new__(

@@ -1,10 +1,10 @@
-"""Which derivatives of a trajectory are continuous."""
+"""Continuity of the derivatives of a trajectory."""
 
 import numpy as np
 
 from ._core import Trajectory
 
-# Jumps of an acceleration below this share of the joint's largest count as rounding.
+# Jumps of an acceleration below this fraction of the joint's largest count as rounding.
 _ROUNDING = 1e-6
 
 

@@ -20,7 +20,7 @@ _FILES = (".urdf", ".xacro", ".xml")
 
 
 def robot(name: str, options: Mapping[str, Any], trusted: bool) -> Robot:
-    """Returns `Robot.from_description`."""
+    """Loads a robot by its name; implements `Robot.from_description`."""
     require_text("name", name)
     if file := _data_file(name):
         return Robot.from_urdf(file, trusted=trusted, **options)
@@ -43,11 +43,11 @@ def robot(name: str, options: Mapping[str, Any], trusted: bool) -> Robot:
 
 
 def named(name: str, unknown: str) -> Robot:
-    """Returns the robot of a description for `Robot.named`, which has none of that name; `unknown` says so.
+    """Loads the description `name` for `Robot.named`; `unknown` is the message for a name that is not built in.
 
     Raises:
-        UnknownNameError: there is no description of that name either. Names the nearest.
-        UrdfError: the description has several tips. Names them.
+        UnknownNameError: no description of that name either; the message gives the nearest.
+        UrdfError: the description has several tips; the message lists them.
     """
     if is_description(name):
         try:
@@ -65,7 +65,7 @@ def named(name: str, unknown: str) -> Robot:
 
 
 def is_description(name: str) -> bool:
-    """Whether a name is one of a description, or by its ending can be no other."""
+    """Whether a name belongs to a description, or ends as only names of descriptions do."""
     known = _has_descriptions() and name in _names(import_module("robot_descriptions"))
     return known or name.endswith(_ENDING) or _data_file(name) is not None
 
@@ -88,12 +88,12 @@ def _names(package: Any) -> list[str]:
 
 
 def _stems(names: list[str]) -> list[str]:
-    """Returns names of descriptions without their common ending, which would make any two of them alike."""
+    """Removes the ending common to all descriptions, which would make any two names similar."""
     return [name.removesuffix(_ENDING) for name in names]
 
 
 def _described(name: str) -> Any:
-    """Returns the module of a description, which downloads its files if they are not there; None without a module.
+    """Imports the module of a description, which downloads missing files; None if there is no such module.
 
     Raises:
         BeetleIkError: the files cannot be downloaded.
@@ -102,7 +102,7 @@ def _described(name: str) -> Any:
         return import_module(f"robot_descriptions.{name}")
     except ModuleNotFoundError:
         return None
-    except Exception as error:  # of git, of the network
+    except Exception as error:  # errors of git or of the network
         said = (str(error).strip().splitlines() or [type(error).__name__])[-1].rpartition("fatal: ")[2].strip(" '")
         raise BeetleIkError(
             f"robot_descriptions cannot download '{name:.60}': {said:.200}; only the first use needs the network"
@@ -110,9 +110,9 @@ def _described(name: str) -> Any:
 
 
 def _hint(name: str, known: list[str]) -> str:
-    """Suggests descriptions of nearly that name, and the built-in robot of that name."""
+    """Suggests descriptions with a similar name, or the built-in robot of that name."""
     near = [other for other in known if other.startswith(f"{name}_")][:3]
-    if _ENDING[:5] in name:  # the whole name, of which the ending may be misspelt
+    if _ENDING[:5] in name:  # a full name whose ending may be misspelt
         near = near or get_close_matches(name, known, n=3, cutoff=0.8)
     near = near or [f"{stem}{_ENDING}" for stem in get_close_matches(name, _stems(known), n=3, cutoff=0.8)]
     descriptions = f"; did you mean {' or '.join(near)}?" if near else f"; it has {len(known)} others"
@@ -120,10 +120,10 @@ def _hint(name: str, known: list[str]) -> str:
 
 
 def _data_file(name: str) -> Path | None:
-    """Returns the URDF of this name, or in the folder of this name, of the package example-robot-data.
+    """Returns the URDF of example-robot-data with this name, or in the folder of this name.
 
     Raises:
-        UnknownNameError: the folder has several. Names them.
+        UnknownNameError: several URDFs in the folder; the message lists them.
     """
     folder = _data_folder()
     if folder is None:

@@ -16,11 +16,11 @@ from ._text import counted
 if TYPE_CHECKING:
     from ._core import Obstacle, Trajectory
 
-_MOST_NUMBERS = 12  # of an array that is written out
-_MOST_ROWS = 12  # of a table
-_SAMPLES = 120  # of a motion
-_SNAPSHOTS = 4  # of an arm that moves
-_ANGLE = 1.0  # rad: of a joint without limits
+_MOST_NUMBERS = 12  # entries of an array that is written out
+_MOST_ROWS = 12  # rows of a table
+_SAMPLES = 120  # samples of a motion
+_SNAPSHOTS = 4  # snapshots of a moving arm
+_ANGLE = 1.0  # rad: drawn angle of a joint without limits
 # Attributes of results in the order in which they are shown, with units.
 _SHOWN = {
     "q": "rad, m",
@@ -49,7 +49,7 @@ def robot(robot: Robot) -> str:
 
 
 def _drawn(robot: Robot) -> str:
-    """Draws a robot in the middle of its limits; joints without limits are bent a little, as are straight arms."""
+    """Draws a robot in the middle of its limits; joints without limits, and straight arms, are bent a little."""
     limited = np.isfinite(robot.lower) & np.isfinite(robot.upper)
     middle = np.where(limited, (np.where(limited, robot.lower, 0) + np.where(limited, robot.upper, 0)) / 2, _ANGLE)
     return _sketch.views([joints_to_tip(robot, np.clip(middle + _ANGLE / 3, robot.lower, robot.upper))])
@@ -86,7 +86,7 @@ def _joints(time: Any, q: Any) -> str:
 
 
 def trajectory(motion: Trajectory) -> str:
-    """Returns the duration, the joints over time, and a table of what each reaches."""
+    """Returns the duration, the joints over time, and a table of the extremes of each joint."""
     time = np.linspace(0.0, motion.duration, _SAMPLES)
     q = motion.at(time)[0]
     reached = (q.min(axis=0), q.max(axis=0), motion.max_velocity(), motion.max_acceleration())
@@ -109,7 +109,7 @@ def scene(obstacles: tuple[Obstacle, ...]) -> str:
 
 
 def reachability_map(map: Any) -> str:  # noqa: A002
-    """Returns what the map is of, and the share of orientations reached from the side and from above."""
+    """Returns the contents of a map, and the fraction of orientations reached, seen from the side and from above."""
     reached = map.index / max(float(map.index.max()), 1e-12)
     side, above = reached.max(axis=1).T, reached.max(axis=2).T
     drawn = _sketch.heat(side, "from the side (x, z)") + _sketch.heat(above, "from above (x, y)")

@@ -31,7 +31,7 @@ def robot(
     collision: Literal["primitives", "fit", "hulls"] | None,
     trusted: bool,
 ) -> Robot:
-    """Returns `Robot.from_mjcf` of a file, a text or a compiled model."""
+    """Reads a file, a text or a compiled model; implements `Robot.from_mjcf`."""
     mujoco = library("mujoco", "mujoco", "a MuJoCo model", extra="sim")
     described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model, trusted)
     reader = _Reader(mujoco, described)
@@ -83,7 +83,7 @@ class _Reader:
             raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
 
     def require_uncoupled(self, joints: list[str]) -> None:
-        """Raises `InvalidInputError` if an equality constraint bends one of these joints."""
+        """Raises `InvalidInputError` if an equality constraint couples one of these joints, except linearly."""
         for joint in joints:
             if joint in self.coupled:
                 raise InvalidInputError(
@@ -91,7 +91,7 @@ class _Reader:
                 )
 
     def urdf(self, tips: list[str]) -> str:
-        """Returns the model, with those sites among `tips` as links whose names no body has."""
+        """Returns the model as a URDF; sites among `tips` become links, unless a body has the same name."""
         model = self.model
         lines = [f"<robot name={quoteattr(self._name())}>", *(f"<link name={quoteattr(self.bodies[0])}/>",)]
         for body in range(1, model.nbody):
@@ -137,7 +137,7 @@ class _Reader:
         for joint in range(first, first + count):
             anchor, axis = np.array(model.jnt_pos[joint]), np.array(model.jnt_axis[joint])
             kind, inner = self._kind(joint), self._attributes(joint)
-            # MuJoCo turns about a point of the body, by qpos minus its reference value.
+            # A joint of MuJoCo moves about an anchor in the body, by qpos minus its reference value.
             rest = float(model.qpos0[model.jnt_qposadr[joint]]) if inner else 0.0
             back = pose(-rest * axis) if kind == "prismatic" else pose([0, 0, 0], rotvec=-rest * axis)
             origin = place @ pose(anchor) @ back
@@ -157,7 +157,7 @@ class _Reader:
         return {"mjJNT_SLIDE": "prismatic", "mjJNT_BALL": "spherical"}.get(kind.name, "floating")
 
     def _attributes(self, joint: int) -> list[str]:
-        """Returns axis, limits and coupling of a hinge or slide; nothing for others."""
+        """Returns axis, limits and coupling of a hinge or slide; empty for other joints."""
         model = self.model
         if self._kind(joint) in ("spherical", "floating"):
             return []
@@ -172,7 +172,7 @@ class _Reader:
         return inner
 
     def _couplings(self) -> tuple[dict[int, tuple[int, float, float]], set[str]]:
-        """Returns which joints follow others linearly, and the names of those that are coupled otherwise."""
+        """Returns the joints that follow another linearly, and the names of joints coupled otherwise."""
         model = self.model
         followed: dict[int, tuple[int, float, float]] = {}
         coupled: set[str] = set()
@@ -187,7 +187,7 @@ class _Reader:
         return followed, coupled
 
     def _collisions(self, body: int) -> Iterator[str]:
-        """Yields the geoms that collide."""
+        """Yields the geoms that take part in collisions."""
         model = self.model
         for geom in np.flatnonzero(model.geom_bodyid == body):
             if not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
@@ -215,7 +215,7 @@ def _joint(name: str, kind: str, parent: str, child: str, place: Matrix, inner: 
 
 
 def _origin(place: Matrix) -> str:
-    """Returns a pose (4, 4) as an element. The angles keep the rotation to rounding, also at a pitch of 90 degrees."""
+    """Returns a pose (4, 4) as an element. The angles are exact to rounding, also at a pitch of 90 degrees."""
     yaw = np.arctan2(place[1, 0], place[0, 0])
     sine, cosine = np.sin(yaw), np.cos(yaw)
     pitch = np.arctan2(-place[2, 0], cosine * place[0, 0] + sine * place[1, 0])

@@ -1,4 +1,4 @@
-"""Which files a MuJoCo model names. They are read by MuJoCo, which opens whatever a model asks for."""
+"""Check of the files that a MuJoCo model names: MuJoCo would open any file."""
 
 from collections.abc import Iterable
 from itertools import product
@@ -9,16 +9,16 @@ from xml.parsers import expat
 from ._core import InvalidInputError
 from ._own_files import REMEDY, RefusedError, package_of, require_inside
 
-_FOLDERS = ("assetdir", "meshdir", "texturedir")  # of the compiler
+_FOLDERS = ("assetdir", "meshdir", "texturedir")  # attributes of the element `compiler`
 _BINARY = ("flex", "flexcomp", "hfield", "mesh", "skin", "texture")
-"""Elements whose files are no XML; those of all others may name files in turn."""
+"""Elements whose files are not XML; files of other elements may name further files."""
 
 
 def require_own_files(model: str) -> None:
-    """Checks a file, or text, that is not trusted: it may name files of its folder or package, and no plugins.
+    """Checks an untrusted file or text, which may name only files of its folder or package, and no plugins.
 
     Raises:
-        InvalidInputError: it names others. The message names the file that does, and the line.
+        InvalidInputError: the model names another file or a plugin; the message gives the file and the line.
     """
     if "<" in model:
         _Files(Path("text").absolute()).check(model.encode(), "the text")
@@ -27,14 +27,14 @@ def require_own_files(model: str) -> None:
     try:
         content = file.read_bytes()
     except OSError:
-        return  # MuJoCo says it
+        return  # MuJoCo reports the error itself
     _Files(file).check(content, model)
 
 
 class _Files:
     """The files that a model names.
 
-    MuJoCo looks for them in several folders, by rules that depend on its version: none of the places may be outside.
+    MuJoCo searches several folders, by rules that depend on its version, so that every candidate must be inside.
     """
 
     def __init__(self, model: Path) -> None:
@@ -43,8 +43,8 @@ class _Files:
         self._folders, self._names, self._including, self._read = {""}, set[str](), set[str](), set[Path]()
 
     def check(self, content: bytes, shown: str) -> None:
-        """Checks a file, and those that it includes; places are combined with those of all files before."""
-        parser = expat.ParserCreate("utf-8")  # whatever it says: MuJoCo takes it for that
+        """Checks a file and its includes; folders and names add up over all files."""
+        parser = expat.ParserCreate("utf-8")  # whatever encoding the file declares: MuJoCo reads UTF-8
 
         def started(tag: str, attributes: dict[str, str]) -> None:
             if tag.lower() == "plugin":
@@ -77,7 +77,7 @@ class _Files:
         self._require_inside(self._bases, [folder], {"", *self._names}, folder)
 
     def _add_name(self, name: str) -> None:
-        self._names |= {name, Path(name).name}  # the folders may be cut off
+        self._names |= {name, Path(name).name}  # MuJoCo may drop the folders
         self._require_inside(self._bases, self._folders, (name, Path(name).name), name)
 
     def _require_inside(

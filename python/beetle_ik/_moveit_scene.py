@@ -12,22 +12,22 @@ from ._core import BeetleIkError, InvalidInputError, Obstacle, pose
 from ._files import path_of
 from ._needs import library
 
-_PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # of shape_msgs/SolidPrimitive
+_PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # types of shape_msgs/SolidPrimitive
 _LISTS = (("primitives", "primitive_poses"), ("meshes", "mesh_poses"), ("planes", "plane_poses"))
 
 
 def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -> list[Obstacle]:
-    """Reads the collision objects; `frame` is the pose (4, 4) of their frame in that of the robot's base.
+    """Reads the collision objects; `frame` is the pose (4, 4) of their frame in the frame of the robot's base.
 
     Raises:
-        InvalidInputError: not a planning scene, or something in it is no obstacle here. Names the object.
+        InvalidInputError: not a planning scene, or an object that cannot become an obstacle; the message names it.
     """
     yaml = library("yaml", "pyyaml", "reading a MoveIt planning scene")
     path, where = path_of(file), os.fspath(file)
     place = np.eye(4) if frame is None else _rigid(frame)
     try:
         scene = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also dates and integers that Python cannot hold
+    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also for dates and integers that Python cannot hold
         raise InvalidInputError(f"{where}: not YAML: {error}") from error
     world = scene.get("world") if isinstance(scene, dict) else None
     if not isinstance(world, dict):
@@ -44,7 +44,7 @@ def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -
 
 
 def _require_no_more(where: str, scene: dict[str, Any], world: dict[str, Any]) -> None:
-    """Refuses what the scene holds beside collision objects: left out, it would be run into."""
+    """Refuses other contents than collision objects: the arm would run into anything left out."""
     octomap = _get(_get(world, "octomap", {}), "octomap", {})
     if _get(octomap, "data", None):
         raise InvalidInputError(f"{where}: the octomap cannot be read: make a bik.obstacles.Grid or PointCloud of it")
@@ -140,5 +140,5 @@ def _numbers(given: Any, names: str) -> list[float]:
 
 
 def _get(mapping: Any, key: str, default: Any) -> Any:
-    """Returns an entry of what should be a mapping; `default` where it is missing or empty."""
+    """Returns an entry of a mapping; `default` if it is missing or empty, or the value is no mapping."""
     return (mapping.get(key) or default) if isinstance(mapping, dict) else default

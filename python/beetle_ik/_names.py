@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from difflib import get_close_matches
 
-# What other libraries, papers and other spellings say, and the names of this one.
+# Names used by other libraries, papers and spellings, and the names of this library.
 _SAME: dict[str, tuple[str, ...]] = {
     "acc": ("acceleration",),
     "centre": ("center",),
@@ -59,7 +59,7 @@ _SAME: dict[str, tuple[str, ...]] = {
     "world": ("obstacles",),
     "x0": ("start_q", "start"),
 }
-_SHORTEST = 3  # letters that a name is recognised by
+_SHORTEST = 3  # letters: a shorter name is not recognised
 
 
 def nearest(name: str, known: Collection[str]) -> str | None:

@@ -1,4 +1,4 @@
-"""What a file that anyone may have written must not do, and which files belong to it."""
+"""Limits on untrusted files: refused actions, and the files that belong to a package."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,7 +11,7 @@ _MARK = "package.xml"
 
 
 class RefusedError(Exception):
-    """Something that a file which is not trusted may not do."""
+    """An action that an untrusted file may not take."""
 
 
 def is_package(folder: Path) -> bool:
@@ -25,10 +25,10 @@ def package_of(file: Path) -> Path:
 
 
 def require_inside(folders: Iterable[Path], file: Path, shown: str) -> Path:
-    """Returns a file, with links followed, that is in one of the folders.
+    """Resolves the links of a file, and checks that it is in one of the folders.
 
     Raises:
-        RefusedError: it is elsewhere; the message names it as `shown`.
+        RefusedError: the file is elsewhere; the message names it as `shown`.
     """
     try:
         real = file.resolve()

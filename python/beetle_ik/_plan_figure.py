@@ -77,7 +77,7 @@ class Scene:
     def _scale(self) -> None:
         if self._flat:
             draw_from_above(self.axes, self._obstacles)
-            # Between its snapshots the arm may leave the region that they span.
+            # Covers the whole motion: between its snapshots the arm may leave their region.
             self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
             self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")

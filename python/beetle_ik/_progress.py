@@ -10,7 +10,7 @@ from datetime import timedelta
 from ._core import InvalidInputError
 
 _WIDTH = 40  # letters
-_COLUMNS = 80  # of a terminal that does not tell
+_COLUMNS = 80  # columns of a terminal of unknown width
 _INTERVAL = 0.1  # s between two drawings
 
 

@@ -1,4 +1,4 @@
-"""Obstacles kept together: made once, saved, loaded, given to every call."""
+"""Scenes: obstacles that are made once, saved, loaded and passed to every call."""
 
 from __future__ import annotations
 
@@ -19,13 +19,19 @@ class Scene(Sequence[Obstacle]):
     """Obstacles in the frame of the robot's base, in order. Every `obstacles=` takes a scene or a list.
 
     A scene does not change; `scene + [obstacle]` and `scene[1:]` are new scenes. Scenes compare and hash by content.
-    What calls need of the obstacles is prepared here, once: of a list, it is at each call.
+    A scene prepares its obstacles for collision tests once; a list is prepared at each call.
 
     Args:
         obstacles: obstacles of `bik.obstacles`.
 
     Raises:
-        InvalidInputError: something else is among them. Names its place.
+        InvalidInputError: an item is no obstacle; the message gives its position.
+
+    For example:
+
+        >>> scene = bik.Scene([bik.obstacles.Sphere((0.5, 0.0, 0.3), 0.1)])
+        >>> len(scene + [bik.obstacles.Box((0.5, 0.3, 0.1), (0.2, 0.2, 0.2))])
+        2
     """
 
     @worded_call
@@ -41,7 +47,7 @@ class Scene(Sequence[Obstacle]):
                 made = "must be made by bik.obstacles, such as Sphere or Box"
                 raise InvalidInputError(f"obstacle {i} {made}, got {obstacle!r:.60}")
         self._obstacles = given
-        self._prepared = PreparedObstacles(given)  # what calls of the core read
+        self._prepared = PreparedObstacles(given)  # read by calls of the core
 
     def __reduce__(self) -> tuple[type[Scene], tuple[tuple[Obstacle, ...]]]:
         return type(self), (self._obstacles,)
@@ -50,11 +56,12 @@ class Scene(Sequence[Obstacle]):
     def load(cls, file: str | os.PathLike[str]) -> Scene:
         """Reads a scene from a JSON file.
 
-        The file is what `save` writes, or simpler: a list of shapes, each with its "type" (the name of the class in
-        lower case, with underscores) and the arguments of the class (m, rad).
+        The file has the form written by `save`, or is just a list of shapes, each with its "type" (the name of the
+        class in lower case, with underscores) and the arguments of the class (m, rad).
 
         Raises:
-            InvalidInputError: the file is not a scene, or one of a later version. Names the file and the obstacle.
+            InvalidInputError: the file is not a scene, or is of a later version; the message names the file and the
+                obstacle.
         """
         from ._scene_json import read_obstacles
 
@@ -70,16 +77,16 @@ class Scene(Sequence[Obstacle]):
     def from_moveit(cls, file: str | os.PathLike[str], *, frame: ArrayLike | None = None) -> Scene:
         """Reads the collision objects of a MoveIt planning scene in YAML (`moveit_msgs/PlanningScene`).
 
-        Boxes, spheres, cylinders and meshes, in the order of the file. What has no counterpart here (cones, planes,
-        octomaps, objects attached to the robot) is refused, not left out. Needs PyYAML.
+        The scene has the boxes, spheres, cylinders and meshes in the order of the file. Cones, planes, octomaps and
+        objects attached to the robot are refused, not left out. Needs PyYAML.
 
         Args:
             file: the YAML file, as `ros2 topic echo` or MotionBenchMaker write it.
-            frame: pose (4, 4) of the frame of the objects in the frame of the robot's base; None: it is that frame.
+            frame: pose (4, 4) of the frame of the objects in the frame of the robot's base; None: the two frames agree.
 
         Raises:
-            InvalidInputError: the file is not a planning scene, has objects in several frames, or one that cannot be
-                read. Names the file and the object.
+            InvalidInputError: the file is not a planning scene, has objects in several frames, or an object that cannot
+                be read; the message names the file and the object.
         """
         from ._moveit_scene import read_planning_scene
 
@@ -93,7 +100,7 @@ class Scene(Sequence[Obstacle]):
         all others a `Mesh`.
 
         Raises:
-            InvalidInputError: neither of the two, a unit other than metres, or a geometry without faces.
+            InvalidInputError: another type, a unit other than metres, or a geometry without faces.
         """
         from ._trimesh_scene import obstacles_of
 
@@ -115,7 +122,7 @@ class Scene(Sequence[Obstacle]):
         return iter(self._obstacles)
 
     def __add__(self, others: Iterable[Obstacle]) -> Scene:
-        """Returns a scene with `others` after these."""
+        """Returns a scene with `others` after its own obstacles."""
         return Scene((*self._obstacles, *Scene(others)))
 
     def __eq__(self, other: object) -> bool:

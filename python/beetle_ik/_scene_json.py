@@ -5,8 +5,8 @@
         {"type": "box", "center": [0.5, 0.0, 0.1], "size": [0.4, 0.6, 0.2]}
     ]}
 
-A list alone is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in
-metres and radians.
+A bare list is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in metres
+and radians.
 """
 
 import inspect
@@ -63,16 +63,16 @@ def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
     """Reads the obstacles of a scene.
 
     Raises:
-        InvalidInputError: the file is not a scene. Names the file and the obstacle.
+        InvalidInputError: the file is not a scene; the message names the file and the obstacle.
     """
     return obstacles_in(path_of(file).read_bytes(), os.fspath(file))
 
 
 def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
-    """Reads the obstacles of a scene from what a file holds. `where` is the file.
+    """Reads the obstacles of a scene from the content of a file; `where` names the file in errors.
 
     Raises:
-        InvalidInputError: it is not a scene. Names the file and the obstacle.
+        InvalidInputError: the content is not a scene; the message names the file and the obstacle.
     """
     try:
         scene = json.loads(content.decode("utf-8"))
@@ -80,7 +80,7 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
         raise InvalidInputError(f"{where}: not UTF-8: save the file as JSON with the encoding UTF-8") from error
     except json.JSONDecodeError as error:
         raise InvalidInputError(f"{where}: not JSON: {_not_json(error)}") from error
-    except (ValueError, RecursionError) as error:  # also integers of thousands of digits
+    except (ValueError, RecursionError) as error:  # also raised for integers of thousands of digits
         raise InvalidInputError(f"{where}: not JSON: {error}") from error
     shapes = scene
     if isinstance(scene, dict):
@@ -97,7 +97,7 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
 
 
 def _not_json(error: json.JSONDecodeError) -> str:
-    """Says what is not JSON; a comma before a bracket, which other formats allow, by its name."""
+    """Returns the message for invalid JSON; it names a trailing comma, which other formats allow."""
     before = error.doc[: error.pos].rstrip()
     if before.endswith(",") and error.doc[error.pos :].lstrip()[:1] in ("]", "}"):
         comma = len(before) - 1

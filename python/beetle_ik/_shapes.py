@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from ._core import Obstacle, Robot
 
-_FROM_ABOVE = "#F3D58C"  # orange on white, without showing what is below
-_TOOL = 1e-9  # m: a shorter tool is none
+_FROM_ABOVE = "#F3D58C"  # orange on white, opaque
+_TOOL = 1e-9  # m: a shorter tool is not drawn
 _SEEN_BEYOND = 0.5  # margin around the arm, as a fraction of its extent
 
 
@@ -81,7 +81,7 @@ def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray
 def joints_to_tip(robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
     """Returns the origins of the link frames at `q` (n,), base first, and the tip if a tool moves it: (k, 3).
 
-    Of several tips: along the links to each, and back to where the way to the next one branches off.
+    With several tips, the line runs to each tip and back to the branch towards the next.
     """
     if len(robot.tips) > 1:
         poses = link_poses(robot, q)
@@ -92,7 +92,7 @@ def joints_to_tip(robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
 
 
 def _there_and_back(ways: Sequence[Sequence[str]]) -> list[str]:
-    """Returns the links passed on a walk to the ends of all `ways`, which begin alike."""
+    """Returns the links passed on a walk to each tip in turn; all `ways` begin at the same link."""
     passed = list(ways[0])
     for before, way in itertools.pairwise(ways):
         shared = sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], zip(before, way, strict=False)))
@@ -101,7 +101,7 @@ def _there_and_back(ways: Sequence[Sequence[str]]) -> list[str]:
 
 
 def placed_bodies(robot: Robot, q: ArrayLike) -> list[NDArray[np.float64]]:
-    """Returns the triangles (t, 3, 3) of each body at `q` (n,); a rod without thickness has none."""
+    """Returns the triangles (t, 3, 3) of each body at `q` (n,); none for a rod without thickness."""
     poses = link_poses(robot, q)
     return [
         moved(body.shape.triangles, poses[body.link]) for body in robot.bodies if getattr(body.shape, "radius", 1.0)
@@ -114,7 +114,7 @@ def link_poses(robot: Robot, q: ArrayLike) -> dict[str, NDArray[np.float64]]:
 
 
 def moved(triangles: NDArray[np.float64], pose: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns triangles (t, 3, 3) given in a frame as seen from the base."""
+    """Transforms triangles (t, 3, 3) from a frame to the base."""
     return triangles @ pose[:3, :3].T + pose[:3, 3]
 
 

@@ -1,6 +1,6 @@
 """The skeleton of a robot without meshes: its rigid parts, the axes between them, the points that links run through.
 
-It is found from the poses of the links alone, so it is the same for Denavit-Hartenberg tables and files.
+It is computed from the poses of the links alone, so it is the same for Denavit-Hartenberg tables and files.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_TURN = 0.3  # rad, m: how far a joint is moved to see what it moves
+_TURN = 0.3  # rad, m: test displacement of a joint, which shows the links that it moves
 _MOVED = 1e-9
 _PARALLEL = 0.05  # rad: the common normal of axes at a smaller angle may be anywhere
 
@@ -27,10 +27,10 @@ class Axis:
     """The axis of a joint: a line through `point` along `along`, at the configuration of the skeleton.
 
     Attributes:
-        travel: of a prismatic joint, how far it may go to either side (m); None: it turns.
-        enter: where the links before the joint meet the axis.
-        leave: where the links after it leave the axis.
-        row: where the links met the first of the parallel axes to which this one belongs; None: it is the first.
+        travel: range of a prismatic joint to either side (m); None: the joint is revolute.
+        enter: point where the links before the joint meet the axis.
+        leave: point where the links after the joint leave the axis.
+        row: point where the links meet the first of a row of parallel axes; None: this axis is the first.
     """
 
     along: Array
@@ -51,9 +51,9 @@ class Part:
 
     Attributes:
         links: their names.
-        axis: the axis about which the part moves; None for one that stands, or that several joints move at once.
-        after: the parts that move on it.
-        ends: the poses (4, 4) of the tip links on it, and of the tips, which a tool moves.
+        axis: the axis about which the part moves; None for a fixed part, or a part that several joints move at once.
+            after: the parts that move relative to this part.
+        ends: pairs of poses (4, 4) for each tip link on the part: of the link, and of its tip, which a tool moves.
         distance: length of the skeleton from the base to the part (m).
     """
 
@@ -71,19 +71,19 @@ class Part:
 
     @property
     def stub(self) -> float:
-        """How far the links run along the axis (m)."""
+        """Length that the links run along the axis (m)."""
         return 0.0 if self.axis is None else float(np.linalg.norm(self.axis.leave - self.axis.enter))
 
     @property
     def way_to_tip(self) -> float:
-        """How far a tip on the part is from its axis (m)."""
+        """Distance (m) from the point where the links leave the axis to the tip on the part."""
         if self.axis is None or not self.ends:
             return 0.0
         return float(np.linalg.norm(self.ends[0][0][:3, 3] - self.axis.leave))
 
 
 def skeleton(robot: Robot, q: Array) -> tuple[list[Part], Array]:
-    """Returns the parts that stand on nothing else, as they are at `q` (n,), and the poses (links, 4, 4) there."""
+    """Returns the parts at the root of the robot at `q` (n,), and the poses of all links (links, 4, 4)."""
     poses = robot.all_link_poses(q)
     steps = np.where(q + _TURN <= robot.upper, _TURN, -_TURN)
     shifted = [robot.all_link_poses(q + steps * (np.arange(robot.dof) == j)) for j in range(robot.dof)]
@@ -111,7 +111,7 @@ def skeleton(robot: Robot, q: Array) -> tuple[list[Part], Array]:
 
 
 def _axis(before: Array, after: Array, step: float, travel: tuple[float, float]) -> Axis:
-    """Returns the axis of the joint of which a step (rad, m) moves a frame from one pose (4, 4) to another."""
+    """Returns the axis of a joint whose step (rad, m) moves a frame from pose `before` (4, 4) to pose `after`."""
     motion = after @ np.linalg.inv(before)
     turn, shift = motion[:3, :3], motion[:3, 3]
     along = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
@@ -122,7 +122,7 @@ def _axis(before: Array, after: Array, step: float, travel: tuple[float, float])
 
 
 def _run(part: Part, start: Array) -> None:
-    """Lays the skeleton through a part that begins at the point `start`, and through those after it."""
+    """Lays the skeleton through a part that begins at the point `start`, and through the parts after it."""
     for each in part.after:
         leave = start if part.axis is None else _leaving(part.axis, each)
         each.about.enter = _near(leave, part.axis, each.about)
@@ -137,10 +137,10 @@ def _run(part: Part, start: Array) -> None:
 
 
 def _leaving(axis: Axis, after: Part) -> Array:
-    """Returns where the links leave an axis for that of the part `after` it.
+    """Returns the point where the links leave an axis towards the axis of the next part, `after`.
 
-    Between parallel axes any place would do. Where a row of them ends in another plane than it began, as on arms with
-    three parallel axes and a wrist beside them, links lie in the one plane and in the other by turns.
+    Between parallel axes any point would do. If a row of parallel axes ends in another plane than it began, for example
+    on arms with three parallel axes and a wrist beside them, the links alternate between the two planes.
     """
     if not _parallel(axis, after.about):
         return _nearest(axis, after.about)
@@ -155,14 +155,14 @@ def _leaving(axis: Axis, after: Part) -> Array:
 
 
 def _end(part: Part) -> Array:
-    """Returns where links leave the axis of a part, if that does not depend on those before it."""
+    """Returns the point where the links leave the axis of a part, if it does not depend on the parts before."""
     if part.after:
         return _nearest(part.about, part.after[0].about)
     return part.about.foot(part.ends[0][0][:3, 3]) if part.ends else part.about.enter
 
 
 def _near(leave: Array, before: Axis | None, axis: Axis) -> Array:
-    """Returns where links that come from `leave` meet an axis."""
+    """Returns the point where links that come from `leave` meet an axis."""
     if before is None or _parallel(before, axis):
         return axis.foot(leave)
     return _nearest(axis, before)

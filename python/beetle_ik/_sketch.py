@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT, _MARGIN = 230.0, 160.0, 8.0  # pixels
 _COLORS = (BLUE, VERMILION, GREEN, ORANGE, SKY, "#CC79A7", "currentColor")
-_MOST_POINTS = 160  # of a curve
-_MOST_FACES = 200  # of an obstacle that is not convex
+_MOST_POINTS = 160  # points of a curve
+_MOST_FACES = 200  # faces of a non-convex obstacle
 _VIEWS = {"from the side (x, z)": (0, 2), "from above (x, y)": (0, 1)}
-_BEYOND = 1.0  # what is drawn around an arm, as a fraction of its extent
+_BEYOND = 1.0  # margin around an arm, as a fraction of its extent
 
 
 def curves(x: Points, rows: Points, title: str) -> str:
@@ -37,7 +37,7 @@ def curves(x: Points, rows: Points, title: str) -> str:
 
 
 def views(arms: Sequence[Points], ways: Sequence[Points] = (), obstacles: Sequence[Obstacle] = ()) -> str:
-    """Draws arms (k, 3), ways of tips (k, 3) and obstacles from the side and from above."""
+    """Draws arms (k, 3), paths of tips (k, 3) and obstacles from the side and from above."""
     shapes = [shape.triangles for shape in obstacles]
     lines = np.vstack([*arms, *ways] if arms or ways else [triangles.reshape(-1, 3) for triangles in shapes])
     corners = _corners(lines, shapes)
@@ -50,7 +50,7 @@ def views(arms: Sequence[Points], ways: Sequence[Points] = (), obstacles: Sequen
 
 
 def heat(values: Points, title: str) -> str:
-    """Draws a grid (rows, columns) of shares from 0 to 1, the first row at the bottom."""
+    """Draws a grid (rows, columns) of fractions from 0 to 1, the first row at the bottom."""
     step = max(1, -(-max(values.shape) // 60))
     values = values[::step, ::step]
     cell = min((_WIDTH - 2 * _MARGIN) / values.shape[1], (_HEIGHT - 2 * _MARGIN) / values.shape[0])
@@ -68,7 +68,7 @@ def _range(values: ArrayLike) -> tuple[float, float]:
 
 
 def _corners(points: Points, faces: Sequence[Points]) -> Points:
-    """Returns the corners (2, 3) of what is drawn: a whole floor would dwarf the arm."""
+    """Returns the corners (2, 3) of the drawn region, without distant faces: a whole floor would dwarf the arm."""
     low, high = points.min(axis=0), points.max(axis=0)
     beyond = _BEYOND * float((high - low).max())
     for part in faces:
@@ -78,7 +78,7 @@ def _corners(points: Points, faces: Sequence[Points]) -> Points:
 
 
 def _polygons(obstacle: Obstacle, axes: tuple[int, int]) -> list[Points]:
-    """Returns the outline (k, 2) of an obstacle that is convex, and some faces of another."""
+    """Returns the outline (k, 2) of a convex obstacle, or some faces of another."""
     triangles = obstacle.triangles[:, :, axes]
     if isinstance(obstacle, Mesh | PointCloud | Grid):
         return list(triangles[:: max(1, len(triangles) // _MOST_FACES)])

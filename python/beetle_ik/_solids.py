@@ -1,4 +1,4 @@
-"""How an arm without meshes looks: solids of revolution along its skeleton, in the colours of its maker."""
+"""Appearance of an arm without meshes: solids of revolution along its skeleton, in the colours of its maker."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 _THICK, _THIN = 0.042, 0.030  # radii at base and tip, as fractions of the length of the skeleton
 _AROUND = 24  # corners of a circle
 _ARC = 3  # points of a rounded edge
-_BEYOND = 1.12  # how far a link along an axis goes beyond what crosses it, as a fraction of its radius
-_SHORTEST = 1e-6  # m, of an arm that can be drawn
+_BEYOND = 1.12  # overhang of a link beyond a crossing link, as a fraction of its radius
+_SHORTEST = 1e-6  # m: shortest arm that can be drawn
 _DARK = "#3A3F47"
 
 
 class Look(NamedTuple):
-    """Colours of links, joints and caps, and how thick an arm is: 1 is usual."""
+    """Colours of links, joints and caps, and the thickness of an arm relative to the usual."""
 
     links: str
     joints: str
@@ -60,10 +60,9 @@ class Solid(NamedTuple):
 
 
 def solids(robot: Robot, q: Array) -> list[Solid]:
-    """Returns solids for the links of a robot that has no meshes. `q` (n,) is any configuration.
+    """Returns solids for the links of a robot without meshes. `q` (n,) is any configuration.
 
-    One with bodies of other shapes than capsules and balls, which usually stand for an arm, looks like these: nothing
-    is returned.
+    A robot with bodies other than capsules and balls is drawn by these bodies: nothing is returned.
     """
     links = {link for way in robot._links_to_tips() for link in way}
     if not all(isinstance(body.shape, Capsule | Sphere) for body in robot.bodies if body.link in links):
@@ -94,7 +93,7 @@ class _Drawing:
         self._look, self._length, self._frames = look, length, frames
 
     def base(self, part: Part) -> None:
-        """Draws a part that stands: a foot, and columns up to the axes."""
+        """Draws a fixed part: a foot, and columns up to the axes."""
         frame = self._frames[part.links[0]]
         foot = frame[:3, 3]
         for each in part.after:
@@ -108,7 +107,7 @@ class _Drawing:
             self._arrival(part, each)
 
     def part(self, part: Part) -> None:
-        """Draws a part that moves: the housing of its joint, the links to the next joints and to the tips."""
+        """Draws a moving part: the housing of its joint, the links to the next joints and to the tips."""
         axis, r = part.about, self._radius(part)
         if axis.travel is not None:
             self._rod(
@@ -133,7 +132,7 @@ class _Drawing:
             self._end(part, axis.leave, link[:3, 3], tip)
 
     def _arrival(self, part: Part, after: Part) -> None:
-        """Draws how far a part reaches along the axis of the one after it."""
+        """Draws the extent of a part along the axis of the part after it."""
         axis, r = after.about, self._radius(after)
         if axis.travel is not None:
             low, high = (np.clip(end, -self._length, self._length) for end in axis.travel)
@@ -152,7 +151,7 @@ class _Drawing:
             self._rod(part, cap - 0.1 * r * along, cap + 0.05 * r * along, 0.78 * r, self._look.caps, edge=0.08)
 
     def _end(self, part: Part, start: Array, flange: Array, tip: Array) -> None:
-        """Draws the way to a flange, and a tool on it that ends in a point."""
+        """Draws the link to a flange, and a tool on it that ends in a point."""
         r = self._radius(part)
         self._rod(part, start, flange, (r, 0.8 * r), self._look.links, edge=0.9)
         if self._is_flange(part) and part.axis is not None and part.stub:
@@ -165,7 +164,7 @@ class _Drawing:
         return self._look.thickness * self._length * (_THICK + share * (_THIN - _THICK))
 
     def _rolls(self, part: Part) -> bool:
-        """Whether a link runs along the axis of a part: the joint is a cut across it. Otherwise it is a hinge."""
+        """Whether a link runs along the axis of a part: its joint is drawn as a cut across it, others as hinges."""
         return part.stub > 1.2 * self._radius(part)
 
     def _is_flange(self, part: Part) -> bool:

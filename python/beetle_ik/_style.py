@@ -22,12 +22,12 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = PALETTE = (
     "#000000",
 )
 FORBIDDEN = "#D9D9D9"  # shade of regions beyond a limit
-LINKS = ("#E9EBEE", "#9FB3C8")  # meshes of links, by turns
+LINKS = ("#E9EBEE", "#9FB3C8")  # alternating colours of link meshes
 _DASHES = ("-", "--", ":", "-.")
 
 
 def rgb(color: str) -> tuple[int, int, int]:
-    """Returns a colour such as "#0072B2" as three numbers from 0 to 255."""
+    """Returns a colour, for example "#0072B2", as three numbers from 0 to 255."""
     red, green, blue = bytes.fromhex(color.removeprefix("#"))
     return red, green, blue
 

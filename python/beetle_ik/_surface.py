@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     Triangles = NDArray[np.float64]
 
 _MOST = 30_000  # triangles of a figure: matplotlib takes a second for them
-_LIGHT = np.array([-0.35, -0.55, 0.76])  # from the upper left, in front of the default view
-_DARKEST = 0.35  # of a face that turns away from the light
-_EMPTY = 1e-15  # m^2: a face smaller than this is none
+_LIGHT = np.array([-0.35, -0.55, 0.76])  # light from the upper left, in front of the default view
+_DARKEST = 0.35  # brightness of a face turned away from the light
+_EMPTY = 1e-15  # m^2: smaller faces are left out
 
 
 class Surface(NamedTuple):
@@ -49,7 +49,7 @@ def draw_surfaces(axes: Any, surfaces: Sequence[Surface]) -> None:
 
 
 def _shaded(triangles: Triangles) -> tuple[Triangles, NDArray[np.float64]]:
-    """Returns the triangles that have an area, and how bright each is."""
+    """Returns the triangles that have an area, and the brightness of each."""
     across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     area = np.linalg.norm(across, axis=1)
     seen = area > _EMPTY
@@ -58,7 +58,7 @@ def _shaded(triangles: Triangles) -> tuple[Triangles, NDArray[np.float64]]:
 
 
 def simplified(triangles: Triangles, most: int) -> Triangles:
-    """Returns about `most` triangles or fewer: corners in one cell of a grid become one, and faces vanish."""
+    """Returns about `most` triangles or fewer: corners in one cell of a grid merge, and faces that collapse vanish."""
     if len(triangles) <= most:
         return triangles
     low, size = triangles.min(axis=(0, 1)), float(np.ptp(triangles, axis=(0, 1)).max())

@@ -11,7 +11,7 @@ def counted(number: int, thing: str) -> str:
 
 
 def listed(names: Collection[str]) -> str:
-    """Joins names with commas, up to a readable length; then says how many more there are."""
+    """Joins names with commas, up to a readable length, and gives the number of the rest."""
     shown = ", ".join(names)
     if len(shown) <= _LIST_LENGTH:
         return shown

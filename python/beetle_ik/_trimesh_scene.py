@@ -1,4 +1,4 @@
-"""Obstacles from the library trimesh. It is not imported: its objects are recognised by what they have."""
+"""Obstacles from the library trimesh, which is not imported: its objects are recognised by their attributes."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -17,7 +17,7 @@ def obstacles_of(geometry: Any) -> list[Obstacle]:
     """Returns the obstacles of a mesh or a scene of trimesh.
 
     Raises:
-        InvalidInputError: something else, another unit than metres, or a geometry without faces. Names the geometry.
+        InvalidInputError: another type, a unit other than metres, or a geometry without faces; the message names it.
     """
     return [_obstacle(name, part, transform) for name, part, transform in _parts(geometry)]
 
@@ -46,7 +46,7 @@ def _obstacle(name: str, part: Any, transform: NDArray[np.float64]) -> Obstacle:
 
 
 def _primitive(part: Any, transform: NDArray[np.float64]) -> Obstacle | None:
-    """Returns the exact shape of a primitive, whose triangles would lie inside it; None for all else."""
+    """Returns the exact shape of a primitive, whose triangles would lie inside it; None for other parts."""
     primitive = getattr(part, "primitive", None)
     turn = transform[:3, :3]
     if primitive is None or np.abs(turn @ turn.T - np.eye(3)).max() > _RIGID or np.linalg.det(turn) < 0:
@@ -61,7 +61,7 @@ def _primitive(part: Any, transform: NDArray[np.float64]) -> Obstacle | None:
         case "Cylinder":
             return obstacles.Cylinder(at[:3, 3], at[:3, 2], float(primitive.radius), float(primitive.height))
         case "Capsule":
-            # Where its axis begins differs between versions of trimesh.
+            # The start of the axis differs between versions of trimesh.
             place = np.asarray(primitive.transform, dtype=float)
             along = (np.asarray(part.vertices) - place[:3, 3]) @ place[:3, 2]
             middle, half = 0.5 * (along.min() + along.max()), 0.5 * float(primitive.height)

@@ -50,7 +50,7 @@ def from_csv(file: str | os.PathLike[str]) -> Trajectory:
     Positions are in columns `q:joint`. In a file without such columns, every column but `time` is a joint.
 
     Raises:
-        InvalidInputError: a column is missing or an entry is not a number. Names line and column.
+        InvalidInputError: a column is missing or an entry is not a number; the message gives line and column.
     """
     table = read_table(file, ["time"])
     joints, q = joint_positions(file, table)
@@ -64,7 +64,7 @@ def joint_positions(
     """Returns joint names and positions (k, n), from columns `q:joint` or else from columns named after the joints.
 
     Raises:
-        InvalidInputError: there are no such columns.
+        InvalidInputError: no such columns.
     """
     columns = {column.removeprefix("q:"): column for column in table if column.startswith("q:")}
     if not columns:
@@ -108,8 +108,8 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
     """Reads a trajectory that `to_npz` wrote.
 
     Raises:
-        InvalidInputError: the file is not an npz file or is damaged, an array is too large for the memory, or one of a
-            trajectory is missing. Names the array.
+        InvalidInputError: the file is not an npz file or is damaged, an array is too large for the memory, or an array
+            of a trajectory is missing; the message names it.
         FileNotFoundError, PermissionError, IsADirectoryError: there is no such file, or it may not be read.
     """
     stored = read_arrays(file)
@@ -132,7 +132,7 @@ def read_arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     """Returns all arrays of an npz file.
 
     Raises:
-        InvalidInputError: the file is not an npz file or is damaged. Names it.
+        InvalidInputError: the file, which the message names, is not an npz file or is damaged.
     """
     with path_of(file).open("rb") as stream:
         if not zipfile.is_zipfile(stream):

@@ -1,4 +1,4 @@
-"""Secondary objectives for redundant arms: what the joints do in the null space of the task."""
+"""Secondary objectives for redundant arms, optimised in the null space of the task."""
 
 from ._core import Centring, Clearance, Goal, LinkManipulability, Manipulability, Posture
 

@@ -7,7 +7,7 @@ Solutions, tracks and plans keep all bodies of the robot clear of the obstacles:
     plan = bik.plan_point_to_point(robot, start_q=here, end=there, obstacles=[crate])
 
 A `Scene` keeps obstacles together and saves them. `clearance` is the smallest distance at one configuration or many;
-`nearest` also says which two bodies, where, along which normal, and how the distance changes with each joint.
+`nearest` also gives the two bodies, the nearest point, the normal, and the gradient with respect to the joints.
 """
 
 from ._core import (

@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 __all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
 
 _ROW_HEIGHT = 2.4  # inches per panel over time
-# Colours of several tips, and of pairs of them.
+# Colours of several tips, and of pairs of tips.
 _TIPS = (BLUE, GREEN, ORANGE)
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
-_HEADROOM = 1.15  # height of a panel over what it shows
+_HEADROOM = 1.15  # height of a panel over the height of its data
 _FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
-_ABOVE = 1000  # drawn after everything else
+_ABOVE = 1000  # layer above everything else
 
 
 def robot(
@@ -51,16 +51,16 @@ def robot(
 ) -> Figure:
     """Draws the robot at configuration `q` (n,): its links, tool, tip, bodies and `obstacles`.
 
-    Links look like their meshes; those of a robot without meshes are drawn along its joints, in the colours of the
-    maker if the robot is a built-in one.
+    Links are drawn with their meshes; links without meshes are drawn along the joints, in the colours of the maker if
+    the robot is built in.
 
     Args:
         robot: the robot.
         q: joint positions (n,) (rad, m).
         obstacles: obstacles in the frame of the robot's base.
         bodies: whether to draw the bodies of the links, translucent.
-        meshes: whether to draw the links as solids, those that `robot.collision_meshes()` reads or those along the
-            joints; at most about 30,000 triangles, larger meshes are made coarser. Without, a stick figure.
+        meshes: whether to draw the links as solids, from `robot.collision_meshes()` or along the joints; with at most
+            about 30,000 triangles, larger meshes are coarsened. False: a stick figure.
     """
     require("robot", robot, _core.Robot)
     require("bodies", bodies, bool)
@@ -90,12 +90,12 @@ def robot(
 
 
 def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
-    """Returns the meshes of the links at `q` (n,), of which neighbours differ in colour, or how they are drawn."""
+    """Returns the meshes of the links at `q` (n,), in alternating colours; solids along the joints without meshes."""
     poses = link_poses(robot, q)
     colors = dict(zip(poses, itertools.cycle(LINKS), strict=False))
     meshes = robot.collision_meshes()
     if not meshes:
-        from ._solids import solids  # the time of an import of the package is short
+        from ._solids import solids  # keeps the import of the package quick
 
         drawn = solids(robot, np.asarray(q, dtype=float))
         return [Surface(moved(solid.triangles, poses[solid.link]), solid.color) for solid in drawn]
@@ -105,7 +105,7 @@ def _mesh_surfaces(robot: Robot, q: ArrayLike) -> list[Surface]:
 def _draw_stick(
     axes: Axes3D, corners: NDArray[np.float64], flange: int, tips: NDArray[np.float64], *, inside: bool
 ) -> None:
-    """Draws the links from joint to joint, the tool and the tips (k, 3); `inside` meshes only tool and tips."""
+    """Draws the links from joint to joint, the tool and the tips (k, 3); if `inside` meshes, tool and tips alone."""
     if not inside:
         axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
     if len(corners) > flange + 1:
@@ -207,7 +207,7 @@ def trajectory(trajectory: Trajectory) -> Figure:
 def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
     """Draws velocity, acceleration and jerk of each joint as fractions of their limits.
 
-    In a time-optimal motion some joint is at 1 at any time. `limits` are constant, as `time_optimal` takes them.
+    In a time-optimal motion some joint is at 1 at any time. `limits` are constant, as for `time_optimal`.
     """
     require("trajectory", trajectory, _core.Trajectory)
     require("limits", limits, _core.Limits)
@@ -237,7 +237,7 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns time derivatives by differences; the last one is repeated, so that there are as many as samples."""
+    """Returns time derivatives by differences; the last one is repeated, so that each sample has one."""
     slopes = np.diff(values, axis=0) / np.diff(time)[:, None]
     return np.vstack((slopes, slopes[-1:]))
 
@@ -251,7 +251,7 @@ def _draw_space(axes: Any, result: TrackResult | ModelFreeResult) -> None:
 
 
 def _draw_space_of_tips(axes: Any, result: TrackResult) -> None:
-    """Draws the path of each tip that has a target, pairs left out: they are seen from another tip."""
+    """Draws the path of each tip that has a target, without pairs: their frame is another tip."""
     positions, references = result.positions, result.references
     tips = [key for key in positions if isinstance(key, str)]
     if not tips:
@@ -282,7 +282,7 @@ def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_errors(axes: Axes, result: TrackResult, component: int, error: NDArray[np.float64], tolerance: float) -> None:
-    """Draws the error of the tip or, of several tips and pairs of them, the errors of each."""
+    """Draws the error of the tip or, with several tips or pairs, each error."""
     errors = result.errors
     if len(result.robot.tips) == 1:
         _draw_error(axes, result.time, error, tolerance)

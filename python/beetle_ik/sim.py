@@ -37,7 +37,7 @@ class MujocoPlant:
     """An arm in MuJoCo with position servos and a sensor that measures its tip.
 
     The servos yield under gravity, so the arm settles beside the commanded configuration. A model-free controller must
-    compensate for that, as for errors of the model.
+    compensate for this deflection, as for errors of the model.
 
     Args:
         robot: the arm as built, which may differ from the model that a controller uses.
@@ -67,7 +67,7 @@ class MujocoPlant:
         rotation_noise: float | None = None,
         seed: int = 0,
     ) -> None:
-        """Starts at rest at zero, or at the limit nearest to it."""
+        """Starts at rest at q = 0, or at the limits nearest to it."""
         for name, value in (("dt", dt), ("stiffness", stiffness), ("mass", mass)):
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f"{name} must be positive and finite, got {value}")
@@ -100,8 +100,8 @@ class MujocoPlant:
 
         Args:
             path_or_xml: file, or text that contains "<".
-            base: link whose frame is the reference frame; None takes the root.
-            tip: link at the end of the chain; None takes the only leaf.
+            base: link whose frame is the reference frame; None: the root.
+            tip: link at the end of the chain; None: the only leaf.
             trusted: whether a xacro file may execute code and read any file.
             **options: the options of the class.
         """
@@ -199,7 +199,7 @@ class MujocoPlant:
 
     def _run(self, seconds: float) -> None:
         self._mujoco.mj_step(self._model, self._data, max(1, round(seconds / _TIMESTEP)))
-        # mj_step leaves the kinematics one step behind the joints.
+        # Updates the kinematics, which mj_step leaves one step behind the joints.
         self._mujoco.mj_kinematics(self._model, self._data)
 
     def _check(self) -> None:
@@ -214,7 +214,7 @@ class MujocoPlant:
 
 
 def _mujoco() -> Any:
-    # Without a display only EGL can render; MuJoCo reads the variable when it is loaded.
+    # Selects EGL, the only way to render without a display; MuJoCo reads the variable at its import.
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         os.environ.setdefault("MUJOCO_GL", "egl")
     return library("mujoco", "mujoco", "simulation", extra="sim")
@@ -239,7 +239,7 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
     for i, (kind, axis, anchor, end) in enumerate(zip(kinds, axes, anchors, ends, strict=True)):
         body = SubElement(body, "body", pos=_text(anchor - origin))
         origin = anchor
-        # Reflected inertia of the gears, and critical damping, so that the servo does not overshoot.
+        # Adds reflected inertia of the gears, and critical damping, so that the servo does not overshoot.
         inertia = 0.1
         lever = float(np.linalg.norm(tip - anchor)) + 0.1
         critical = 2.0 * np.sqrt(stiffness * (inertia + mass * lever**2 / 3.0))

@@ -1,4 +1,4 @@
-"""Tasks: which part of a target counts (pose, position, orientation or pointing axis), with weights and tolerances."""
+"""Tasks: the part of a target that counts (pose, position, orientation, pointing axis), with weights and tolerances."""
 
 from ._core import Orientation, Pointing, Pose, Position, Task
 

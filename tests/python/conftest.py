@@ -1,4 +1,4 @@
-"""What all tests share."""
+"""Fixtures common to all tests."""
 
 import signal
 from collections.abc import Iterator

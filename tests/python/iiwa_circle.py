@@ -1,4 +1,4 @@
-"""The circle that Cheng et al. (2020) have a KUKA iiwa 14 follow, under their limits."""
+"""The circle and the limits of Cheng et al. (2020) for a KUKA iiwa 14."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
-"""Kinematics by Pinocchio, brought to this library's conventions.
+"""Kinematics by Pinocchio, in the conventions of this library.
 
-Pinocchio knows no base but the root, takes continuous joints as (cos, sin) and mimic joints as free: all of it is
-converted here, so that tests compare like with like.
+Pinocchio has no base but the root, represents continuous joints by (cos, sin), and leaves mimic joints free. This
+module converts all three, so that tests compare like with like.
 """
 
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""What all results, values and solvers have in common."""
+"""Properties common to all results, values and solvers."""
 
 import inspect
 from collections.abc import Callable

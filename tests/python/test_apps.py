@@ -1,4 +1,4 @@
-"""APPS against its paper's equations, written down once more in numpy, and against wrong input."""
+"""APPS against the equations of its paper in numpy, and against wrong input."""
 
 from collections.abc import Callable
 

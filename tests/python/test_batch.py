@@ -1,4 +1,4 @@
-"""Batches: what single solves find, on any number of threads, in forks, interrupted, with wrong rows."""
+"""Batches: equal to single solves on any number of threads and in forks; interruptions; wrong rows."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Bodies of robots: what they are, where they come from, and what they are compared with."""
+"""Bodies of robots: shapes, origins, and the pairs that are compared."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""A small share of the campaign with fixed seeds, and whether it would notice what it looks for."""
+"""A small part of the campaign with fixed seeds, and tests that its judges notice errors."""
 
 import os
 import sys

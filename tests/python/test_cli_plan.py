@@ -1,4 +1,4 @@
-"""`beetle-ik plan point-to-point`: ends, obstacles from a file, and what is refused."""
+"""`beetle-ik plan point-to-point`: ends, obstacles from a file, and refused options."""
 
 import json
 from pathlib import Path

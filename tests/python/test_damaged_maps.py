@@ -1,4 +1,4 @@
-"""Map files with arrays that are no map's."""
+"""Map files with invalid arrays."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Batches in chunks: the bits of one call, and stores that continue, refuse and keep what is finished."""
+"""Batches in chunks: the bits of one call, and stores that continue, refuse other jobs and keep finished chunks."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""Maps in chunks: the bits of one call, stores that go on and load, and the bytes of one process from two workers."""
+"""Maps in chunks: the bits of one call, stores that continue and load, and equal bytes from two workers."""
 
 import os
 import signal

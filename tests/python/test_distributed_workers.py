@@ -1,4 +1,4 @@
-"""Batches on two worker processes: the bytes of one process, also where a worker, client or scheduler is killed."""
+"""Batches on two worker processes: the bytes of one process, even if a worker, client or scheduler is killed."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Wrong calls of what moves a robot: the exception and the exact message that a user sees."""
+"""Wrong calls for motions: the exception and the exact message that a user sees."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,6 +1,6 @@
-"""Every public call, each of its arguments wrong in many ways: no panic, and a message that names the argument.
+"""Every public call with each argument wrong in many ways: no panic, and a message that names the argument.
 
-The calls are taken from `__all__` and their arguments from their signatures, so that new ones cannot be forgotten.
+Calls are taken from `__all__` and arguments from signatures, so that new ones cannot be forgotten.
 """
 
 import inspect

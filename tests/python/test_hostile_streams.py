@@ -1,4 +1,4 @@
-"""A small count of the streams of `benches/hostile_streams.py`, and whether its check would notice."""
+"""A few streams of `benches/hostile_streams.py`, and a test that its check notices errors."""
 
 import sys
 from pathlib import Path

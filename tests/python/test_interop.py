@@ -1,4 +1,4 @@
-"""Poses, trajectories and robots of other libraries. Each is skipped where its library is missing."""
+"""Poses, trajectories and robots of other libraries. A test is skipped if its library is missing."""
 
 import json
 import sys

@@ -1,7 +1,7 @@
 """Ctrl-C ends any call: every public callable is interrupted in the middle, or listed with the reason why it is short.
 
-No clock decides: a signal comes every 10 ms, and its handler raises at the third one. A call that does not look for
-signals meets the handler once, after it has returned, and nothing is raised.
+No clock decides: a signal comes every 10 ms, and its handler raises at the third one. A call that does not check for
+signals meets the handler once, after its return, and nothing is raised.
 """
 
 import itertools

@@ -1,4 +1,4 @@
-"""Who imports whom, and what `import beetle_ik` loads."""
+"""Imports between modules, and the modules that `import beetle_ik` loads."""
 
 import ast
 import subprocess

@@ -1,4 +1,4 @@
-"""Limits in all their forms, as they bind a track."""
+"""Limits in all their forms, applied to a track."""
 
 import numpy as np
 import pytest

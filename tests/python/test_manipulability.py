@@ -1,4 +1,4 @@
-"""Manipulability and what goes with it, as Python sees it. The numbers themselves are tested in the core."""
+"""Manipulability, its gradient and the velocity ellipsoid from Python. The core tests the numbers themselves."""
 
 import numpy as np
 import pytest

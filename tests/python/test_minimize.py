@@ -1,4 +1,4 @@
-"""The user's own function, by every solver that needs values alone."""
+"""Minimisation of Python functions by every derivative-free solver."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""MuJoCo models from anyone: they read files of their own package, and nothing else."""
+"""Untrusted MuJoCo models: they read only files of their own package."""
 
 from pathlib import Path
 

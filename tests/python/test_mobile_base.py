@@ -1,4 +1,4 @@
-"""Robots on mobile bases, and robots of many joints: against Pinocchio, through the calls, and what is refused."""
+"""Robots on mobile bases, and robots of many joints: against Pinocchio, in all calls, and refused arguments."""
 
 import pickle
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Tracking without a model, from Python: plants of all kinds, sessions, and what goes wrong."""
+"""Tracking without a model, from Python: plants of all kinds, sessions, and failures."""
 
 import pickle
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Mistakes that people make on the first day, and what each is answered."""
+"""Common mistakes of the first day, and the message for each."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""`solve_all` next to other closed forms, and the poses of arms that are not built in."""
+"""`solve_all` against other closed forms, and poses of arms that are not built in."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Links that are tested against each other, and what a link carries."""
+"""Pairs of links that are tested against each other, and bodies attached to a link."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable

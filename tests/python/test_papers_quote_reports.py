@@ -1,6 +1,6 @@
-"""README and the papers' pages quote what the reports say.
+"""README and the papers' pages quote the numbers of the reports.
 
-The tables in `docs/papers/tables/` are those of full runs: `make papers` writes them anew. To guard a number of a page,
+The tables in `docs/papers/tables/` come from full runs: `make papers` writes them anew. To guard a number of a page,
 add a `Quote`, and the name of its table to `docs/papers/tables/`.
 """
 

@@ -1,4 +1,4 @@
-"""Batches of plans: what single plans are, on any number of threads, interrupted, with wrong problems."""
+"""Batches of plans: equal to single plans on any number of threads; interruptions; wrong problems."""
 
 import copy
 import gc

@@ -1,4 +1,4 @@
-"""Straight lines at both ends of a planned motion, starts in contact, and things in the hand."""
+"""Straight lines at both ends of a planned motion, starts in contact, and carried parts."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""What docs/stability.md says of platforms."""
+"""Platforms promised in docs/stability.md."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Figures: what they hold and how it is labelled."""
+"""Figures: contents and labels."""
 
 import io
 import sys

@@ -1,4 +1,4 @@
-"""Best postures, as Python sees them. The numbers themselves are tested in the core."""
+"""Best postures from Python. The core tests the numbers themselves."""
 
 import pickle
 

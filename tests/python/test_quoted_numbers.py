@@ -1,4 +1,4 @@
-"""README and site quote what the tables of the benchmarks say (`docs/comparison.csv`, `docs/tracking.csv`)."""
+"""README and site quote the tables of the benchmarks (`docs/comparison.csv`, `docs/tracking.csv`)."""
 
 import csv
 import re

@@ -1,4 +1,4 @@
-"""A small count of the arms of `benches/random_chains.py`, and whether its check would notice."""
+"""A few arms of `benches/random_chains.py`, and a test that its check notices errors."""
 
 import sys
 from pathlib import Path

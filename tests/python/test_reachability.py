@@ -1,4 +1,4 @@
-"""Maps of what an arm reaches: against solves, their inverse, files, figures, and places for the base."""
+"""Reachability maps: against solves, their inverse, files, figures, and placements of the base."""
 
 from pathlib import Path
 

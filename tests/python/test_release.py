@@ -1,4 +1,4 @@
-"""What is checked before a release: the wheel, the source distribution, licences of what is built in."""
+"""Checks before a release: the wheel, the source distribution, licences of the linked crates."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""Reports: what their parts refuse, how numbers and text read, what files come out."""
+"""Reports: refused parts, formats of numbers and text, and the files written."""
 
 import csv
 import json

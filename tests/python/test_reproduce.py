@@ -1,4 +1,4 @@
-"""`beetle-ik reproduce`: exit codes, what is printed, and the papers themselves in their short mode."""
+"""`beetle-ik reproduce`: exit codes, output, and the papers themselves in their short mode."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""`WeightedPseudoInverse` and acceleration limits, as Python sees them. The core tests the numbers themselves."""
+"""`WeightedPseudoInverse` and acceleration limits from Python. The core tests the numbers themselves."""
 
 import pickle
 

@@ -1,4 +1,4 @@
-"""The site: messages that are explained are ours, recordings play, pictures and versions are there."""
+"""The site: explained messages exist in the library, recordings play, pictures and versions are present."""
 
 import functools
 import re

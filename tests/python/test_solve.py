@@ -1,4 +1,4 @@
-"""Inverse kinematics as a user asks for it."""
+"""Inverse kinematics from Python."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The interface that docs/stability.md calls stable is the one that was agreed on."""
+"""The stable interface of docs/stability.md is unchanged."""
 
 import importlib.util
 from pathlib import Path

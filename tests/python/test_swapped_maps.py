@@ -1,4 +1,4 @@
-"""Maps and stores under another robot, with parts of others, or cut: refused by name, never a wrong map."""
+"""Maps and stores of another robot, mixed or truncated: refused by name, never loaded as a wrong map."""
 
 import itertools
 import json

@@ -1,7 +1,7 @@
 """The rivals of the BAS paper in its setting: the circle of the iiwa under limits, to a millimetre in every step.
 
-Each is tuned over a small grid of populations (and, for PSO and GA, of weights and decays) for the fewest evaluations;
-each begins in every tick with the arm's configuration and uniform draws in the whole box that the limits leave.
+Each rival is tuned over a small grid of populations (and, for PSO and GA, of weights and decays) for the fewest
+evaluations; it begins every tick with the arm's configuration and uniform draws in the whole box of the limits.
 """
 
 from typing import Any

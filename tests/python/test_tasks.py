@@ -1,4 +1,4 @@
-"""What of a target matters, what the freedom is used for, and which solution is returned."""
+"""Tasks, goals in the remaining freedom, and the choice among solutions."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""Several tips: kinematics, targets of each, results, the command line, and what is refused."""
+"""Several tips: kinematics, targets of each, results, the command line, and refused arguments."""
 
 import pickle
 from collections.abc import Callable

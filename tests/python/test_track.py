@@ -1,4 +1,4 @@
-"""Tracking: the BAS paper's circle, and what the arrays of a result mean."""
+"""Tracking: the BAS paper's circle, and the arrays of a result."""
 
 import hashlib
 import subprocess

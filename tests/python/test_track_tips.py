@@ -1,4 +1,4 @@
-"""Tracking with several tips: a tray in both hands, targets by name, results, and what is refused."""
+"""Tracking with several tips: a tray in both hands, targets by name, results, and refused arguments."""
 
 import pickle
 from collections.abc import Callable

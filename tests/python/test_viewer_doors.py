@@ -1,4 +1,4 @@
-"""Who may use the page of a viewer, and what a page may send."""
+"""Access to the page of a viewer, and checks of its messages."""
 
 import http.client
 import time

@@ -1,4 +1,4 @@
-"""The viewer in a real browser: what a mouse does, what the page says, and what Python sees."""
+"""The viewer in a real browser: the mouse, the text of the page, and the state in Python."""
 
 import sys
 import time

@@ -1,4 +1,4 @@
-"""Recordings of the viewer: what a file holds, and that a browser plays it."""
+"""Recordings of the viewer: the contents of the file, and its playback in a browser."""
 
 import sys
 import time

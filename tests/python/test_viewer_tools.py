@@ -1,4 +1,4 @@
-"""What the page of the viewer makes: plans, programs, sizes, files of scenes, slices of maps."""
+"""Tools of the viewer's page: plans, programs, sizes, files of scenes, slices of maps."""
 
 import itertools
 import time

@@ -1,4 +1,4 @@
-"""Wang et al. 2019: the rule of each verdict gives another one when the data must change it."""
+"""Verdicts on Wang et al. 2019: each rule with data that must flip it."""
 
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module

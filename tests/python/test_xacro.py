@@ -1,4 +1,4 @@
-"""Xacro files from anyone: what real packages need is expanded, all that executes or reads more is refused."""
+"""Untrusted xacro files: features of real packages are expanded; execution and other reads are refused."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-//! A tracker in a real-time loop allocates nothing, whatever its options and targets.
+//! Real-time loops: a tracker allocates nothing, whatever its options and targets.
 
 #![allow(unsafe_code, reason = "an allocator is an unsafe trait")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
@@ -16,7 +16,7 @@ use ikcore::solver::Unattended;
 use ikcore::task::{Goal, Target};
 use ikcore::tracking::{Arrival, OneEuro, Session, TargetFilter, TrackOptions};
 
-/// The system's allocator, with a counter for each thread.
+/// System allocator with a counter for each thread.
 struct Counting;
 
 thread_local! {
@@ -42,7 +42,7 @@ static ALLOCATOR: Counting = Counting;
 
 const START: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
 
-/// A million ticks in a release build; fewer where debug builds are slow.
+/// Number of ticks: a million in a release build, fewer in slow debug builds.
 const TICKS: usize = if cfg!(debug_assertions) { 100_000 } else { 1_000_000 };
 
 #[test]

@@ -1,4 +1,4 @@
-//! Paths among obstacles: certified motions, what is said where there is none, and tasks that leave a part of the poses free.
+//! Paths among obstacles: certified motions, error messages, and tasks that leave a part of the poses free.
 
 use std::f64::consts::PI;
 
@@ -29,7 +29,7 @@ fn limits(robot: &Robot, jerk: f64) -> Limits {
     })
 }
 
-/// A bent path with the orientation of the tip at `q`, that goes `along` in a row of points.
+/// Bent path with the orientation of the tip at `q`, that goes `along` in a row of points.
 fn bent(robot: &Robot, q: &[f64], along: [f64; 3], rise: [f64; 3]) -> TipPath {
     const COUNT: usize = 30;
     let begin = robot.fk(q).unwrap();
@@ -132,7 +132,7 @@ fn plans_among_random_boxes_are_clear_at_every_instant() {
     assert!(blocked > 0);
 }
 
-/// A box that the elbow of the arm runs into where nothing is avoided.
+/// Box that the elbow of the arm hits unless obstacles are avoided.
 fn beside_elbow(robot: &Robot) -> Shape {
     let free = AlongPathOptions { limits: Some(limits(robot, f64::INFINITY)), ..AlongPathOptions::default() };
     let plan = planned(robot, &swing(robot), &free);
@@ -295,7 +295,7 @@ fn a_plan_keeps_its_margin_with_other_limits() {
     assert!(smallest(&robot, &[ball], &smooth) >= MARGIN);
 }
 
-/// Stops the search at its first report.
+/// Monitor that stops the search at its first report.
 struct Impatient;
 
 impl Monitor for Impatient {

@@ -1,4 +1,5 @@
-//! Paths that an arm can follow are followed: through singularities, at limits, on other branches; and errors claim no more than is proven.
+//! Reach along a path: an arm follows every path that it can, through singularities, at limits and on other branches; errors
+//! claim only what is proven.
 
 use std::f64::consts::PI;
 
@@ -19,7 +20,7 @@ fn through(poses: &[Pose]) -> TipPath {
     TipPath::through(&Waypoints::new(positions, Some(rotations)).unwrap()).unwrap()
 }
 
-/// The path of the tip on a line in joint space.
+/// Path of the tip along a line in joint space.
 fn line(robot: &Robot, first: &[f64], last: &[f64]) -> TipPath {
     let at = |i: usize| {
         let s = i as f64 / (POINTS - 1) as f64;
@@ -75,7 +76,7 @@ fn a_joint_that_stays_at_its_limit_keeps_it() {
     }
 }
 
-/// A line in joint space, half of the values round ones, within limits that leave little beside it.
+/// Random line in joint space, half of the values round, with limits that leave little room beside it.
 fn drawn(robot: &Robot, rng: &mut LazyRng) -> (Robot, TipPath) {
     const ROUND: [f64; 8] = [0.0, 0.0, PI / 2.0, -PI / 2.0, PI / 4.0, -PI / 4.0, PI / 3.0, PI];
     let mut draw = || -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Redundancy and timing together: how much faster than in uniform time, and that every limit is kept.
+//! Redundancy and timing together: faster than in uniform time, with every limit kept.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -26,7 +26,7 @@ fn pentagram(u: f64) -> [f64; 3] {
     [from[0] + fraction * (to[0] - from[0]), from[1] + fraction * (to[1] - from[1]), 0.0]
 }
 
-/// r = 1 + 0.35 cos 3t about (1, 1), scaled to a largest radius of 0.6.
+/// Trefoil r = 1 + 0.35 cos 3t about (1, 1), scaled to a largest radius of 0.6.
 fn trefoil(u: f64) -> [f64; 3] {
     let t = TAU * u;
     let r = 0.6 / 1.35 * (1.0 + 0.35 * (3.0 * t).cos());
@@ -50,7 +50,7 @@ fn plan(tip_path: &TipPath, options: AlongPathOptions) -> Plan {
     plan_along_path(&robot, tip_path, &AlongPathOptions { limits: Some(limits), ..options }, &mut Unattended).unwrap()
 }
 
-/// The configurations of a plan at so many instants.
+/// Configurations of a plan at `count` instants.
 fn instants(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
     let n = plan.trajectory.joints().len();
     (0..=count).map(move |i| {
@@ -60,7 +60,7 @@ fn instants(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
     })
 }
 
-/// How far the tip is from the path at the most (m), at many instants.
+/// Largest distance of the tip from the path (m), at many instants.
 fn farthest(robot: &Robot, tip_path: &TipPath, plan: &Plan) -> f64 {
     instants(plan, 20_000).map(|q| tip_path.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
 }
@@ -97,7 +97,7 @@ fn accuracy_is_that_of_the_whole_motion_and_kept() {
     }
 }
 
-/// Enough for a plan, though not for the fastest.
+/// Budget that suffices for a plan, but not for the fastest.
 fn few() -> Option<Stop> {
     Some(Stop { max_evaluations: 150, ..Stop::default() })
 }

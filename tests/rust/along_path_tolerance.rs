@@ -27,7 +27,7 @@ fn limits(robot: &Robot) -> Limits {
         .unwrap()
 }
 
-/// A row of poses from that of the tip at `q` on, that moves and turns by so much (m, rad) in all.
+/// Row of poses from the tip pose at `q` on, with this total displacement and rotation (m, rad).
 fn poses(robot: &Robot, q: &[f64], along: [f64; 3], turn: [f64; 3]) -> Vec<Pose> {
     const COUNT: usize = 30;
     let begin = robot.fk(q).unwrap();
@@ -77,7 +77,7 @@ fn instants(plan: &Plan) -> impl Iterator<Item = Vec<f64>> {
     })
 }
 
-/// By how much of its tolerance each component of `tip` is off `wanted` at the most: as `Task` defines them, computed anew.
+/// Largest error of a component of `tip` relative to its tolerance: as `Task` defines it, computed independently.
 fn off(task: &Task, wanted: &Pose, tip: &Pose) -> f64 {
     let apart = tip.translation.vector - wanted.translation.vector;
     let apart = if task.kind == TaskKind::Position { apart } else { wanted.rotation.inverse() * apart };
@@ -95,7 +95,7 @@ fn off(task: &Task, wanted: &Pose, tip: &Pose) -> f64 {
     counted.map(|((component, tolerance), _)| component.abs() / tolerance).fold(0.0, f64::max)
 }
 
-/// The largest [`off`] of a motion from the nearest of densely interpolated poses, which it has to pass in their order.
+/// Largest [`off`] of a motion from the nearest of densely interpolated poses, which it has to pass in order.
 fn farthest(robot: &Robot, poses: &[Pose], task: &Task, plan: &Plan) -> f64 {
     const BETWEEN: usize = 60;
     let between = |pair: &[Pose]| -> Vec<Pose> {

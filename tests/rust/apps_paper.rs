@@ -1,4 +1,4 @@
-//! Yuan et al. 2016 to the last iteration: seven motions of the KUKA KR 210, its Tables 3, 4 and 5.
+//! Experiments of Yuan et al. 2016 to the last iteration: seven motions of the KUKA KR 210, its Tables 3, 4 and 5.
 //!
 //! Printed values that contradict the rest of the paper are corrected here, with the evidence.
 
@@ -19,12 +19,12 @@ use ikcore::task::{Aims, Components, Criterion, Target, Tolerance};
 /// Joint angles before the first motion (degrees), Table 3.
 const START: [f64; 6] = [0.01, -78.33, 183.51, 0.16, -44.87, -179.93];
 
-/// A motion: its target's position (m), and what the paper found: iterations and R_1 (degrees).
+/// Motion: its target's position (m), and the results of the paper: iterations and R_1 (degrees).
 type Motion = ([f64; 3], usize, [f64; 6]);
 
-/// Table 2 has 1.9845 for the first x where Table 4 has 1.9485: with the former the counts are 451 and 235. Of R_1 of the
-/// first motion it prints theta_1 = -20.0995 and theta_6 = -147.3760, which its own R_2 (-20.10, -147.38), its positions
-/// and the symmetric motion 5-6 contradict.
+/// Motions of the paper, with two corrections. Table 2 has 1.9845 for the first x where Table 4 has 1.9485: with the former the
+/// counts are 451 and 235. For R_1 of the first motion it prints theta_1 = -20.0995 and theta_6 = -147.3760, which its own R_2
+/// (-20.10, -147.38), its positions and the symmetric motion 5-6 contradict.
 const MOTIONS: [Motion; 7] = [
     ([1.9485, 0.6342, 1.1262], 438, [-20.0955, -66.5326, 184.7585, 142.2740, 34.1622, -147.3756]),
     ([1.7850, 0.6342, 1.2252], 256, [-21.9957, -75.7315, 191.8096, 137.4221, 33.6108, -142.5760]),
@@ -35,7 +35,7 @@ const MOTIONS: [Motion; 7] = [
     ([1.9168, 0.0, 1.5539], 281, [0.0122, -78.3288, 183.5099, 0.1615, -44.8711, -179.9318]),
 ];
 
-/// R_1 in Table 4 (m); the last y is printed as 0.
+/// Positions R_1 in Table 4 (m); the last y is printed as 0.
 const POSITIONS: [[f64; 3]; 7] = [
     [1.94850, 0.63421, 1.12621],
     [1.78500, 0.63419, 1.22518],
@@ -46,10 +46,10 @@ const POSITIONS: [[f64; 3]; 7] = [
     [1.91680, 0.00002, 1.55390],
 ];
 
-/// The columns of the rotation in eq. (22).
+/// Columns of the rotation in eq. (22).
 const TOOL_DOWN: [[f64; 3]; 3] = [[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]];
 
-/// What the experiment asks for.
+/// Tolerance of the experiment.
 const TOLERANCE: Tolerance = Tolerance { position: 1e-4, rotation: 1e-4 };
 
 fn kuka() -> Robot {
@@ -74,8 +74,8 @@ fn found(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
     solve(robot, target, options, &mut Unattended).unwrap()
 }
 
-/// The motions' targets and starts (rad). Each starts from the last result rounded to 0.01 degrees, as the paper's robot
-/// did; the way back goes to the orientation of the very first configuration, for which eq. (22) does not hold.
+/// Targets and starts (rad) of the motions. Each starts from the last result rounded to 0.01 degrees, as the paper's robot did;
+/// the way back goes to the orientation of the very first configuration, for which eq. (22) does not hold.
 fn tasks(robot: &Robot) -> Vec<(Target, Vec<f64>)> {
     let mut start = radians(&START);
     let first = robot.tip(&start);
@@ -280,7 +280,7 @@ fn gradients_match_central_differences() {
     }
 }
 
-/// Every kind of target at `frame`, one of them with weights.
+/// Targets of every kind at `frame`, one of them with weights.
 fn kinds_of_target(frame: Frame) -> [(Target, Criterion); 5] {
     let components = Components { weights: [1.0, 0.0, 2.0, 0.5, 0.0, 1.0], tolerance: None };
     let weighted = Criterion { components: Some(components), ..Criterion::default() };

@@ -1,4 +1,4 @@
-//! Batches: the same bits however they are run, wrong rows, interruption and progress.
+//! Batches: bits independent of threads and groups, invalid rows, interruption and progress.
 
 use std::thread::{self, ThreadId};
 use std::time::Duration;
@@ -32,7 +32,7 @@ fn solved(robot: &Robot, targets: &[[f64; 16]], options: &BatchOptions<'_>) -> B
     solve_batch(robot, Targets::Poses(targets), options, &mut Unattended).unwrap()
 }
 
-/// Everything but the time taken.
+/// Results of an item without the time taken.
 type Facts = (Vec<u64>, Status, [u64; 2], [usize; 3]);
 
 fn facts(solution: &Solution) -> Facts {
@@ -121,7 +121,7 @@ fn threads_do_not_change_results_of_any_kind() {
     }
 }
 
-/// Wrong targets on both sides of where one group ends and the next begins, and one that takes its whole budget.
+/// Invalid targets on both sides of a boundary between groups, and one that takes its whole budget.
 #[test]
 fn groups_do_not_change_results() {
     let robot = robot("panda");
@@ -148,7 +148,7 @@ fn groups_do_not_change_results() {
     }
 }
 
-/// What targets share is counted once: together they take no longer than the batch.
+/// Time shared by targets is counted once: together they take no longer than the batch.
 #[test]
 fn times_of_targets_add_up() {
     let robot = robot("panda");
@@ -241,7 +241,7 @@ fn no_targets_give_no_solutions() {
     }
 }
 
-/// Six targets, of which 1 holds NaN, 3 is no rotation, and 4 has a start outside the limits.
+/// Batch of six targets: 1 holds NaN, 3 is no rotation, and 4 has a start outside the limits.
 fn with_wrong_rows(robot: &Robot) -> (Vec<[f64; 16]>, Vec<f64>) {
     let mut targets = poses(robot, 6);
     targets[1][3] = NAN;
@@ -318,7 +318,7 @@ fn what_all_rows_fraction_is_refused_even_where_rows_are_skipped() {
     assert_eq!(message("ignore".parse::<OnInvalid>()), says);
 }
 
-/// Stops after some looks, and notes where it was asked and what it was told.
+/// Monitor that stops after some polls, and records the threads and the progress reported.
 struct Observer {
     looks_left: usize,
     threads: Vec<ThreadId>,

@@ -1,4 +1,4 @@
-//! The best posture for a target, over all of its self-motion, against dense scans.
+//! Best posture for a target, over all of its self-motion, against dense scans.
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,8 @@ fn best(robot: &Robot, target: &Target, goal: Goal) -> ikcore::ik::Solution {
     solve(robot, target, &options, &mut Unattended).unwrap()
 }
 
-/// SM_3 = pi w of the tip, and SM, with the tip at (0.5, 0.5): links of `length`; scan by 4e6 points (independent, numpy).
+/// Optima of SM_3 = pi w of the tip, and SM, with the tip at (0.5, 0.5): links of `length`; scan by 4e6 points (independent,
+/// numpy).
 #[test]
 fn planar_optima_are_those_of_the_scan() {
     for (length, tip, overall) in [(0.3, 0.727905, 0.947446), (0.5, 1.720667, 2.488703), (1.0, 4.403020, 7.503629)] {
@@ -37,8 +38,8 @@ fn planar_optima_are_those_of_the_scan() {
     }
 }
 
-/// The largest index over the self-motion: from many solutions, along the null space both ways, in steps of 0.01 rad, to
-/// the limits or all the way round.
+/// Largest index over the self-motion: from many solutions, along the null space both ways, in steps of 0.01 rad, to the limits
+/// or once round.
 fn scan(robot: &Robot, target: &Target) -> f64 {
     let measure = Manipulability::of(robot, Motion::Pose);
     let options = AllOptions { limit: Some(200), separation: Some(0.3), ..AllOptions::default() };
@@ -78,7 +79,7 @@ fn null_vector(robot: &Robot, q: &DVector<f64>) -> DVector<f64> {
     values.eigenvectors.column(values.eigenvalues.imin()).into_owned()
 }
 
-/// One Newton step back to the target.
+/// Newton step back to the target.
 fn back_to(robot: &Robot, target: &Target, q: &DVector<f64>) -> DVector<f64> {
     let Target::Pose(target) = target else { panic!("a pose") };
     let tip = robot.tip(q.as_slice());
@@ -104,8 +105,8 @@ fn seven_joint_arms_find_the_best_of_the_scan() {
     }
 }
 
-/// Poses whose best posture is on a short arc between joint limits, which random starts seldom meet, or on a curve that they
-/// seldom meet: the index of a dense scan in closed form over the last joint (independent, numpy).
+/// Poses with their best posture on a short arc between joint limits, or on a curve, which random starts seldom meet: the index
+/// of a dense scan in closed form over the last joint (independent, numpy).
 #[test]
 fn the_best_is_found_where_limits_cut_it_off() {
     let panda = robot("panda");
@@ -122,7 +123,7 @@ fn the_best_is_found_where_limits_cut_it_off() {
     }
 }
 
-/// No curves: single solutions, of which all are known.
+/// Arms with isolated solutions, all of which are known.
 #[test]
 fn six_joint_arms_find_the_best_of_all_solutions() {
     for name in ["ur5e", "kr210"] {
@@ -157,7 +158,7 @@ fn a_planar_arm_of_four_links_finds_the_best_of_a_grid() {
     }
 }
 
-/// Goals beside manipulability, on arms whose joints turn without end too: never worse than where any solution leads.
+/// Goals beside manipulability, also on arms with continuous joints: never worse than a descent from any solution.
 #[test]
 fn the_best_is_at_least_as_good_as_any() {
     for name in ["iiwa14", "gen3"] {

@@ -1,4 +1,4 @@
-//! Which solution: the nearest, all of them, the best by a goal; and what is said of targets that have none.
+//! Choice of a solution: the nearest, all of them, the best by a goal; and messages for targets without one.
 
 use std::f64::consts::{PI, TAU};
 
@@ -87,7 +87,7 @@ fn nearest_is_a_minimum_along_the_self_motion() {
     }
 }
 
-/// The unit vector along which joints move while the tip stays.
+/// Unit vector of the null space: joint motion that leaves the tip in place.
 fn null_space(robot: &Robot, q: &[f64]) -> Vec<f64> {
     let jacobian = robot.jacobian(q).unwrap();
     let square = jacobian.transpose() * &jacobian;

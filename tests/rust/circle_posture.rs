@@ -1,4 +1,4 @@
-//! Postures on circles: the published swarm and our own search, against the optima of a dense scan.
+//! Postures on circles: the published swarm and differential evolution, against the optima of a dense scan.
 
 use std::f64::consts::PI;
 
@@ -21,7 +21,7 @@ fn search(arm: &Robot, options: PostureOptions) -> Posture {
     best_posture(arm, &E, &options, &mut Unattended).unwrap()
 }
 
-/// SM_3 or SM.
+/// Index SM_3 or SM of a posture.
 fn index(posture: &Posture, measure: Measure) -> f64 {
     if measure == Measure::Tip { PI * posture.index } else { posture.index }
 }
@@ -48,7 +48,7 @@ fn the_default_search_finds_the_optima_of_both_regions() {
     }
 }
 
-/// Gaps to the optimum of the published swarm for many seeds.
+/// Gaps between the published swarm and the optimum, for many seeds.
 fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Rectangle>, measure: Measure, optimum: f64) -> Vec<f64> {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let gap = |seed| {

@@ -1,4 +1,4 @@
-//! Solutions that keep clear of obstacles and of the robot itself.
+//! Solutions clear of obstacles and of the robot itself.
 
 use ikcore::batch::{BatchOptions, Targets, solve_batch};
 use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, solve, solve_all};
@@ -16,7 +16,7 @@ fn arm(name: &str) -> Robot {
     Robot::named(name).unwrap().with_capsules_along_links(0.06).unwrap()
 }
 
-/// Boxes in front of an arm, and the pose that a random configuration has.
+/// Boxes in front of an arm, and the pose of a random configuration.
 fn cluttered(robot: &Robot, rng: &mut LazyRng) -> (Vec<Shape>, Target) {
     let boxes = (0..9).map(|_| {
         let (angle, radius) = (rng.uniform_in(-3.0, 3.0), rng.uniform_in(0.3, 0.7));
@@ -32,7 +32,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// A pose as a matrix, row by row.
+/// Pose as a matrix, row by row.
 fn rows(pose: &Pose) -> [f64; 16] {
     let matrix = pose.to_homogeneous();
     std::array::from_fn(|i| matrix[(i / 4, i % 4)])

@@ -1,4 +1,4 @@
-//! All solutions by closed form: none missing, each verified, and what is said of singular and unreachable poses.
+//! Closed-form solutions: none missing, each verified, with messages for singular and unreachable poses.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
@@ -14,7 +14,7 @@ use ikcore::task::{Target, Task, TaskKind};
 
 const Q: f64 = FRAC_PI_2;
 
-/// An arm without limits from rows (a, alpha, d).
+/// Arm without limits from rows (a, alpha, d).
 pub fn arm<const N: usize>(name: &str, rows: [[f64; 3]; N]) -> Robot {
     let column = |k: usize| rows.iter().map(|row| row[k]).collect();
     Robot::from_dh(name, &DhTable::new(Dh::Standard, column(0), column(1), column(2))).unwrap()
@@ -26,7 +26,7 @@ pub fn puma560() -> Robot {
     arm("Puma 560", [link[0], link[1], link[2], wrist[0], wrist[1], wrist[2]])
 }
 
-/// A UR10 whose axes are off by some `off` (rad).
+/// UR10 with axes that deviate by up to `off` (rad).
 pub fn calibrated_ur10(off: f64) -> Robot {
     let upper = [[0.0, Q, 0.1273], [-0.612, off, 0.0], [-0.5723, -0.7 * off, 0.0]];
     let wrist = [[0.0, Q, 0.163941], [0.0, -Q + 0.3 * off, 0.1157], [0.0, 0.0, 0.0922]];
@@ -39,7 +39,7 @@ pub fn jaco2() -> Robot {
     arm("JACO 2", [arm_rows[0], arm_rows[1], arm_rows[2], wrist[0], wrist[1], wrist[2]])
 }
 
-/// A Panda with its last joint held: its first three axes meet.
+/// Panda with its last joint fixed: its first three axes intersect.
 fn panda_without_7() -> Robot {
     let shoulder = [[0.0, -Q, 0.333], [0.0, Q, 0.0], [0.0825, Q, 0.316]];
     let rest = [[-0.0825, -Q, 0.0], [0.0, Q, 0.384], [0.088, Q, 0.0]];
@@ -299,7 +299,7 @@ fn base_and_tool_far_away_change_nothing() {
     }
 }
 
-/// A UR10 whose joint 3 is geared by `scale` and starts at `offset`; with `twice`, it drives another axis too.
+/// UR10 with joint 3 geared by `scale` from `offset`; with `twice`, it drives another axis too.
 pub fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
     let links = [[0.0, Q, 0.1273], [-0.612, 0.0, 0.0], [-0.5723, 0.0, 0.0], [0.0, Q, 0.1639], [0.0, -Q, 0.1157]];
     let mut chain = ChainBuilder::new("geared", "base");

@@ -1,5 +1,5 @@
-//! The contract that every algorithm keeps, alone and from many starts: one table of solvers and problems, and one check
-//! of each promise over all of it.
+//! Contract of every algorithm, alone and from many starts: one table of solvers and problems, and one check of each promise
+//! over all of it.
 
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -15,11 +15,11 @@ use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, BestPoint, DerivativeFree, Evaluator, Monitor, Status, Stop, Unattended};
 use ikcore::task::{Aims, Target, TipCriterion, Tolerance};
 
-/// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
+/// Evaluations between two polls of monitor and clock, plus the largest group handed in at once.
 const POLL: usize = 256 + 16;
 
-/// r = s (x - 1/2, 2 (y - x^2), z - 0.3, floor): a bent valley, solved where r'r <= 1e-12 and thus never above a floor.
-/// Its slope s is about that of the tip of a small arm (m per rad), for which the default antennae are long enough.
+/// Bent valley r = s (x - 1/2, 2 (y - x^2), z - 0.3, floor), solved where r'r <= 1e-12 and therefore never above a floor. Its
+/// slope s is about that of the tip of a small arm (m per rad), for which the default antennae are long enough.
 #[derive(Clone, Copy)]
 struct Valley {
     floor: f64,
@@ -76,10 +76,10 @@ impl Gradient for Valley {
     }
 }
 
-/// Says of a point, by its number, that its value is not finite.
+/// Rule that makes the value of a point, by its number, not finite.
 type Poison = fn(&[f64], usize) -> Option<f64>;
 
-/// Passes everything on to `inner`, writes down what it saw, and spoils what the poison names.
+/// Objective that forwards to `inner`, records every point, and replaces values by the poison.
 struct Probe {
     inner: Box<dyn Differentiable>,
     poison: Poison,
@@ -150,7 +150,7 @@ static ARM: LazyLock<Robot> = LazyLock::new(|| robot("iiwa14"));
 static TASK: LazyLock<TipCriterion> = LazyLock::new(|| Tolerance::default().into());
 static POSE: LazyLock<Target> = LazyLock::new(|| pose_at(&ARM, &[0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1]));
 
-/// What is minimised, where from, and under which rules.
+/// Objective, start and rules of a run.
 struct Case {
     name: &'static str,
     problem: fn() -> Box<dyn Differentiable>,
@@ -177,12 +177,12 @@ fn valley() -> Case {
     }
 }
 
-/// The valley as two tasks of six rows.
+/// Valley as two tasks of six rows.
 fn two_blocks() -> Case {
     Case { name: "valley in two blocks", problem: || Box::new(Valley { floor: 0.0, blocks: 2 }), ..valley() }
 }
 
-/// A valley whose bottom does not count as solved.
+/// Valley whose bottom does not count as solved.
 fn bottomless() -> Case {
     Case { name: "valley above a floor", problem: || Box::new(Valley { floor: 1.0, blocks: 1 }), ..valley() }
 }
@@ -198,7 +198,7 @@ fn arm() -> Case {
     }
 }
 
-/// The same where whole turns do not count: whoever declares so may search outside the limits.
+/// Arm with whole turns equivalent: solvers with a wrapped domain may search outside the limits.
 fn turning_arm() -> Case {
     Case {
         name: "pose of iiwa14 up to whole turns",
@@ -207,7 +207,7 @@ fn turning_arm() -> Case {
     }
 }
 
-/// Every algorithm, alone and from many starts.
+/// All algorithms, alone and from many starts.
 fn solvers() -> Vec<AnySolver> {
     let all = Algorithm::all().into_iter();
     all.flat_map(|algorithm| {
@@ -216,13 +216,13 @@ fn solvers() -> Vec<AnySolver> {
     .collect()
 }
 
-/// Whether it can be trusted to solve the valley within the default budget. A bee moves along one coordinate at a time and
-/// crosses a bent valley slowly; mutations shrink on a schedule, wherever the population has got to.
+/// Whether the solver solves the valley within the default budget. A bee moves along one coordinate at a time and crosses a
+/// bent valley slowly; mutations shrink on a schedule, regardless of progress.
 fn solves_the_valley(solver: &AnySolver) -> bool {
     !matches!(solver.algorithm(), Algorithm::DerivativeFree(DerivativeFree::BeeColony(_) | DerivativeFree::Genetic(_)))
 }
 
-/// The valley is solved or, by those that cannot promise it, nearly.
+/// Checks that the valley is solved or, by solvers without a guarantee, nearly.
 fn check_valley(solver: &AnySolver, run: &Run) {
     if solves_the_valley(solver) {
         assert_eq!(run.status, Status::Solved, "{solver:?}: {:?}", run.best);
@@ -259,7 +259,7 @@ impl Case {
         self.run_watched(solver, &mut Unattended)
     }
 
-    /// Runs the solver and checks what must hold whatever the case.
+    /// Runs the solver and checks the promises that hold in every case.
     fn run_watched(&self, solver: &AnySolver, monitor: &mut dyn Monitor) -> Run {
         let mut probe = Probe { inner: (self.problem)(), poison: self.poison, seen: vec![], values: vec![] };
         let mut rng = rng::stream(self.seed, 0);
@@ -287,7 +287,7 @@ impl Run {
         }
     }
 
-    /// The best is the lowest finite value seen in the box, at the point where it was seen; without any, the start.
+    /// Checks that the best is the lowest finite value seen in the box, at the point where it was seen; without any, the start.
     fn check_best(&self, case: &Case, what: &str) {
         let BestPoint { x, value, solved } = &self.best;
         assert!(case.bounds.contains(x), "{what}: kept {x:?}, which is outside the box");
@@ -445,7 +445,7 @@ fn a_box_without_walls_is_searched_with_finite_points() {
     }
 }
 
-/// Lets the run go on `left` more times.
+/// Monitor that lets the run continue `left` more times.
 struct Countdown {
     left: usize,
     asked_in_vain: usize,

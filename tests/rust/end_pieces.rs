@@ -13,7 +13,7 @@ use ikcore::solver::{Monitor, Status, Stop, Unattended};
 use ikcore::task::{Target, Task, TaskKind};
 
 const READY: [f64; 7] = [0.0, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8];
-/// The margin where none is given (m).
+/// Default margin (m).
 const MARGIN: f64 = 1e-3;
 
 fn panda() -> Robot {
@@ -42,13 +42,13 @@ fn at(plan: &Plan, t: f64) -> [Vec<f64>; 3] {
     [q, qd, qdd]
 }
 
-/// The times at which the arm is at rest.
+/// Times at which the arm is at rest.
 fn rests(plan: &Plan) -> Vec<f64> {
     let still = |t: &f64| at(plan, *t)[1].iter().all(|speed| speed.abs() < 1e-9);
     plan.trajectory.knots().iter().copied().filter(still).collect()
 }
 
-/// Checks that the tip keeps to a line of this displacement, and to its orientation.
+/// Checks that the tip moves along a line of this displacement, with constant orientation.
 fn assert_straight(robot: &Robot, plan: &Plan, [from, to]: [f64; 2], displacement: [f64; 3]) {
     let first = robot.tip(&at(plan, from)[0]);
     for i in 0..=300 {

@@ -1,4 +1,4 @@
-//! Several ends of a motion, and tasks that leave a part of them free.
+//! Alternative ends of a motion, and tasks that leave a part of them free.
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::{Frame, Pose};

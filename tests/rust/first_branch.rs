@@ -1,4 +1,4 @@
-//! `solve` by closed form: which solution it takes, that it is one, and what happens where there is none.
+//! Closed-form `solve`: the choice of a solution, its accuracy, and the result without one.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -30,7 +30,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// Within the limits, and within `most` (m, and difference of matrix entries) of the pose.
+/// Checks that a solution is within the limits, and within `most` (m, and difference of matrix entries) of the pose.
 #[track_caller]
 fn assert_reaches(robot: &Robot, target: &Target, solution: &Solution, most: f64) {
     let Target::Pose(wanted) = target else { panic!("a pose") };
@@ -234,7 +234,7 @@ fn poses_out_of_reach_are_proven_so_at_once() {
     assert!(solution.evaluations < 1000 && ur.check("q", &solution.q).is_ok());
 }
 
-/// The robot with each joint held to a random part of its range, a tenth of it at least.
+/// Robot with each joint restricted to a random part of its range, at least a tenth.
 fn narrowed(full: &Robot, rng: &mut LazyRng) -> Robot {
     let parts: Vec<(f64, f64)> = full
         .joints()

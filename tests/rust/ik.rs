@@ -66,7 +66,7 @@ fn positions_are_reached_by_every_arm() {
     }
 }
 
-/// The solution lies inside the limits, and its errors are those of plain forward kinematics.
+/// Checks that the solution is inside the limits, and its errors are those of plain forward kinematics.
 fn assert_honest(robot: &Robot, target: &Target, solution: &Solution) {
     for (value, joint) in solution.q.iter().zip(robot.joints()) {
         assert!(joint.lower <= *value && *value <= joint.upper, "{}: {value}", joint.name);

@@ -1,5 +1,5 @@
-//! A control loop whose target jumps: all joints go there in proportion, brake in time, and turn round no more than the way
-//! asks for.
+//! Control loop with a jumping target: all joints move in proportion, brake in time, and reverse no more than the path
+//! requires.
 
 use crate::common::{pose_at, robot};
 use ikcore::limits::{Field, Limits, Profile};
@@ -35,7 +35,7 @@ fn follow(acceleration: Option<f64>, offset: [f64; 3], velocity: [f64; 3], ticks
     (0..ticks).map(&mut step).collect()
 }
 
-/// The largest change of a joint velocity from one tick to the next.
+/// Largest change of a joint velocity from one tick to the next.
 fn largest_change(record: &[(Vec<f64>, Step)]) -> f64 {
     let changes = record.windows(2).flat_map(|two| two[0].0.iter().zip(&two[1].0).map(|(a, b)| (a - b).abs()));
     changes.fold(0.0, f64::max)

@@ -10,8 +10,8 @@ use ikcore::rng;
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::task::{Aims, Target, Tolerance};
 
-/// Forty chains of 1 to 12 joints, up to 16 of them moving with their mimics, and five of 30 to 50, up to 64 of them moving; each with
-/// a configuration up to a turn and a half from zero.
+/// Forty chains of 1 to 12 joints, up to 16 of them moving with their mimics, and five of 30 to 50, up to 64 of them moving;
+/// each with a configuration up to a turn and a half from zero.
 fn chains() -> impl Iterator<Item = (RandomChain, Vec<f64>)> {
     let short = (0..40).map(|seed| (seed, 1 + seed as usize % 12, 16));
     short.chain((0..5).map(|seed| (seed, 30 + 5 * seed as usize, 64))).map(|(seed, joints, moving)| {
@@ -52,7 +52,7 @@ fn every_link_is_the_product_up_to_it() {
     }
 }
 
-/// Central differences of the tip: of its position, and of its rotation as seen from the world, R' R^T = [w]x.
+/// Central differences of the tip: of its position, and of its rotation in base coordinates, R' R^T = [w]x.
 fn differences(robot: &Robot, q: &[f64]) -> Matrix6xX<f64> {
     let h = 1e-6;
     let mut jacobian = Matrix6xX::zeros(q.len());
@@ -121,7 +121,7 @@ fn any_number_of_points_scores_as_one_by_one() {
     }
 }
 
-/// `joints` unit links in the x-y plane.
+/// Chain of `joints` unit links in the x-y plane.
 fn planar_builder(joints: usize) -> ChainBuilder {
     let mut chain = ChainBuilder::new("snake", "base");
     for j in 0..joints {

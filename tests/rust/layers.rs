@@ -1,5 +1,5 @@
-//! The rooms of the core: a file uses its own module and lower ones, files do not import one another in circles, and
-//! a name is given once.
+//! Layers of the core: a file uses its own module and lower ones, files do not import one another in circles, and a name is
+//! declared once.
 
 mod imports;
 
@@ -10,7 +10,8 @@ use imports::{SourceFile, Sources, code_of, paths};
 
 const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
 
-/// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
+/// Modules that each module may use, besides itself and those of [`FOUNDATION`]. Solvers do not depend on robots, nor robots on
+/// solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("interrupt", &[]),
@@ -149,7 +150,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Progress of a solver, declared by each beside itself.
+/// Name of a solver's progress type, which every solver declares.
 const STATE: &str = "State";
 
 fn core() -> Sources {
@@ -240,7 +241,7 @@ fn circles_are_found_through_re_exports() {
     assert_eq!(sources("use super::C;", parent_calls_a), [["room/a.rs", "room/mod.rs"]]);
 }
 
-/// The lines of `file` that break its rule, each as `file:line: rule`.
+/// Lines of `file` that violate its rule, each as `file:line: rule`.
 fn faults_of(file: &SourceFile) -> Vec<String> {
     let place = file.path.display();
     let module = file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "");

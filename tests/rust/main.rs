@@ -1,4 +1,4 @@
-//! The core through its public face. One binary holds all files: what they share is compiled and linked once.
+//! Tests of the core through its public interface. One binary holds all files, so that shared code is compiled and linked once.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on should say so")]
 

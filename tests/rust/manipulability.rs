@@ -12,7 +12,7 @@ use ikcore::robot::Robot;
 
 const MOTIONS: [Motion; 3] = [Motion::Pose, Motion::Position, Motion::Rotation];
 
-/// Thirty chains of 1 to 10 joints with sliding and mimic joints, and four built-in arms; each with a configuration.
+/// Thirty chains of 1 to 10 joints with prismatic and mimic joints, and four built-in arms; each with a configuration.
 fn arms() -> impl Iterator<Item = (Robot, Vec<f64>)> {
     let random = (0..30).map(|seed| RandomChain::new(seed, 1 + seed as usize % 10, 14).robot);
     let named = ["iiwa14", "panda", "ur5e", "hydraulic3"].map(robot);

@@ -1,4 +1,4 @@
-//! Maps of what an arm reaches: against solves of each pose, and how they may be asked for.
+//! Reachability maps: against solves of each pose, and with every kind of request.
 
 use crate::common::{message, robot};
 use ikcore::batch::map_chunks;
@@ -19,7 +19,7 @@ fn mapped(robot: &Robot, grid: &MapGrid, options: &MapOptions) -> Vec<MapChunk> 
     map_chunks(robot, grid, &all_chunks(grid), options, Some(2), &mut Unattended).unwrap()
 }
 
-/// For each voxel and orientation whether the map has it, and the pose.
+/// Pairs of a pose and whether the map contains it, for each voxel and orientation.
 fn poses<'a>(grid: &'a MapGrid, chunks: &'a [MapChunk]) -> impl Iterator<Item = (bool, Target)> + 'a {
     chunks.iter().enumerate().flat_map(move |(number, chunk)| {
         let [xs, ys, zs] = grid.voxels().chunk(number).unwrap();
@@ -37,7 +37,7 @@ fn poses<'a>(grid: &'a MapGrid, chunks: &'a [MapChunk]) -> impl Iterator<Item = 
     })
 }
 
-/// Compares a map with solves of each pose; returns how many are reached, missed, and reached by the map alone.
+/// Compares a map with solves of each pose. Returns the number of poses that are reached, missed, and reached by the map alone.
 fn compared(robot: &Robot, layout: &MapLayout, options: &MapOptions) -> [usize; 3] {
     let grid = MapGrid::new(robot, layout, options).unwrap();
     let chunks = mapped(robot, &grid, options);

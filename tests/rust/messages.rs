@@ -1,4 +1,4 @@
-//! Wrong input of every kind, and the exact sentence that answers it. (URDF files, curves, samples and DH tables have
+//! Error messages: wrong input of every kind, and the exact sentence for it. (URDF files, curves, samples and DH tables have
 //! theirs in `urdf.rs`, `path.rs` and `robots.rs`.)
 
 use std::f64::consts::PI;
@@ -19,18 +19,18 @@ use ikcore::tracking::{Session, TickRule, TrackOptions, track};
 const NAN: f64 = f64::NAN;
 const INFINITE: f64 = f64::INFINITY;
 
-/// What `solve` says to these options, for a target that is in order.
+/// Message of `solve` for these options and a valid target.
 #[track_caller]
 fn solve_says(options: SolveOptions) -> String {
     message(solve(&robot("iiwa14"), &Target::Position([0.4, 0.3, 1.0]), &options, &mut Unattended))
 }
 
-/// A short path in reach of the planar arm, at ticks of 0.2 s.
+/// Short path within reach of the planar arm, with ticks of 0.2 s.
 fn reference() -> Reference {
     Path::new(Circle::new(Plane::xy([4.0, 1.0, 0.0]).unwrap(), 1.0, 6.0).unwrap()).sample(0.2).unwrap()
 }
 
-/// What `track` says to these options and this start on the planar arm.
+/// Message of `track` for these options and this start on the planar arm.
 #[track_caller]
 fn track_says(start: &[f64], options: TrackOptions) -> String {
     message(track(&robot("planar5"), &reference(), Some(start), &options, &mut Unattended))
@@ -106,7 +106,7 @@ fn unknown_links_are_named_with_the_known_ones() {
     assert_eq!(message(Robot::from_urdf(urdf, None, Some("j"))), says);
 }
 
-/// One joint about z in the given range.
+/// Single joint about z in the given range.
 fn hinge(joint: Joint) -> ikcore::Result<Robot> {
     let mut chain = ChainBuilder::new("door", "frame");
     let index = chain.add_joint(joint);

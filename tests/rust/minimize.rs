@@ -1,11 +1,11 @@
-//! Any function in a box: found, recorded, and refused.
+//! Minimisation in a box: results, history, and errors.
 
 use crate::common::{StopAt, bits, message};
 use ikcore::minimize::{MinimizeOptions, Minimum, minimize};
 use ikcore::objective::{Objective, Score};
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Status, Stop, Unattended};
 
-/// Least, and zero, at 0.3 in every coordinate; NaN where the first is negative.
+/// Function with a minimum of zero at 0.3 in every coordinate; NaN for a negative first coordinate.
 struct Bowl;
 
 impl Objective for Bowl {
@@ -19,7 +19,7 @@ impl Objective for Bowl {
     }
 }
 
-/// Differential evolution from a start.
+/// Options of differential evolution from a start.
 fn options(start: Option<Vec<f64>>, stop: Stop) -> MinimizeOptions {
     let solver = DerivativeFree::DifferentialEvolution(DifferentialEvolution::default());
     MinimizeOptions { solver: AnySolver::Single(solver), start, stop, seed: 4 }

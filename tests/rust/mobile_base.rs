@@ -1,5 +1,5 @@
-//! Robots on a base that moves on a plane, or freely with a rotation vector: kinematics against nalgebra, certified motions, solving,
-//! planning, several tips, and what is refused.
+//! Robots on a planar base, or on a floating base with a rotation vector: kinematics against nalgebra, certified motions,
+//! solving, planning, several tips, and errors.
 
 use std::f64::consts::PI;
 
@@ -43,7 +43,7 @@ fn floating(name: &str) -> Robot {
     arm(name).with_mobile_base(MobileBase::Floating, &limits(&FLOATING)).unwrap()
 }
 
-/// Where the base is at q, by nalgebra.
+/// Pose of the base at q, by nalgebra.
 fn base_at(q: &[f64], joints: usize) -> Pose {
     let (slide, turn) = match joints {
         3 => (Vector3::new(q[0], q[1], 0.0), Vector3::new(0.0, 0.0, q[2])),
@@ -52,7 +52,7 @@ fn base_at(q: &[f64], joints: usize) -> Pose {
     Pose::from_parts(slide.into(), Rotation3::from_scaled_axis(turn))
 }
 
-/// Random configurations; some at rotation vectors of no length, and near the longest.
+/// Random configurations; some at rotation vectors of zero length, and near the longest.
 fn samples(robot: &Robot) -> Vec<Vec<f64>> {
     let mut samples = configurations(robot, 40);
     for (q, length) in samples.iter_mut().take(8).zip([0.0, 1e-9, 1e-5, 1e-3, 9.9e-3, 1.01e-2, PI, 5.4]) {

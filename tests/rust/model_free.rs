@@ -1,4 +1,4 @@
-//! The secant controller without a model, and what holds of every controller whatever the plant does.
+//! Model-free tracking: the secant controller, and promises of every controller on any plant.
 
 use std::collections::VecDeque;
 
@@ -16,7 +16,7 @@ use ikcore::tracking::{
 
 const SEEDS: u64 = 20;
 
-/// On the circle of Cheng et al. (2020).
+/// Configuration on the circle of Cheng et al. (2020).
 const ON_CIRCLE: [f64; 7] = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0];
 
 fn circle() -> Reference {
@@ -28,7 +28,7 @@ fn circle_at(dt: f64) -> Reference {
     Path::new(Circle::new(plane, 0.2, 30.0).unwrap()).sample(dt).unwrap()
 }
 
-/// The limits of that paper: 2 + 0.004 sin t (rad/s).
+/// Limits of that paper: 2 + 0.004 sin t (rad/s).
 fn circle_limits(robot: &Robot) -> Limits {
     let limit = Sinusoid { mean: 2.0, amplitude: 0.004, angular_frequency: 1.0, phase: 0.0 };
     Limits::of(robot).replace(Field::Velocity, vec![Profile::Sinusoid(limit)]).unwrap()
@@ -42,22 +42,22 @@ fn options(seed: u64) -> ModelFreeOptions {
     ModelFreeOptions { limits: Some(circle_limits(&robot("iiwa14"))), seed, ..ModelFreeOptions::default() }
 }
 
-/// The arm with links wrong by up to 2 cm and joints by up to 2 degrees.
+/// Arm with link errors of up to 2 cm and joint errors of up to 2 degrees.
 fn wrong_arm(seed: u64) -> Robot {
     robot("iiwa14").with_errors(0.02, 2_f64.to_radians(), &mut rng::stream(seed, 9)).unwrap()
 }
 
-/// The arm as designed, and a sensor without noise.
+/// Nominal arm with a noiseless sensor.
 fn exact_plant() -> KinematicPlant {
     KinematicPlant::new(robot("iiwa14"), 0.0, 0).unwrap()
 }
 
-/// Root mean square of what `errors` gives for rows 20 to 149.
+/// Root mean square of `errors` over rows 20 to 149.
 fn rms(errors: impl Fn(usize) -> f64) -> f64 {
     ((20..150).map(|i| errors(i).powi(2)).sum::<f64>() / 130.0).sqrt()
 }
 
-/// How far the tip of the arm that was really there is from its target in row `i`.
+/// Distance of the true arm's tip from its target in row `i`.
 fn true_error(arm: &Robot, record: &ModelFreeRecord, i: usize) -> f64 {
     distance(arm.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i])
 }
@@ -122,7 +122,7 @@ fn one_measurement_per_step_withstands_noise() {
     assert!(largest[SEEDS as usize / 2] <= 1e-3, "{largest:?}");
 }
 
-/// The 90th percentile of rows 20 to 149 by the arm that was really there.
+/// 90th percentile of the true error in rows 20 to 149.
 fn ninetieth(arm: &Robot, record: &ModelFreeRecord) -> f64 {
     let mut errors: Vec<f64> = (20..150).map(|i| true_error(arm, record, i)).collect();
     errors.sort_by(f64::total_cmp);
@@ -144,7 +144,7 @@ fn outliers_of_the_sensor_are_withstood() {
     }
 }
 
-/// A plant whose sensor answers so many measurements late.
+/// Plant whose sensor is `late` measurements late.
 fn late_plant(late: usize) -> impl Plant {
     let arm = robot("iiwa14");
     let mut on_the_way = VecDeque::from(vec![ON_CIRCLE.to_vec(); late]);
@@ -185,7 +185,7 @@ fn a_step_with_a_late_sensor_needs_little_more_than_its_delay() {
     assert!(record.track.evaluations() <= 4 * steps, "{} for {steps} steps", record.track.evaluations());
 }
 
-/// Runs that fail without the right delay.
+/// Checks that runs fail without the right delay.
 fn run_on(plant: &mut dyn Plant, seed: u64, controller: Controller, dt: f64) -> ModelFreeRecord {
     let mut rng = rng::stream(seed, 3);
     let start = ON_CIRCLE.map(|q| q + rng.uniform_in(-0.05, 0.05));
@@ -216,7 +216,7 @@ fn an_undeclared_delay_is_named() {
     assert!(record.message().contains(advice), "{}", record.message());
 }
 
-/// A servo that covers only a part of the way to each command, and a sensor with noise.
+/// Plant with a servo that covers only a part of the way to each command, and a noisy sensor.
 fn slow_plant(pole: f64, noise: f64, seed: u64) -> impl Plant {
     let (arm, mut rng) = (robot("iiwa14"), rng::stream(seed, 5));
     let mut at: Option<Vec<f64>> = None;
@@ -261,7 +261,7 @@ fn tracking_starts_from_the_singular_home_position() {
     }
 }
 
-/// Hands everything on, and holds every command against the limits by itself.
+/// Plant that forwards to another, and checks every command against the limits.
 struct Guarded {
     arm: Robot,
     limits: Limits,
@@ -326,7 +326,7 @@ fn a_limit_that_closes_in_is_followed_and_told() {
     assert!(record.message().contains("beyond its limits at t = "), "{}", record.message());
 }
 
-/// Answers so many times, then fails in one way or another.
+/// Plant that fails in one of several ways after some answers.
 struct Failing {
     left: usize,
     failure: fn() -> Result<TipPose, Fault>,
@@ -392,7 +392,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
     }
 }
 
-/// The circle, the tip turned as at the start.
+/// Circle with the orientation of the tip at the start.
 fn turned_circle(arm: &Robot) -> Reference {
     let circle = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap());
     let rotation = *arm.fk(&ON_CIRCLE).unwrap().rotation.matrix();

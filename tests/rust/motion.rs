@@ -1,4 +1,4 @@
-//! Trackers under acceleration and jerk limits: what they promise about limits, noise, streams and stops.
+//! Tracking under acceleration and jerk limits: limits kept, noise, streams and stops.
 
 use crate::common::robot;
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
@@ -12,14 +12,14 @@ use ikcore::tracking::{Arrival, LowPass, OneEuro, Session, TargetFilter, TrackOp
 
 const START: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
 
-/// The commands of a session, for finite differences.
+/// Commands of a session, for finite differences.
 struct Commands {
     q: Vec<Vec<f64>>,
     dt: f64,
 }
 
 impl Commands {
-    /// The largest velocity, acceleration and jerk.
+    /// Largest velocity, acceleration and jerk.
     fn largest(&self) -> [f64; 3] {
         let difference = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
             rows.windows(2).map(|two| two[1].iter().zip(&two[0]).map(|(b, a)| (b - a) / self.dt).collect()).collect()
@@ -45,7 +45,7 @@ fn limits(arm: &Robot, fields: &[(Field, f64)]) -> Limits {
     })
 }
 
-/// 1.5 rad/s, 5 rad/s^2 and, if it is finite, this jerk.
+/// Limits of 1.5 rad/s, 5 rad/s^2 and, if it is finite, this jerk.
 fn moderate(arm: &Robot, jerk: f64) -> Limits {
     limits(arm, &[(Field::Velocity, 1.5), (Field::Acceleration, 5.0), (Field::Jerk, jerk)])
 }

@@ -6,7 +6,7 @@ use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
 use ikcore::shape::{Geometry, Shape};
 
-/// A robot whose only capsule is a segment that stands still relative to its last link.
+/// Robot whose only capsule is a segment at rest relative to its last link.
 fn rod(a: [f64; 3], b: [f64; 3], radius: f64) -> Robot {
     let arm = Robot::named("iiwa14").unwrap();
     let link = arm.link_names().last().unwrap().to_owned();
@@ -30,7 +30,7 @@ fn rotation(rng: &mut LazyRng) -> Rotation3<f64> {
     Rotation3::new(Vector3::from(point(rng, 2.0)))
 }
 
-/// A shape of each kind that touches everything.
+/// Random shape of this kind that may touch everything.
 fn random_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
     let (center, turn) = (point(rng, 0.5), *rotation(rng).matrix());
     let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.05, 0.6));
@@ -44,7 +44,7 @@ fn random_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
     .unwrap()
 }
 
-/// Points on the surface and inside, densely.
+/// Dense points on the surface and inside.
 fn points_of(obstacle: &Shape, rng: &mut LazyRng, count: usize) -> Vec<Vector3<f64>> {
     let mut unit = [0.0; 3];
     (0..count)
@@ -210,7 +210,7 @@ fn pairs_that_belong_to_the_model_are_left_out() {
     assert!(matches!(contact.other, Neighbor::Link(_)), "{contact:?}");
 }
 
-/// Volume of a convex body of this surface (m^3): pyramids from a point inside.
+/// Volume of a convex body with this surface (m^3): pyramids from a point inside.
 fn volume(obstacle: &Shape) -> f64 {
     let triangles: Vec<_> = obstacle.triangles().into_iter().map(|corners| corners.map(Vector3::from)).collect();
     let inside = triangles.iter().flatten().sum::<Vector3<f64>>() / (3 * triangles.len()) as f64;
@@ -273,7 +273,7 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
     }
 }
 
-/// A small shape at least 0.5 m from the origin.
+/// Small shape at least 0.5 m from the origin.
 fn distant_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
     let mut away = [0.0; 3];
     rng.direction(&mut away);
@@ -291,7 +291,7 @@ fn distant_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
     .unwrap()
 }
 
-/// A robot with spheres and capsules on each link.
+/// Robot with spheres and capsules on each link.
 fn with_random_bodies(name: &str, rng: &mut LazyRng) -> Robot {
     let robot = Robot::named(name).unwrap();
     let names: Vec<String> = robot.link_names().map(str::to_owned).collect();
@@ -306,8 +306,8 @@ fn with_random_bodies(name: &str, rng: &mut LazyRng) -> Robot {
     robot.with_capsules(bodies.collect()).unwrap()
 }
 
-/// Slopes of the smallest distance by joints, by differences of `step` (rad). Where another pair or another face becomes the nearest, the
-/// distance has a corner: slopes to both sides differ by `corner` or more, and are left out.
+/// Derivatives of the smallest distance by joints, by differences of `step` (rad). The distance has a corner where another pair
+/// or another face becomes the nearest: derivatives that differ by `corner` or more on the two sides are omitted.
 fn slopes(scene: &Scene, q: &[f64], step: f64, corner: f64) -> Vec<(usize, f64)> {
     let here = scene.clearance(q).unwrap();
     let slope = |j: usize| {
@@ -384,7 +384,7 @@ fn the_deepest_of_several_bodies_in_an_obstacle_is_the_nearest() {
     assert!(several > 40, "{several}");
 }
 
-/// A Panda with spheres, capsules and other shapes.
+/// Panda with spheres, capsules and other shapes.
 fn with_solid_bodies(rng: &mut LazyRng) -> Robot {
     let mut robot = with_random_bodies("panda", rng);
     for (kind, link) in ["link_2", "link_3", "link_4", "link_5", "link_7"].into_iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Links that are tested against each other: found by sampling, from an SRDF, or given.
+//! Pairs of links in self-collision tests: found by sampling, from an SRDF, or given.
 
 use ikcore::robot::{LinkCapsule, Robot};
 
-/// An arm with a shapeless wrist, a hand, and a finger that is held.
+/// Arm with a shapeless wrist, a hand, and a finger that is held.
 const ARM: &str = r#"<robot name="arm">
   <link name="base"> <collision> <geometry> <sphere radius="0.12"/> </geometry> </collision> </link>
   <link name="upper"> <collision> <origin xyz="0.2 0 0"/> <geometry> <sphere radius="0.1"/> </geometry> </collision> </link>

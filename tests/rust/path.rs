@@ -1,4 +1,4 @@
-//! Curves against their own derivatives and their geometry; paths, references and every error by its message.
+//! Curves against their own derivatives and their geometry; paths, references and error messages.
 
 use ikcore::math::pose;
 use ikcore::nalgebra::{Matrix3, Rotation3, Vector3};
@@ -6,20 +6,20 @@ use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference
 
 const CENTER: [f64; 3] = [0.4, -0.2, 0.7];
 
-/// A plane along no axis of the frame.
+/// Plane along no axis of the frame.
 fn slanted() -> Plane {
     let turn = Rotation3::from_euler_angles(0.3, -0.8, 1.1);
     Plane::new(CENTER, (turn * Vector3::x()).into(), (turn * Vector3::y()).into()).unwrap()
 }
 
-/// Centre (m) of the letter M of Khan et al. 2022, eq. (19), which stands in the plane of y and z.
+/// Centre (m) of the letter M of Khan et al. 2022, eq. (19), in the plane of y and z.
 const M_CENTER: [f64; 3] = [0.1, 0.4, 0.3];
 
 fn published_m() -> Polyline {
     Polyline::letter_m(&Plane::yz(M_CENTER).unwrap(), 0.4, 0.4, 50.0).unwrap()
 }
 
-/// Every curve once, with the times of its corners.
+/// Curves of every kind, with the times of their corners.
 fn curves() -> Vec<(Box<dyn Curve>, Vec<f64>)> {
     let stairs = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 2.0], [1.0, 1.0, 2.0]];
     let samples = Samples::from_positions(vec![0.0, 0.5, 2.0], vec![[0.0; 3], [0.1, 0.2, 0.3], [-0.3, 0.0, 0.1]]);
@@ -203,7 +203,7 @@ fn reference_covers_the_path_in_ticks() {
     assert_eq!(turned.rotation(2), Some(Matrix3::identity()));
 }
 
-/// The message of what must be an error.
+/// Message of an expected error.
 #[track_caller]
 fn message<T>(result: ikcore::Result<T>) -> String {
     match result {

@@ -1,4 +1,4 @@
-//! Batches of plans: the bits of single plans however they are run, mistakes, errors of single problems, interruption.
+//! Batches of plans: bits equal to single plans, invalid input, errors of single problems, interruption.
 
 use std::sync::Arc;
 use std::thread::{self, ThreadId};
@@ -26,7 +26,7 @@ fn at(position: [f64; 3]) -> Endpoint {
     Endpoint::from(Target::Position(position))
 }
 
-/// Around a ball, beside it, and out of reach.
+/// Problems around a ball, beside it, and out of reach.
 fn problems(robot: &Robot) -> Vec<PlanProblem> {
     let limits = Limits::of(robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
     let ball = Shape::sphere([0.55, 0.2, 0.5], 0.1).unwrap();
@@ -82,7 +82,7 @@ fn mistakes_are_named_before_anything_is_planned() {
     assert_eq!(told(&wrong, Some(0)), "threads must be from 1 to 1024, got 0");
 }
 
-/// Stops at the third report, and notes which thread reports.
+/// Monitor that stops at the third report, and records the reporting thread.
 struct Stopping {
     reports: usize,
     callers: Vec<ThreadId>,

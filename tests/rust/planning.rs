@@ -1,4 +1,4 @@
-//! The planners of Wang et al. (2019): their trajectories, limits, obstacles, and how good they are.
+//! Planners of Wang et al. (2019): their trajectories, limits, obstacles, and quality.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
 
-/// The paper's arm with `k` links of 2 m in all, at pi rad/s and `acceleration` rad/s^2, turning freely.
+/// Arm of the paper with `k` links of 2 m in all, at pi rad/s and `acceleration` rad/s^2, turning freely.
 fn arm(k: usize, acceleration: f64) -> (Robot, Limits) {
     let robot = Robot::planar(&vec![2.0 / k as f64; k]).expect("valid input");
     (robot.clone(), limits(&robot, acceleration))
@@ -34,7 +34,7 @@ fn at(x: f64, y: f64) -> Endpoint {
     Endpoint::from(Target::Position([x, y, 0.0]))
 }
 
-/// The paper's motion, from (1, 0) to (0.5, 1.5), by the paper's method unless `options` name another search.
+/// Motion of the paper, from (1, 0) to (0.5, 1.5), by the paper's method unless `options` name another search.
 fn plan(k: usize, options: PointToPointOptions) -> Plan {
     let (robot, limits) = arm(k, 2.0 * PI);
     let method = match options.method {
@@ -55,7 +55,7 @@ fn searched_by(solver: DerivativeFree) -> PointToPointMethod {
     Tpbso { solver: Some(AnySolver::Single(solver)), ..Tpbso::default() }.into()
 }
 
-/// The mean cost over seeds, all plans sound.
+/// Mean cost over seeds, with all plans checked.
 fn mean(seeds: u64, plan: impl Fn(u64) -> Plan) -> f64 {
     let cost = |seed| {
         let plan = plan(seed);
@@ -160,7 +160,7 @@ fn obstacle_is_passed_at_its_margin() {
     assert!((1.6475..=1.75).contains(&mean), "{mean} m");
 }
 
-/// Whether many points of a link lie in the obstacle of the paper's size: apart from how the planner tests it.
+/// Whether any of many points of a link is in the obstacle of the paper's size: independent of the planner's test.
 fn meets_ellipse(a: [f64; 2], b: [f64; 2]) -> bool {
     (0..=50).any(|i| {
         let fraction = f64::from(i) / 50.0;
@@ -191,7 +191,7 @@ fn robots_in_space_reach_both_poses() {
     }
 }
 
-/// The paper's star about (1, 1), and a closed curve of three lobes there, at 51 points.
+/// Star of the paper about (1, 1), and a closed curve of three lobes there, at 51 points.
 fn paths() -> [TipPath; 2] {
     let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).expect("valid input"), 0.5, 1.0).expect("valid input");
     let lobes = (0..=50).map(|i| {

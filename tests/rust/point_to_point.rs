@@ -1,4 +1,4 @@
-//! Point to point: against the bound of the plane's arms, and around a box.
+//! Point-to-point motions: against the bound of planar arms, and around a box.
 
 use std::f64::consts::TAU;
 
@@ -82,7 +82,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
     }
 }
 
-/// A pose behind the box that the arm reaches without touching anything.
+/// Poses behind the box that the arm reaches without contact.
 fn poses_behind(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<Endpoint> {
     let scene = Scene::new(robot, obstacles).unwrap();
     let mut rng = rng::stream(11, 0);
@@ -201,7 +201,7 @@ fn a_larger_budget_finds_no_worse_plan() {
     }
 }
 
-/// A planar arm whose first link would have to pass through a wall.
+/// Plan of a planar arm whose first link would have to pass through a wall.
 fn cut_off(end: Endpoint, stop: Stop) -> Plan {
     let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
     let constant = |value: f64| vec![Profile::Constant(value)];
@@ -292,7 +292,7 @@ fn plans_reported_free_are_free_at_every_sample() {
     assert!(free > 60 && around > 10, "{free} {around}");
 }
 
-/// A planar arm of two links whose shape is a mesh, which cannot be read.
+/// Planar arm of two links with an unreadable mesh.
 const MESH: &str = r#"<robot name="arm"><link name="base"/>
   <link name="upper"><collision><geometry><mesh filename="upper.stl"/></geometry></collision></link>
   <link name="fore"/><link name="tip"/>
@@ -388,7 +388,7 @@ fn mistakes_are_named() {
     );
 }
 
-/// A planar arm's motion past a pillar.
+/// Plan of a planar arm past a pillar.
 fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
     let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.01).unwrap();
     let options = PointToPointOptions {

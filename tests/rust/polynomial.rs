@@ -3,7 +3,7 @@
 use ikcore::math::polynomial::{derivative, evaluate, largest_magnitude, roots};
 use proptest::prelude::*;
 
-/// The coefficients of the product of (x - root).
+/// Coefficients of the product of (x - root).
 fn with_roots(roots: &[f64]) -> Vec<f64> {
     let mut product = vec![1.0];
     for root in roots {

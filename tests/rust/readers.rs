@@ -1,4 +1,4 @@
-//! Damaged files are read or refused, whatever is in them: valid ones of `tests/corpus`, changed in a few places.
+//! Damaged files of `tests/corpus`, which are read or rejected without panics: valid ones changed in a few places.
 
 use std::path::{Path, PathBuf};
 
@@ -26,10 +26,10 @@ const NUMBERS: [&str; 16] = [
     "99999999999999999999999999999999",
 ];
 
-/// A change of a file. Places are relative to its length.
+/// Change of a file. Positions are relative to its length.
 #[derive(Debug, Clone)]
 enum Damage {
-    /// Another number in place of the one at or after a place.
+    /// Replacement of the number at or after a position.
     Number(Index, usize),
     Cut(Index),
     Drop(Index, usize),
@@ -95,7 +95,7 @@ fn text(file: &str, changes: &[Damage]) -> String {
     String::from_utf8_lossy(&damaged(corpus(file), changes)).into_owned()
 }
 
-/// What a robot that was read must be able to do.
+/// Uses a robot that was read.
 fn use_of(robot: &Robot) {
     let q: Vec<f64> = robot.joints().iter().map(|joint| 0.0_f64.clamp(joint.lower, joint.upper)).collect();
     let pose = robot.fk(&q).unwrap();
@@ -146,7 +146,7 @@ proptest! {
     }
 }
 
-/// FNV-1a with 64 bits, the checksum of stored bytes.
+/// Checksum of stored bytes: FNV-1a with 64 bits.
 fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -104,7 +104,7 @@ fn arms_of_five_joints_have_all_solutions_of_what_they_reach() {
     }
 }
 
-/// The distance of two configurations, whole turns aside.
+/// Distance of two configurations, whole turns aside.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     let turn = |(a, b): (&f64, &f64)| ((a - b + PI).rem_euclid(TAU) - PI).powi(2);
     a.iter().zip(b).map(turn).sum::<f64>().sqrt()

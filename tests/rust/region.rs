@@ -1,4 +1,4 @@
-//! The tip kept in a box, eq. (5) of Cheng et al. (2020): whatever the solver, and said where it binds.
+//! Tip kept in a box, eq. (5) of Cheng et al. (2020): with every solver, and reported where it binds.
 
 use crate::common::{assert_derivative, configurations, message, pose_at, position_at, robot};
 use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
@@ -14,7 +14,7 @@ const KINDS: [TaskKind; 4] =
     [TaskKind::Pose, TaskKind::Position, TaskKind::Orientation, TaskKind::Pointing { axis: [0.6, 0.0, 0.8] }];
 const Q: [f64; 7] = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
 
-/// Below a ceiling (m).
+/// Region below a ceiling (m).
 fn below(height: f64) -> Region {
     Region::new([-OPEN; 3], [OPEN, OPEN, height]).unwrap()
 }
@@ -133,7 +133,7 @@ fn a_miss_says_that_the_tip_is_outside() {
     assert!(solution.message().contains("(the tip is outside its region, which requires x above 2"));
 }
 
-/// A circle whose upper third is above `CEILING`.
+/// Height of the ceiling, below the upper third of the circle.
 const CEILING: f64 = 0.95;
 
 fn leaving(iiwa: &Robot, rule: TickRule, tolerance: f64) -> (TrackOptions, Reference) {
@@ -165,7 +165,7 @@ fn no_tick_of_any_rule_ends_outside() {
     }
 }
 
-/// A beetle rests as soon as it is nearer than in the step before: it must not go outside to be.
+/// Beetles, which rest as soon as they are nearer than in the step before, must not leave the region for it.
 #[test]
 fn beetles_follow_the_faces() {
     let iiwa = robot("iiwa14");

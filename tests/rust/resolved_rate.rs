@@ -34,7 +34,7 @@ fn reference(arm: &Robot, duration: f64, dt: f64) -> Reference {
     Reference::new(dt, positions, None).unwrap().with_velocities(times().map(velocity).collect()).unwrap()
 }
 
-/// Limits wide enough never to matter: the note's errors are those of the plain formulas.
+/// Limits too wide to matter: the note's errors are those of the plain formulas.
 fn unlimited(arm: &Robot) -> Limits {
     let open = |limits: Limits, field, value| limits.replace(field, vec![Profile::Constant(value)]).unwrap();
     open(open(Limits::of(arm), Field::Lower, f64::NEG_INFINITY), Field::Upper, f64::INFINITY)
@@ -106,7 +106,7 @@ fn in_posture_mode_the_joints_follow_too() {
     assert!(off(&free) > 1.0);
 }
 
-/// Where the slide gets to at least by eq. (8) to (14) to the letter (signs mended), K = 50, h times `k`, ticks of 10 ms.
+/// Lowest position of the slide by the literal eq. (8) to (14) (signs corrected), K = 50, h times `k`, ticks of 10 ms.
 fn plain_projection(arm: &Robot, k: f64, reference: &Reference) -> f64 {
     let dt = reference.dt();
     let inverse_weights = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 2.56)); // (vU - vL)^2
@@ -135,8 +135,8 @@ fn limits_are_kept_where_plain_projection_breaks_them() {
     let arm = robot("hydraulic3");
     let reference = reference(&arm, 2.0, 0.01);
     assert!(plain_projection(&arm, 2.0, &reference) < -0.004);
-    // When the slide meets its end, the other joints must take over at once, faster than 1 rad/s: there the tip is left
-    // behind, not the limits. With 2 rad/s it is not.
+    // Takeover of the motion by the other joints when the slide meets its end: faster than 1 rad/s is needed, so with that
+    // limit the tip is left behind, not the limits. With 2 rad/s it is not.
     for (speed, off) in [(1.0, 0.011), (2.0, 5e-4)] {
         let speeds = [speed, speed, 0.8].map(Profile::Constant).to_vec();
         let options = TrackOptions {

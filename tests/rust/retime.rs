@@ -1,4 +1,4 @@
-//! Jerk limits of plans, other limits for finished plans, and motions that begin at a velocity.
+//! Jerk limits of plans, new limits for finished plans, and motions from a moving start.
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::Scene;
@@ -65,7 +65,7 @@ fn largest(values: Vec<f64>) -> f64 {
     values.into_iter().fold(0.0, f64::max)
 }
 
-/// The largest jump of an acceleration at a knot, from and to rest included.
+/// Largest jump of the acceleration at a knot, from and to rest included.
 fn largest_jump(motion: &Trajectory) -> f64 {
     let n = motion.joints().len();
     let acceleration = |t: f64| {

@@ -116,7 +116,7 @@ fn every_name_builds_and_unknown_ones_suggest() {
     );
 }
 
-/// Two turning joints around a sliding one, with every parameter in use.
+/// DH table of two revolute joints around a prismatic one, with every parameter in use.
 fn table(convention: Dh) -> DhTable {
     DhTable {
         theta: vec![0.7, -0.8, 0.9],

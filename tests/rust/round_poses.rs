@@ -1,5 +1,5 @@
-//! Poses of configurations that people type: zeros, right angles, joints at their limits or locked, nearly structured arms. The arm has
-//! them, so they are never called out of reach, and `solve_all` never calls an empty set complete.
+//! Poses of round configurations: zeros, right angles, joints at their limits or locked, nearly structured arms. They have a
+//! solution, so they are never reported as out of reach, and `solve_all` never reports an empty set as complete.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,13 +19,13 @@ fn chance(rng: &mut LazyRng, fraction: f64) -> bool {
     rng.uniform_in(0.0, 1.0) < fraction
 }
 
-/// A quarter, half or whole turn, or zero; sometimes off by 1e-16 to 1e-2.
+/// Angle of a quarter, half or whole turn, or zero; sometimes off by 1e-16 to 1e-2.
 fn round_angle(rng: &mut LazyRng) -> f64 {
     let off = if chance(rng, 0.5) { 0.0 } else { 10.0_f64.powf(rng.uniform_in(-16.0, -2.0)) };
     FRAC_PI_2 * rng.uniform_in(-2.5, 2.5).round() + off
 }
 
-/// The arm with narrower limits, some of them about round angles, and some joints locked.
+/// Arm with narrower limits, some of them near round angles, and some joints locked.
 fn narrowed(full: &Robot, rng: &mut LazyRng) -> Robot {
     let locks = chance(rng, 0.3);
     full.with_limits(|_, joint| {
@@ -42,7 +42,7 @@ fn narrowed(full: &Robot, rng: &mut LazyRng) -> Robot {
     .unwrap()
 }
 
-/// A configuration of round angles, joints at limits and any others.
+/// Configuration of round angles, joints at limits and arbitrary others.
 fn round_configuration(robot: &Robot, rng: &mut LazyRng) -> Vec<f64> {
     let joint = |joint: &ikcore::robot::Joint| match rng.uniform_in(0.0, 4.0) as usize {
         0 => round_angle(rng).clamp(joint.lower, joint.upper),
@@ -156,7 +156,8 @@ fn solutions_at_limits_a_turn_away_are_in_the_set() {
     }
 }
 
-/// Arms whose closed loop, opened where three axes meet or are parallel, has other axes that coincide at the pose, or nearly.
+/// Arms whose closed loop, opened where three axes intersect or are parallel, has other axes that coincide at the pose, or
+/// nearly.
 #[test]
 #[allow(clippy::approx_constant, reason = "angles as they were found, 3.14 rad among them")]
 fn poses_that_align_axes_of_the_loop_are_not_called_out_of_reach() {

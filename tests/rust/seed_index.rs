@@ -1,5 +1,5 @@
-//! Starts from the robot's index: near the target, inside the box, shared, repeatable; and what they are for: random
-//! robots reach random targets.
+//! Starts from the robot's index: near the target, inside the box, shared and repeatable; random robots reach random targets
+//! from them.
 
 use crate::common::chains::RandomChain;
 use crate::common::{pose_at, position_at, robot};
@@ -13,7 +13,7 @@ use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Aims, Target, Tolerance};
 
-/// Starts that the index has for one target.
+/// Number of indexed starts for one target.
 const INDEXED: usize = 8;
 
 fn box_of(robot: &Robot) -> Bounds {
@@ -21,7 +21,7 @@ fn box_of(robot: &Robot) -> Bounds {
     Bounds::new(&lower, &upper).unwrap()
 }
 
-/// The first `count` starts proposed for `target`.
+/// First `count` starts proposed for `target`.
 fn starts(robot: &Robot, target: &Target, bounds: &Bounds, seed: u64, count: usize) -> Vec<Vec<f64>> {
     let task = Tolerance::default().into();
     let mut problem = Problem::new(robot, Aims::of_one(&task, target));
@@ -167,7 +167,7 @@ fn robots_of_1_to_32_joints_with_or_without_limits_solve() {
     }
 }
 
-/// Starts beyond the first, a target: what the index is measured by. Random starts need 0.8 to 2.3.
+/// Number of restarts per target: the measure of the index. Random starts need 0.8 to 2.3.
 #[test]
 fn few_targets_need_a_second_start() {
     for (name, most) in [("iiwa14", 0.25), ("panda", 0.5), ("ur5e", 0.5), ("kr210", 0.35)] {

@@ -1,4 +1,4 @@
-//! Motions from state to state: durations by formula and by an oracle, limits at every instant, errors by their messages.
+//! Motions between states: durations by formula and by an oracle, limits at every instant, error messages.
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::one_joint::{MotionState, Rates, Transfer};
@@ -181,7 +181,7 @@ fn errors_name_the_joint_and_the_bound() {
 /// Limits of a joint (velocity, acceleration, jerk), and two states (position, velocity, acceleration).
 type OneJoint = ([f64; 3], [f64; 3], [f64; 3]);
 
-/// A joint's limits, and states inside them and able to stay there.
+/// Limits of a joint, and states inside them from which it can stop.
 fn joint() -> impl Strategy<Value = OneJoint> {
     let part = -1.0..1.0_f64;
     let logarithms = (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64);
@@ -200,19 +200,19 @@ fn joint() -> impl Strategy<Value = OneJoint> {
     })
 }
 
-/// One, two or five times a power of ten.
+/// Round numbers: one, two or five times a power of ten.
 fn round() -> impl Strategy<Value = f64> {
     (prop::sample::select(vec![1.0, 2.0, 5.0]), -3..=3_i32).prop_map(|(digit, power)| digit * 10.0_f64.powi(power))
 }
 
-/// Limits of a joint (velocity, acceleration, jerk), of half of which two are reached at once.
+/// Limits of a joint (velocity, acceleration, jerk), half of them with two reached at once.
 fn round_limits() -> impl Strategy<Value = [f64; 3]> {
     let tied = prop::option::of(prop::sample::select(vec![1.0, 1.0, 0.5, 2.0, 0.25, 4.0]));
     (round(), round(), round(), tied)
         .prop_map(|(v, a, j, tied)| [v, a, tied.map_or(j, |fraction| fraction * a * a / v)])
 }
 
-/// Parts of a limit: none, all, round ones, any; and the numbers beside them.
+/// Fractions of a limit: none, all, round ones, any; and a number of rounding steps beside them.
 fn part() -> impl Strategy<Value = (f64, i32)> {
     let fraction = prop_oneof![
         prop::sample::select(vec![0.0, 1.0, -1.0, 0.5, -0.5, 0.2]),
@@ -222,7 +222,7 @@ fn part() -> impl Strategy<Value = (f64, i32)> {
     (fraction, -1..=1)
 }
 
-/// This part of a limit.
+/// Fraction of a limit, shifted by rounding steps.
 fn of(limit: f64, (fraction, steps): (f64, i32)) -> f64 {
     let value: f64 = fraction * limit;
     match steps {
@@ -233,8 +233,8 @@ fn of(limit: f64, (fraction, steps): (f64, i32)) -> f64 {
     }
 }
 
-/// Velocity and acceleration at a start (`sense` 1) or an end (-1), at the limits in many ways. With `tied` the joint
-/// comes to that part of its velocity limit when the acceleration has ended.
+/// Velocity and acceleration at a start (`sense` 1) or an end (-1), at the limits in many ways. With `tied` the joint reaches
+/// that fraction of its velocity limit when the acceleration has ended.
 fn rates([v, a, j]: [f64; 3], sense: f64, parts: [(f64, i32); 2], tied: Option<(f64, i32)>) -> (f64, f64) {
     let acceleration = of(a, parts[0]).clamp(-a, a);
     let change = sense * 0.5 * acceleration * acceleration.abs() / j;
@@ -243,7 +243,7 @@ fn rates([v, a, j]: [f64; 3], sense: f64, parts: [(f64, i32); 2], tied: Option<(
     if kept { (velocity, acceleration) } else { (0.0, 0.0) }
 }
 
-/// A joint with round limits, in states that are at the limits in many ways.
+/// Joint with round limits, in states that are at the limits in many ways.
 fn round_joint() -> impl Strategy<Value = OneJoint> {
     let state = || (part(), part(), prop::option::of(part()));
     let displacement = prop_oneof![
@@ -264,7 +264,7 @@ fn round_joint() -> impl Strategy<Value = OneJoint> {
 
 const REFUSED: [&str; 2] = ["do not resolve its shortest phases", "are the same state: nothing moves"];
 
-/// How much a limit may be exceeded (relative): rounding, and what a rate changes in the resolution of the times.
+/// Admissible relative excess over a limit: rounding, and the effect of a rate within the resolution of the times.
 fn excess(limit: f64, rate: f64, duration: f64) -> f64 {
     1e-9 + 4.0 * f64::EPSILON * duration * rate / limit
 }
@@ -302,7 +302,7 @@ proptest! {
         }
     }
 
-    /// Played backwards, a motion is one between the states in reverse order, with velocities reversed.
+    /// Reversed motions: they connect the states in reverse order, with velocities reversed.
     #[test]
     fn backwards_takes_as_long(joint in joint()) {
         let ([velocity, acceleration, jerk], [q0, v0, a0], [q1, v1, a1]) = joint;
@@ -313,7 +313,7 @@ proptest! {
         prop_assert!((there - back).abs() <= 1e-6 * there + 1e-9, "{there} and {back}");
     }
 
-    /// Between its extremal motions, a joint can take any time from the shortest on, except for at most two gaps.
+    /// Durations between the extremal motions of a joint: all are possible from the shortest on, except for at most two gaps.
     #[test]
     fn a_duration_that_is_possible_has_a_motion(joint in joint(), factor in 1.0..4.0_f64) {
         let ([velocity, acceleration, jerk], [q0, v0, a0], [q1, v1, a1]) = joint;
@@ -331,7 +331,7 @@ proptest! {
         }
     }
 
-    /// Two starts that differ by rounding take the same time, but for the square root of rounding.
+    /// Starts that differ by rounding: they take the same time, up to the square root of rounding.
     #[test]
     fn the_next_start_takes_as_long(joint in round_joint(), step in prop::sample::select(vec![f64::next_up, f64::next_down])) {
         let ([velocity, acceleration, jerk], [q0, v0, a0], [q1, ..]) = joint;
@@ -343,7 +343,8 @@ proptest! {
         prop_assert!((one - next).abs() <= 1e-6 * one + 1e-5 * (velocity / jerk).sqrt(), "{one} and {next}");
     }
 
-    /// From any state, inside the limits or not, unless the way back inside takes centuries, a joint gets to any rest within its jerk limit, and its end is exact.
+    /// Starts inside the limits or not, unless the return takes centuries: a joint reaches any rest within its jerk limit, and
+    /// its end is exact.
     #[test]
     fn every_start_has_a_motion(
         (limits, parts, beyond, d) in (round_limits(), [part(), part()], [round(), round()], round())

@@ -1,4 +1,4 @@
-//! What can be asked of the tip: kinds of task, weights and tolerances by component, tools.
+//! Tasks of the tip: kinds, weights and tolerances by component, tools.
 
 use crate::common::{assert_derivative, configurations, message, pose_at, robot};
 use ikcore::ik::{SolveOptions, solve};

@@ -1,4 +1,4 @@
-//! The fastest timing of joint paths: known optima, limits at every instant, errors by their messages.
+//! Fastest timing of joint paths: known optima, limits at every instant, error messages.
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
@@ -122,7 +122,7 @@ fn jerk_limits_are_kept_and_the_path_too() {
     assert!(farthest_from(&path, &smooth) < 1e-6);
 }
 
-/// How far the motion leaves the path (rad), by dense samples of both.
+/// Largest distance of the motion from the path (rad), by dense samples of both.
 fn farthest_from(path: &JointPath, trajectory: &Trajectory) -> f64 {
     let n = path.joints().len();
     let rows: Vec<Vec<f64>> = (0..=4000)

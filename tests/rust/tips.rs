@@ -1,5 +1,5 @@
-//! Several tips: chains over one joint vector, their targets and those of pairs, starts, obstacles between the arms, and what is
-//! refused.
+//! Robots with several tips: chains over one joint vector, targets of tips and pairs, starts, obstacles between the arms, and
+//! errors.
 
 use std::fmt::Write as _;
 use std::sync::LazyLock;
@@ -18,7 +18,7 @@ use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{Goal, NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 
-/// A lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
+/// Lift that carries two arms of seven joints with spherical wrists, 0.6 m apart, and a camera between them.
 pub fn two_arms() -> String {
     let mut urdf = String::from(
         r#"<robot name="pair"><link name="floor"/><link name="chest"/><link name="camera"/>

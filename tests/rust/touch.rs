@@ -13,7 +13,7 @@ use ikcore::{Error, Result};
 
 const READY: [f64; 7] = [0.0, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8];
 
-/// A Panda with a foot, capsules on its links and a box in its hand, but without the bodies of these links.
+/// Panda with a foot, capsules on its links and a box in its hand, but without the bodies of these links.
 fn panda_without(links: &[String]) -> Robot {
     let along = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
     let mut capsules = along.capsules().to_vec();
@@ -44,7 +44,7 @@ fn random_obstacle(rng: &mut LazyRng) -> Shape {
     Shape::cuboid(center, size, None).unwrap().with_touch(names(touch))
 }
 
-/// The smallest distance of each obstacle from the bodies that must not touch it, by robots without the others.
+/// Smallest distance of each obstacle from the bodies that must not touch it, by robots without the other bodies.
 fn distances(obstacles: &[Shape], q: &[f64]) -> Vec<f64> {
     let distance = |obstacle: &Shape| {
         let robot = panda_without(obstacle.touch());
@@ -118,7 +118,7 @@ fn four_configurations_side_by_side_are_judged_as_one() {
     assert!(count(&clear) > count(&strictly) + 3 && count(&clear) < 400, "{} {}", count(&clear), count(&strictly));
 }
 
-/// A solution on a floor at `height`.
+/// Solution on a floor at `height`.
 fn on_floor(robot: &Robot, height: f64, touch: &[&str]) -> Result<ikcore::ik::Solution> {
     let target = Target::Pose(Frame::from(&robot.fk(&READY).unwrap()));
     let floor = Shape::half_space([0.0, 0.0, 1.0], height).unwrap().with_touch(names(touch));

@@ -1,4 +1,4 @@
-//! Tracking among obstacles: nothing comes nearer than the margin, at ticks and in between, and every stop is clear.
+//! Tracking among obstacles: the margin is kept, at ticks and in between, and every stop is clear.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use ikcore::tracking::{Session, TrackOptions, track};
 const START: [f64; 7] = [0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.78];
 const MARGIN: f64 = 0.005;
 
-/// What a distance in the middle of a tick may lose to rounding (m).
+/// Rounding of a distance in the middle of a tick (m).
 const ROUNDING: f64 = 1e-9;
 
 fn panda() -> Robot {
@@ -56,12 +56,12 @@ fn limits(robot: &Robot, acceleration: Option<f64>, jerk: Option<f64>) -> Limits
     limits
 }
 
-/// Limits without rates, with acceleration, and with jerk.
+/// Limits on velocity alone, with acceleration, and with jerk.
 fn all_limits(robot: &Robot) -> [Limits; 3] {
     [limits(robot, None, None), limits(robot, Some(5.0), None), limits(robot, Some(5.0), Some(50.0))]
 }
 
-/// A target on a circle, or one that jumps twice a second.
+/// Target on a circle, or one that jumps twice a second.
 fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
     let mut pose: Pose = robot.fk(&START).unwrap();
     let time = tick as f64 * dt;
@@ -73,7 +73,7 @@ fn target(robot: &Robot, tick: usize, dt: f64, jumps: &[[f64; 3]]) -> Target {
     Target::from(&pose)
 }
 
-/// The smallest distance at several configurations from one tick to the next.
+/// Smallest distance at several configurations from one tick to the next.
 fn least_between(scene: &Scene<'_>, from: &[f64], to: &[f64]) -> f64 {
     let at = |fraction: f64| from.iter().zip(to).map(|(from, to)| from + fraction * (to - from)).collect::<Vec<f64>>();
     (1..=4).map(|i| scene.clearance(&at(0.25 * f64::from(i))).unwrap()).fold(f64::INFINITY, f64::min)
@@ -375,8 +375,8 @@ fn fastest(session: &Session) -> f64 {
     session.qd().iter().fold(0.0, |fastest: f64, rate| fastest.max(rate.abs()))
 }
 
-/// Moves on without targets until the stop that takes `said` seconds should have ended, and for a second more. Returns by how many ticks the
-/// arm is late.
+/// Delay of the stop (ticks): moves on without targets until the stop that takes `said` seconds should have ended, and for a
+/// second more.
 fn late(session: &mut Session, said: f64) -> usize {
     let ticks = (said / session.dt()).round() as usize;
     let moves = |_| {

@@ -1,4 +1,4 @@
-//! Tracking with several tips: pairs that are held under all kinds of limits, whatever the other targets ask, and the stops after it.
+//! Tracking with several tips: pairs held under all kinds of limits, whatever the other targets are, and during stops.
 
 use ikcore::ik::{SolveOptions, solve_tips};
 use ikcore::limits::{Field, Limits, Profile};
@@ -20,7 +20,7 @@ fn robot() -> Robot {
     Robot::from_urdf_with(&two_arms(), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap()
 }
 
-/// Where the right hand is, as seen from the left one.
+/// Pose of the right hand relative to the left one.
 fn tray() -> Pose {
     pose::from_rpy([0.0; 3], [0.0, -0.5, 0.0])
 }
@@ -29,7 +29,7 @@ fn task(subject: Subject) -> NamedTask {
     NamedTask { subject, task: None, tolerance: Tolerance::default() }
 }
 
-/// The left hand to `left`, with the tray.
+/// Targets of the left hand at `left`, and of the tray.
 fn targets(left: &Pose) -> Vec<(NamedTask, Target)> {
     vec![(task(Subject::Tip(0)), Target::from(left)), (task(PAIR), Target::from(&tray()))]
 }
@@ -42,7 +42,7 @@ fn start(robot: &Robot, left: &Pose) -> Vec<f64> {
     solve_tips(robot, &wanted, &options, &mut Unattended).unwrap().q.to_vec()
 }
 
-/// How far the tray is from its place in the right hand (m, rad).
+/// Error of the tray relative to the right hand (m, rad).
 fn slip(robot: &Robot, q: &[f64]) -> f64 {
     let [left, right] = ["left_tool", "right_tool"].map(|tip| robot.link_fk(tip, q).unwrap());
     let away = tray().inverse() * left.inverse() * right;
@@ -51,7 +51,7 @@ fn slip(robot: &Robot, q: &[f64]) -> f64 {
     away.translation.vector.norm().max(0.5 * turn.norm())
 }
 
-/// Limits without rates, with acceleration, and with jerk.
+/// Limits on velocity alone, with acceleration, and with jerk.
 fn all_limits(robot: &Robot) -> [(Limits, [f64; 3]); 3] {
     let none = f64::INFINITY;
     [[1.0, none, none], [1.0, 4.0, none], [1.0, 4.0, 40.0]].map(|values| {

@@ -1,4 +1,4 @@
-//! Tracking: limits that are never broken, targets that cannot be followed, the model-based rule, and what a record holds.
+//! Tracking: limits that are never violated, targets that cannot be followed, the model-based rule, and the record.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -67,7 +67,7 @@ fn a_descent_tracks_to_a_nanometre() {
     }
 }
 
-/// On the path, stretched out (singular) or half a metre off it.
+/// Starts on the path, stretched out (singular) or half a metre off it.
 fn model_based_starts() -> [(Task, Vec<f64>); 5] {
     let on5 = [0.6697427192, -0.3400667941, -0.2474717864, -0.2588906663, 0.3263813181];
     let on7 = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0];
@@ -238,7 +238,7 @@ fn an_orientation_that_cannot_be_held_is_told_in_radians() {
     assert!(record.message().contains(" m and 1.571 rad): "), "{}", record.message());
 }
 
-/// Says stop once this many rows are done.
+/// Monitor that stops once this many rows are done.
 struct StopAfterRows(usize);
 
 impl Monitor for StopAfterRows {

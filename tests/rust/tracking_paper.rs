@@ -1,4 +1,4 @@
-//! The experiments of Cheng et al. (2020) over many seeds.
+//! Experiments of Cheng et al. (2020) over many seeds.
 //!
 //! The bounds on errors and counts are those of this library's own study of the paper, which prints no seeds, bands or
 //! numbers of evaluations; they leave 25 to 50 per cent over the extremes of a hundred seeds.
@@ -23,8 +23,8 @@ fn roughness(record: &Record) -> f64 {
     (changes.iter().map(|change| change * change).sum::<f64>() / changes.len() as f64).sqrt()
 }
 
-/// The mean over the seeds of the steady error, once each track was in its band by step 30 and stayed there within
-/// its budget of evaluations.
+/// Mean steady error over the seeds, after checking that each track was in its band by step 30 and stayed there within its
+/// budget of evaluations.
 fn mean_steady_error(task: &Task, rule: &TickRule, band: f64, most_evaluations: usize) -> f64 {
     let tracks = (1..=SEEDS).map(|seed| {
         let record = task.track(rule.clone(), band, seed);
@@ -66,7 +66,7 @@ fn greedy_beetle_tracks_to_a_nanometre() {
     assert_eq!(record.status, Status::Solved, "{}", record.message());
 }
 
-/// The mean over five seeds of (steps to the band, roughness, evaluations) for a star.
+/// Mean over five seeds of (steps to the band, roughness, evaluations) for a star.
 fn star_trend(task: &Task, c1: f64, explorations: usize, band: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for seed in 1..=5 {

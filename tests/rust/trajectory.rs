@@ -1,4 +1,4 @@
-//! Piecewise polynomial joint motion: values, exact extrema, samples, errors by their messages.
+//! Piecewise polynomial joint motion: values, exact extrema, samples, error messages.
 
 use ikcore::trajectory::{Coefficients, Trajectory, polynomial};
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ fn names(count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("j{i}")).collect()
 }
 
-/// The state of all joints at time `t`.
+/// State of all joints at time `t`.
 fn state(trajectory: &Trajectory, t: f64) -> [Vec<f64>; 3] {
     let n = trajectory.joints().len();
     let [mut q, mut qd, mut qdd] = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
@@ -15,7 +15,7 @@ fn state(trajectory: &Trajectory, t: f64) -> [Vec<f64>; 3] {
     [q, qd, qdd]
 }
 
-/// Rest to rest over unit distance in `span` (s): 10 s^3 - 15 s^4 + 6 s^5 of the relative time.
+/// Rest-to-rest motion over unit distance in `span` (s): 10 s^3 - 15 s^4 + 6 s^5 of the relative time.
 fn rest_to_rest(span: f64) -> Coefficients {
     polynomial([0.0, 0.0, 0.0, 10.0 / span.powi(3), -15.0 / span.powi(4), 6.0 / span.powi(5)])
 }

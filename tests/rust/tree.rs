@@ -1,4 +1,4 @@
-//! Links and joints beside the chain: where they are, what moves them, and what is said about those that cannot be held.
+//! Links and joints beside the chain: their poses, the joints that move them, and errors for those that cannot be held.
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::Vector3;
@@ -6,7 +6,7 @@ use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::shape::Shape;
 
-/// A torso with an arm of two joints, whose hand has two fingers that follow one joint, a camera that follows the elbow, and a
+/// Torso with an arm of two joints, whose hand has two fingers that follow one joint, a camera that follows the elbow, and a
 /// wheel below the torso.
 const TREE: &str = r#"<robot name="tree">
   <link name="world"/> <link name="torso"/> <link name="upper"/> <link name="hand"/>

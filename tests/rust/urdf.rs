@@ -1,4 +1,4 @@
-//! Reading URDF: exact messages for what is wrong, and chains that move as the file says.
+//! URDF reader: exact error messages, and chains that move as described in the file.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ fn load(xml: &str) -> Robot {
     Robot::from_urdf(xml, None, None).unwrap()
 }
 
-/// The message of the error that `ARM` ends in after one replacement.
+/// Message of the error of `ARM` after one replacement.
 fn error_after(from: &str, to: &str) -> String {
     assert!(ARM.contains(from), "nothing to replace: {from}");
     error(&ARM.replacen(from, to, 1))
@@ -50,7 +50,7 @@ fn assert_same(a: &Pose, b: &Pose, tolerance: f64) {
     assert!(difference <= tolerance, "poses differ by {difference:.3e}:\n{a}{b}");
 }
 
-/// A robot of these links, one a line, and joints in short: (name, attributes of the joint, parent, child, elements).
+/// Robot of these links, one a line, and joints in short: (name, attributes of the joint, parent, child, elements).
 fn robot(links: &[&str], joints: &[(&str, &str, &str, &str, &str)]) -> String {
     let mut xml = String::from("<robot name=\"r\">\n");
     for link in links {
@@ -398,7 +398,7 @@ fn real_robots_load_stripped_and_in_full() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever happens to a file on its way, the answer is a robot or an error.
+    /// Text files with random damage: the result is a robot or an error.
     #[test]
     fn no_text_makes_it_panic(
         cuts in prop::collection::vec(
@@ -461,10 +461,10 @@ fn collision_shapes_become_capsules_that_hold_them() {
     );
 }
 
-/// Links of the large robots: what is quadratic in them takes minutes.
+/// Links of the large robots: an algorithm quadratic in them takes minutes.
 const MANY: usize = 100_000;
 
-/// A robot of [`MANY`] links; joint i leads from link `parent(i)` to link i.
+/// Robot of [`MANY`] links; joint i leads from link `parent(i)` to link i.
 fn large(kind: &str, parent: impl Fn(usize) -> usize) -> String {
     let mut xml = String::from("<robot name='large'>\n<link name='link_0'/>\n");
     for i in 1..MANY {
@@ -535,7 +535,7 @@ fn messages_repeat_no_more_than_a_line_of_a_file() {
     assert!(says.len() < 400 && says.ends_with("...'"), "{} characters", says.len());
 }
 
-/// The tip's pose by urdf-rs and a product of transforms, for joints in chain order.
+/// Tip pose by urdf-rs and a product of transforms, for joints in chain order.
 fn tip_by_urdf_rs(xml: &str, q: &[f64]) -> Pose {
     let mut values = q.iter();
     let mut tip = Isometry3::identity();
@@ -577,7 +577,7 @@ proptest! {
     }
 }
 
-/// A cube of 0.2 m about the origin, as STL text.
+/// Cube of 0.2 m about the origin, as STL text.
 fn cube() -> String {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|bit| if bit == 1 { 0.1 } else { -0.1 });
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -594,7 +594,7 @@ fn cube() -> String {
     text + "endsolid cube\n"
 }
 
-/// A folder of its own, removed afterwards.
+/// Temporary folder, removed afterwards.
 struct Folder(PathBuf);
 
 impl Folder {

@@ -23,7 +23,7 @@ fn adaptive(gain: f64, c1: f64) -> Znnbas {
     Znnbas { gain, antenna: Antenna::Adaptive { c1 }, ..Znnbas::default() }
 }
 
-/// The limits of the paper's runs are those of positions alone.
+/// Limits of the paper's runs, on positions alone.
 fn position_limits(robot: &Robot) -> Limits {
     Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(f64::INFINITY)]).unwrap()
 }
@@ -49,18 +49,18 @@ impl Run {
         Self::new(znnbas, &letter(), None, seed)
     }
 
-    /// h of eq. (12) at theta, where the arm never stands.
+    /// Error h of eq. (12) at theta, where the arm never is.
     fn h(&self, i: usize) -> f64 {
         let (tip, target) = (self.arm.tip_position(&self.record.track.q[7 * i..][..7]), self.record.track.reference[i]);
         (0..3).map(|k| (tip[k] - target[k]).powi(2)).sum()
     }
 
-    /// Its mean from 40 to 50 s.
+    /// Mean of h from 40 to 50 s.
     fn mean_h(&self) -> f64 {
         (40_000..=50_000).map(|i| self.h(i)).sum::<f64>() / 10_001.0
     }
 
-    /// When it first falls below 1e-3 (s).
+    /// Time at which h first falls below 1e-3 (s).
     fn arrival(&self) -> f64 {
         (0..=50_000).find(|i| self.h(*i) < 1e-3).map_or(f64::INFINITY, |i| i as f64 * DT)
     }

@@ -1,9 +1,8 @@
-//! The error type of the crate: every variant names the argument, its value, the bound it violates and what would be
-//! valid.
+//! Error type of the crate: every variant names the argument, its value, the bound it violates and what would be valid.
 
 use thiserror::Error;
 
-/// `Result` with this crate's [`enum@Error`].
+/// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Mistakes of a caller.
@@ -19,9 +18,9 @@ pub enum Error {
     /// A number that must be finite is NaN or infinite.
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {
-        /// The argument, such as "joint angles".
+        /// Name of the argument, for example "joint angles".
         what: String,
-        /// The entry, such as "entry 2" or "joint 'elbow'".
+        /// Name of the entry, for example "entry 2" or "joint 'elbow'".
         place: String,
         /// The offending number.
         value: f64,
@@ -29,9 +28,9 @@ pub enum Error {
     /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
-        /// The argument and its robot, such as "joint angles of robot 'iiwa14'".
+        /// Name of the argument and its robot, for example "joint angles of robot 'iiwa14'".
         what: String,
-        /// The expected length, such as "7 joints".
+        /// Expected length, for example "7 joints".
         expected: String,
         /// The value that was given.
         got: usize,
@@ -41,7 +40,7 @@ pub enum Error {
     OutOfRange {
         /// The name of the argument.
         what: String,
-        /// The allowed range in words, such as "positive".
+        /// Allowed range in words, for example "positive".
         requirement: String,
         /// The offending number.
         value: f64,
@@ -61,7 +60,7 @@ pub enum Error {
     UnknownRobot {
         /// The requested name.
         name: String,
-        /// ` (did you mean 'x'?)`, or empty.
+        /// Text ` (did you mean 'x'?)`, or empty.
         suggestion: String,
         /// All names, separated by commas.
         known: String,
@@ -73,7 +72,7 @@ pub enum Error {
         robot: String,
         /// The requested link.
         name: String,
-        /// ` (did you mean 'x'?)`, or empty.
+        /// Text ` (did you mean 'x'?)`, or empty.
         suggestion: String,
         /// All links, separated by commas.
         known: String,
@@ -85,7 +84,7 @@ pub enum Error {
         robot: String,
         /// The requested tip.
         name: String,
-        /// ` (did you mean 'x'?)`, or empty.
+        /// Text ` (did you mean 'x'?)`, or empty.
         suggestion: String,
         /// All tips, separated by commas.
         known: String,
@@ -93,9 +92,9 @@ pub enum Error {
     /// A call that takes robots with one tip got one with several.
     #[error("{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip=")]
     SeveralTips {
-        /// The call.
+        /// Name of the call.
         call: String,
-        /// The tips.
+        /// Names of the tips.
         tips: String,
     },
     /// No joint that the robot holds has this name.
@@ -105,7 +104,7 @@ pub enum Error {
         robot: String,
         /// The requested joint.
         name: String,
-        /// ` (did you mean 'x'?)`, why it is not held, or empty.
+        /// Text ` (did you mean 'x'?)`, the reason why the joint is not held, or empty.
         problem: String,
         /// All held joints, separated by commas.
         held: String,
@@ -125,7 +124,7 @@ pub enum Error {
     InvalidRobot {
         /// The robot's name.
         robot: String,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A URDF that cannot be read.
@@ -133,7 +132,7 @@ pub enum Error {
     Urdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// An SRDF that cannot be read, or one of another robot.
@@ -141,13 +140,13 @@ pub enum Error {
     Srdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A file that cannot be read.
     #[error("cannot read '{path}': {problem}")]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: String,
         /// The operating system's reason.
         problem: String,
@@ -157,85 +156,85 @@ pub enum Error {
     EmptyRange {
         /// The joint's name.
         joint: String,
-        /// Its lower limit (rad or m).
+        /// Lower limit of the joint (rad or m).
         lower: f64,
-        /// Its upper limit (rad or m).
+        /// Upper limit of the joint (rad or m).
         upper: f64,
-        /// When, for limits that vary (s).
+        /// Time of the violation, for limits that vary (s).
         time: Option<f64>,
     },
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
     OutsideLimits {
-        /// The argument, such as "start".
+        /// Name of the argument, for example "start".
         what: String,
         /// The joint's name.
         joint: String,
-        /// Its value (rad or m).
+        /// Value of the joint (rad or m).
         value: f64,
-        /// Its lower limit (rad or m).
+        /// Lower limit of the joint (rad or m).
         lower: f64,
-        /// Its upper limit (rad or m).
+        /// Upper limit of the joint (rad or m).
         upper: f64,
     },
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
     OutsideRegion {
-        /// The argument, such as "start".
+        /// Name of the argument, for example "start".
         what: String,
         /// The coordinate, in the base's frame.
         coordinate: String,
-        /// Its value (m).
+        /// Value of the coordinate (m).
         value: f64,
-        /// Its lower bound (m).
+        /// Lower bound of the region (m).
         lower: f64,
-        /// Its upper bound (m).
+        /// Upper bound of the region (m).
         upper: f64,
     },
     /// The start or end of a motion is out of reach.
     #[error("{what} cannot be reached: {problem}")]
     Unreachable {
-        /// The end, such as "start".
+        /// Name of the end, for example "start".
         what: String,
-        /// The distance to it, and what would be right.
+        /// Shortfall, with advice.
         problem: String,
     },
-    /// A search found nothing, which proves nothing.
+    /// A search found nothing, which does not prove that nothing exists.
     #[error("{what} was not found: {problem}")]
     NotFound {
-        /// What was looked for, such as "a motion past point 3 of the path".
+        /// Object of the search, for example "a motion past point 3 of the path".
         what: String,
-        /// How near the search came, and what to try.
+        /// Distance by which the search failed, and advice.
         problem: String,
     },
-    /// Several ends were given for a motion, and none of them can be used.
+    /// Several ends were given for a motion, and none of them is usable.
     #[error("none of the {count} ends can be reached: {problems}")]
     NoUsableEnd {
         /// The number of ends.
         count: usize,
-        /// What is wrong with each, separated by semicolons.
+        /// Problem of each end, separated by semicolons.
         problems: String,
     },
-    /// A limit that is negative, at least for some time.
+    /// A limit is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
     NegativeLimit {
-        /// "velocity", "acceleration" or "jerk".
+        /// Field of the limit: "velocity", "acceleration" or "jerk".
         field: String,
         /// The joint's name.
         joint: String,
-        /// The limit's smallest value (rad/s or m/s, and so on).
+        /// Smallest value of the limit (rad/s or m/s, and so on).
         value: f64,
-        /// The time at which it is reached (s).
+        /// Time of the smallest value (s).
         time: f64,
     },
     /// A limit that the method does not support. No method silently ignores a limit.
     #[error("{method} cannot honour {field} limits: {remedy}")]
     UnsupportedLimit {
-        /// The field of the limits, such as "acceleration".
+        /// Field of the limits, for example "acceleration".
         field: String,
-        /// The method.
+        /// Method that rejects the limit.
         method: String,
-        /// The remedy.
+        /// Advice to the caller.
         remedy: String,
     },
     /// No motion satisfies the request.
@@ -247,9 +246,9 @@ pub enum Error {
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
-        /// The argument, such as "target".
+        /// Name of the argument, for example "target".
         what: String,
-        /// By how much it fails.
+        /// Size of the deviation.
         problem: String,
     },
     /// A position was given, but the task needs a whole pose.
@@ -261,13 +260,13 @@ pub enum Error {
     /// Options that contradict each other.
     #[error("{problem}")]
     Contradiction {
-        /// Which options, and what would be right.
+        /// Contradictory options, with advice.
         problem: String,
     },
     /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
     InvalidObstacle {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// The robot has no capsules, so its shape is unknown.
@@ -275,23 +274,23 @@ pub enum Error {
     NoCapsules {
         /// The robot's name.
         robot: String,
-        /// The problem, and the remedy.
+        /// Description of the problem, with advice.
         problem: String,
-        /// How to give it capsules.
+        /// Advice on adding capsules to the robot.
         remedy: String,
     },
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}{remedy}")]
     InCollision {
-        /// The argument, such as "start".
+        /// Name of the argument, for example "start".
         what: String,
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// The other body, such as "obstacle 0 (Box)".
+        /// Name of the other body, for example "obstacle 0 (Box)".
         other: String,
-        /// The penetration, such as "0.02 m inside".
+        /// Penetration depth, for example "0.02 m inside".
         depth: String,
-        /// How to allow it, after a semicolon; empty if a joint moves the link.
+        /// Advice on allowing the contact, after a semicolon; empty if a joint moves the link.
         remedy: String,
     },
     /// A joint with neither a velocity nor an acceleration limit.
@@ -306,13 +305,13 @@ pub enum Error {
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
     InvalidPath {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// Times that do not increase.
     #[error("{what} must increase, but row {row} has {value} after {previous}")]
     NotIncreasing {
-        /// The argument, such as "path times".
+        /// Name of the argument, for example "path times".
         what: String,
         /// The first row, from 0, that is not later than the one before it.
         row: usize,
@@ -324,23 +323,23 @@ pub enum Error {
     /// An invalid joint motion.
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
-        /// The problem, and what would be right.
+        /// Description of the problem, with advice.
         problem: String,
     },
     /// A mistake in one row of a batch.
     #[error("row {row}: {error}")]
     InRow {
-        /// The row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// The problem.
+        /// Mistake in the row.
         error: Box<Error>,
     },
     /// A mistake in one problem of a batch of plans.
     #[error("problems[{index}]: {error}")]
     InProblem {
-        /// The problem, from 0.
+        /// Index of the problem, from 0.
         index: usize,
-        /// The mistake.
+        /// Mistake in the problem.
         error: Box<Error>,
     },
     /// The operating system cannot start this many threads.
@@ -354,7 +353,7 @@ pub enum Error {
     /// A call that must come after another one.
     #[error("{call}: {remedy}")]
     OutOfTurn {
-        /// The call.
+        /// Name of the call.
         call: String,
         /// The call that must come first.
         remedy: String,
@@ -362,7 +361,7 @@ pub enum Error {
     /// A plant that fails at the start.
     #[error("the plant {problem}")]
     PlantFailed {
-        /// The failure, such as "raised ValueError: no".
+        /// Description of the failure, for example "raised ValueError: no".
         problem: String,
     },
     /// Corrupt stored bytes.
@@ -370,25 +369,25 @@ pub enum Error {
     Corrupt {
         /// The object to be restored.
         what: String,
-        /// The problem.
+        /// Reason why the bytes are rejected.
         problem: String,
     },
 }
 
 impl Error {
-    /// Shorthand for [`Error::UnknownOption`].
+    /// Creates an [`Error::UnknownOption`].
     pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
         let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
-    /// Shorthand for [`Error::OutOfRange`].
+    /// Creates an [`Error::OutOfRange`].
     pub(crate) fn out_of_range(what: impl Into<String>, requirement: &str, value: f64) -> Self {
         Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
     }
 }
 
-/// Checks that every entry is finite; `name(i)` says which one is not.
+/// Checks that every entry is finite; `name(i)` names the offending entry.
 pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
@@ -404,7 +403,7 @@ pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
 /// Length up to which a message repeats a text (characters).
 const ECHO_LENGTH: usize = 200;
 
-/// A given text for a message, cut to a readable length.
+/// Cuts a given text to a readable length for a message.
 pub(crate) fn shortened(text: &str) -> String {
     match text.char_indices().nth(ECHO_LENGTH) {
         None => text.into(),
@@ -412,7 +411,7 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-/// ` (did you mean 'x'?)` for the candidate nearest to `name`, or empty if none is near.
+/// Returns ` (did you mean 'x'?)` for the candidate nearest to `name`, or an empty text if none is near.
 pub(crate) fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let wanted = name.to_lowercase();
     candidates

@@ -1,8 +1,8 @@
 //! Interruption of long computations that have no partial result.
 //!
 //! A search takes a [`Monitor`](crate::solver::Monitor) and returns its best point when interrupted. A computation with
-//! nothing to return calls [`checkpoint`] in its loops instead, which asks the function that [`interruptible`] installed
-//! on this thread. So a checkpoint needs no argument through every layer above it.
+//! nothing to return calls [`checkpoint`] in its loops instead; the checkpoint calls the function that [`interruptible`]
+//! installed on this thread, and so needs no argument through the layers above it.
 
 use std::cell::RefCell;
 
@@ -14,12 +14,12 @@ thread_local! {
     static KEEP_GOING: RefCell<Option<KeepGoing>> = const { RefCell::new(None) };
 }
 
-/// Iterations between two checkpoints of a loop over rows.
+/// Number of rows between two checkpoints of a loop.
 const ROWS: usize = 256;
 
-/// Runs `work`. Its checkpoints on this thread call `keep_going`, and end it once that returns false.
+/// Runs `work`. Its checkpoints on this thread call `keep_going`, and fail once that function returns false.
 pub fn interruptible<T>(keep_going: impl FnMut() -> bool + 'static, work: impl FnOnce() -> T) -> T {
-    /// Restores the function of the call around this one, also after a panic.
+    /// Guard that restores the function of the enclosing call, also after a panic.
     struct Restore(Option<KeepGoing>);
     impl Drop for Restore {
         fn drop(&mut self) {
@@ -30,19 +30,19 @@ pub fn interruptible<T>(keep_going: impl FnMut() -> bool + 'static, work: impl F
     work()
 }
 
-/// Checks whether to go on.
+/// Checks whether the computation may continue.
 ///
 /// # Errors
-/// [`Error::Interrupted`] if not.
+/// [`Error::Interrupted`] if it may not.
 pub fn checkpoint() -> Result<()> {
-    // Taken out for the call, which may run user code that starts another computation.
+    // The function is removed during the call, which may run user code that starts another computation.
     let Some(mut keep_going) = KEEP_GOING.take() else { return Ok(()) };
     let goes_on = keep_going();
     KEEP_GOING.set(Some(keep_going));
     if goes_on { Ok(()) } else { Err(Error::Interrupted) }
 }
 
-/// A [`checkpoint`] at every 256th `row` of a loop.
+/// Calls [`checkpoint`] at every 256th `row` of a loop.
 ///
 /// # Errors
 /// As [`checkpoint`].

@@ -1,4 +1,4 @@
-//! Inverse kinematics and trajectory tracking for robot manipulators, redundant ones first.
+//! Inverse kinematics and trajectory tracking for robot manipulators, with a focus on redundant arms.
 //!
 //! ```
 //! use ikcore::ik::{SolveOptions, solve};
@@ -26,23 +26,23 @@
 //! ```
 //!
 //! Two sides meet in [`objective`] and nowhere else. The robot side ([`robot`], [`limits`], [`task`], [`problem`])
-//! implements its small traits, the solver side ([`solver`]) uses them: a solver file never mentions robots, a robot
-//! file never mentions solvers. So a solver works with any objective, and the compiler refuses an objective without a
-//! Jacobian where the solver needs one.
+//! implements its small traits, and the solver side ([`solver`]) uses them: a solver file never mentions robots, a robot
+//! file never mentions solvers. A solver therefore works with any objective, and the compiler rejects an objective
+//! without a Jacobian where the solver needs one.
 //!
-//! # What every algorithm keeps to
+//! # Contracts of every algorithm
 //!
 //! - Evaluation budgets are exact, results lie inside the box, and the best point found is never lost. The
 //!   [`Evaluator`](solver::Evaluator) ensures this, not the algorithm.
-//! - A search that does not converge returns a [`Status`](solver::Status) with a sentence that says what to try. An
-//!   [`Error`] is a caller's mistake; it names the argument, its value and what would be valid.
+//! - A search that does not converge returns a [`Status`](solver::Status) with advice in a sentence. An [`Error`] is a
+//!   caller's mistake; it names the argument, its value and what would be valid.
 //! - The same seed gives the same bits, on one build and instruction set.
 //! - Models are immutable and shared between threads without locks; hot loops do not allocate.
 //!
 //! # Layers
 //!
-//! A file imports its own module and modules of lower layers only, never in a circle. `docs/architecture.md` says what
-//! each module contains and where to find things; a test checks the layers.
+//! A file imports its own module and modules of lower layers only, never in a circle. `docs/architecture.md` describes
+//! the content of each module; a test checks the layers.
 //!
 //! | layer | modules |
 //! |---|---|

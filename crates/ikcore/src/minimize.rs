@@ -1,4 +1,4 @@
-//! Minimises any function in a box with a derivative-free solver.
+//! Minimisation of any function in a box by a derivative-free solver.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -13,26 +13,26 @@ use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Mon
 /// Options of [`minimize`].
 #[derive(Debug, Clone)]
 pub struct MinimizeOptions {
-    /// The algorithm.
+    /// Solver of the search.
     pub solver: AnySolver<DerivativeFree>,
-    /// The start (n,). `None` draws it from the box.
+    /// Start of the search (n,). `None` draws it from the box.
     pub start: Option<Vec<f64>>,
-    /// Budgets. A value below [`Stop::value_below`] ends the search, also at the start.
+    /// Budgets of the search. A value below [`Stop::value_below`] ends it, also at the start.
     pub stop: Stop,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
-/// The best point found, and how the search ended.
+/// Best point found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Minimum {
-    /// The point (n,), inside the box.
+    /// Best point (n,), inside the box.
     pub x: Point,
     /// Value of the function there; infinite if it was never finite.
     pub value: f64,
-    /// (evaluations made, best value then): the start, every improvement, and the end.
+    /// Pairs of (evaluations made, best value then): the start, every improvement, and the end.
     pub history: Vec<[f64; 2]>,
-    /// [`Status::Solved`] below the requested value. Otherwise a search ends by its own rule ([`Status::Stalled`]) or
+    /// Status [`Status::Solved`] below the requested value. Otherwise the search ends by its own rule ([`Status::Stalled`]) or
     /// when its budget is spent.
     pub status: Status,
     /// Iterations over all starts.
@@ -46,7 +46,7 @@ pub struct Minimum {
 }
 
 impl Minimum {
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {
@@ -141,7 +141,7 @@ fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
     }
 }
 
-/// Records every improvement, and compares values with the requested one.
+/// Objective that records every improvement, and compares values with the requested one.
 struct Recorded<'a> {
     objective: &'a mut dyn Objective,
     enough: Option<f64>,
@@ -159,7 +159,7 @@ impl Recorded<'_> {
         }
     }
 
-    /// The history with a last row for the end, unless the last evaluation was an improvement.
+    /// Returns the history with a last row for the end, unless the last evaluation was an improvement.
     fn finish(mut self, evaluations: usize) -> Vec<[f64; 2]> {
         if let Some([at, best]) = self.history.last().copied()
             && at < evaluations as f64

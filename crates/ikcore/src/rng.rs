@@ -1,13 +1,13 @@
-//! The only constructor of random generators: repeatable from (seed, stream), and built at the first draw, since most
-//! targets are solved without one.
+//! Random generators, constructed only here: repeatable from (seed, stream), and built at the first draw, since most targets
+//! are solved without one.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Numbers drawn at once, at a quarter of the cost of single draws.
+/// Number of draws made together, at a quarter of the cost of single draws.
 const BUFFER: usize = 64;
 
-/// A generator that is built at its first draw. Equal (seed, stream) give equal draws on every platform.
+/// Random generator that is built at its first draw. Equal (seed, stream) give equal draws on every platform.
 #[derive(Debug, Clone)]
 pub struct LazyRng {
     seed: u64,
@@ -22,25 +22,26 @@ struct Source {
     next: usize,
 }
 
-/// The generator of item `index` of a job with this `seed`; items are independent of each other.
+/// Returns the generator of item `index` of a job with this `seed`; items are independent of each other.
 pub fn stream(seed: u64, index: u64) -> LazyRng {
     LazyRng { seed, stream: index, source: None }
 }
 
-/// The two halves of a draw: independent uniforms in [0, 1), of 26 and 27 bits.
+/// Splits a draw into two independent uniforms in [0, 1), of 26 and 27 bits.
 #[inline]
 pub fn split(uniform: f64) -> [f64; 2] {
     const HALF: f64 = (1_u64 << 26) as f64;
     const ROUNDER: f64 = (1_u64 << 52) as f64;
     let scaled = HALF * uniform;
-    // Adding 2^52 rounds to an integer; then down, if that was up. Casts would prevent vectorisation of loops over it.
+    // Adding 2^52 rounds to an integer, which is then corrected downwards. Casts would prevent vectorisation of loops over
+    // it.
     let rounded = (scaled + ROUNDER) - ROUNDER;
     let whole = if rounded > scaled { rounded - 1.0 } else { rounded };
     [whole * (1.0 / HALF), scaled - whole]
 }
 
 impl LazyRng {
-    /// Uniform in [0, 1).
+    /// Draws uniformly from [0, 1).
     #[inline]
     pub fn uniform(&mut self) -> f64 {
         match &mut self.source {
@@ -62,37 +63,37 @@ impl LazyRng {
         let mut bytes = [0; 8 * BUFFER];
         source.generator.fill_bytes(&mut bytes);
         for (uniform, bytes) in source.uniforms.iter_mut().zip(bytes.as_chunks().0) {
-            // The upper 53 bits. Our own conversion, so that no library update can change the numbers.
+            // The upper 53 bits, converted here so that no library update can change the numbers.
             *uniform = (u64::from_le_bytes(*bytes) >> 11) as f64 / (1_u64 << 53) as f64;
         }
         source.next = 1;
         source.uniforms[0]
     }
 
-    /// Uniform in [lower, upper); both finite.
+    /// Draws uniformly from [lower, upper); both must be finite.
     pub fn uniform_in(&mut self, lower: f64, upper: f64) -> f64 {
         lower + (upper - lower) * self.uniform()
     }
 
-    /// Entries uniform in [-1, 1).
+    /// Fills `b` with uniform draws from [-1, 1).
     pub fn symmetric(&mut self, b: &mut [f64]) {
         self.draw(b, |v, uniform| *v = 2.0 * uniform - 1.0);
     }
 
-    /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights,
-    /// at half the cost.
+    /// Returns two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for
+    /// weights, at half the cost.
     #[inline]
     fn uniform_pair(&mut self) -> [f64; 2] {
         split(self.uniform())
     }
 
-    /// A whole number below `count`, which is at least 1 and fits into 32 bits.
+    /// Draws an integer below `count`, which is at least 1 and fits into 32 bits.
     #[inline]
     pub fn below(&mut self, count: usize) -> usize {
         (count as f64 * self.uniform()) as i64 as usize
     }
 
-    /// Two whole numbers below `count` from one draw.
+    /// Draws two integers below `count` from one draw.
     #[inline]
     pub fn pair_below(&mut self, count: usize) -> [usize; 2] {
         self.uniform_pair().map(|u| (count as f64 * u) as i64 as usize)
@@ -111,18 +112,18 @@ impl LazyRng {
         }
     }
 
-    /// Two independent draws of a normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
+    /// Returns two independent draws from a normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
     pub fn normal_pair(&mut self) -> [f64; 2] {
-        // 1 - u is in (0, 1]: its logarithm is finite.
+        // 1 - u is in (0, 1], so its logarithm is finite.
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         let (sine, cosine) = (std::f64::consts::TAU * self.uniform()).sin_cos();
         [radius * cosine, radius * sine]
     }
 
-    /// A vector of unit length: entries uniform in [-1, 1), then normalised.
+    /// Fills `b` with a unit vector: entries uniform in [-1, 1), then normalised.
     pub fn direction(&mut self, b: &mut [f64]) {
         let mut squared = 0.0;
-        // A draw of almost zero length has no direction.
+        // Redraw a vector of almost zero length, which has no direction.
         while squared < 1e-12 {
             squared = 0.0;
             self.draw(b, |v, uniform| {
@@ -176,7 +177,7 @@ mod tests {
         let ends = [0.0, 0.5, 1.0 - f64::EPSILON / 2.0, 1.5 / (1_u64 << 26) as f64].map(split);
         let last = 1.0 / (1_u64 << 26) as f64;
         assert_eq!(ends, [[0.0, 0.0], [0.5, 0.0], [1.0 - last, 1.0 - last / 2.0], [last, 0.5]]);
-        // Four standard deviations of a mean of 4000: of a uniform 0.018, of the product of two 0.014.
+        // Four standard deviations of a mean of 4000 draws: 0.018 for a uniform, 0.014 for the product of two.
         assert!((mean(|pair| pair[0]) - 0.5).abs() < 0.018 && (mean(|pair| pair[1]) - 0.5).abs() < 0.018);
         assert!((mean(|pair| pair[0] * pair[1]) - 0.25).abs() < 0.014);
     }

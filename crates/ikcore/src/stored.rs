@@ -1,12 +1,12 @@
-//! Values as bytes, for storing and for copying between processes: a version, a checksum, then the value. The checksum
-//! detects damaged bytes.
+//! Serialization of values to bytes, for storage and for copying between processes: a version, a checksum, then the value.
+//! The checksum detects damaged bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
 
-/// Version of the byte form, raised with each change of a stored type. 0.1 wrote 1; 0.2 and later write this one.
+/// Format version, raised with each change of a stored type. Releases 0.1 wrote 1; 0.2 and later write this one.
 const FORMAT: u8 = 3;
 
 /// Returns `value` as bytes; `what` names it in errors.
@@ -42,7 +42,7 @@ pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
     }
 }
 
-/// Why the payload cannot be read. The decoder drops the message of a type that refuses its own values.
+/// Returns the reason why the payload is unreadable. The decoder drops the message of a type that rejects its own values.
 fn reason(problem: postcard::Error) -> String {
     match problem {
         postcard::Error::SerdeDeCustom => "its values contradict each other".into(),
@@ -54,7 +54,7 @@ fn corrupt(what: &str, problem: String) -> Error {
     Error::Corrupt { what: what.into(), problem }
 }
 
-/// FNV-1a with 64 bits (Fowler, Noll and Vo): detects accidents, not manipulation.
+/// Computes the 64-bit FNV-1a hash (Fowler, Noll and Vo): detects accidents, not manipulation.
 fn checksum(bytes: &[u8]) -> u64 {
     const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0000_0100_0000_01b3;

@@ -1,10 +1,10 @@
-//! Numbers in messages, and names of options.
+//! Wording of messages: numbers, lists and names of options.
 
 /// Implements `name`, `Display` and `FromStr` for an option with these names; the error of `FromStr` lists them.
 macro_rules! words {
     ($what:literal: $option:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
         impl $option {
-            /// The name of this option.
+            /// Returns the name of this option.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -37,7 +37,7 @@ pub(crate) use words;
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-3..1e4).contains(&size) {
-        // Decimals for four significant digits.
+        // Number of decimals for four significant digits.
         let decimals = if size == 0.0 { 0 } else { (3 - size.log10().floor() as i32).max(0) as usize };
         format!("{value:.decimals$}")
     } else {
@@ -58,7 +58,7 @@ pub(crate) fn joined<'a>(names: impl Iterator<Item = &'a str>) -> String {
 /// Length of a list of names in a message: long enough for a known robot, short enough to read (characters).
 const LIST_LENGTH: usize = 400;
 
-/// Joins names with commas, up to a readable length; then says how many more there are.
+/// Joins names with commas, up to a readable length; then appends the number of remaining names.
 pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
     let mut list = names.next().unwrap_or_default().to_owned();
@@ -72,7 +72,7 @@ pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list
 }
 
-/// A time (s), rounded to 1e-9 s to remove the rounding of sums of dt.
+/// Rounds a time (s) to 1e-9 s, which removes the rounding of sums of dt.
 pub(crate) fn time(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e9
 }

@@ -35,7 +35,7 @@ pub struct PyBatchSolution {
     /// Whether each target was reached within the tolerances (m,).
     #[pyo3(get)]
     success: Py<PyArray1<bool>>,
-    /// Why each search ended (m,), values of `Status`.
+    /// Reason why each search ended (m,), values of `Status`.
     #[pyo3(get)]
     status: Py<PyArray1<u8>>,
     /// Distances of the tip from the targets (m,) (m), by forward kinematics of `q`; the largest of several tips.
@@ -57,12 +57,12 @@ pub struct PyBatchSolution {
     #[pyo3(get)]
     evaluations: Py<PyArray1<i64>>,
     elapsed: Duration,
-    /// What was asked of each tip.
+    /// Errors by tip.
     tips: TipErrors,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
-    /// How many were solved, and what to try for the others.
+    /// Number of solved targets, and advice on the others.
     #[pyo3(get)]
     message: String,
 }
@@ -90,8 +90,8 @@ impl PyBatchSolution {
         self.items.len()
     }
 
-    /// Returns a `Solution`, or a `BatchSolution` for a slice, a mask or several indices. The `elapsed` of such a part is
-    /// the sum over its items.
+    /// Returns a `Solution`, or a `BatchSolution` for a slice, a mask or several indices. The `elapsed` of a selection
+    /// is the sum over its items.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         match select("a batch", index, self.items.len())? {
             Selection::One(i) => {
@@ -165,7 +165,7 @@ impl PyBatchSolution {
     }
 }
 
-/// Sums up a batch of which `counts[status]` targets ended with `status`.
+/// Returns the message of a batch in which `counts[status]` targets ended with `status`.
 #[pyfunction]
 #[pyo3(name = "_batch_message")]
 #[allow(clippy::needless_pass_by_value)]
@@ -184,14 +184,15 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 ///
 /// Args:
 ///     robot: the arm.
-///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several tips a dict of
-///         them, as for `solve`.
+///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several
+///         tips, a dict of targets as for `solve`.
 ///     starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
-///     first_row: the row of the first target in the batch that these are part of. `solve_batch(robot, targets[k:], first_row=k)` gives
-///         the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of all.
+///     first_row: row of the first of these targets in a larger batch. `solve_batch(robot, targets[k:], first_row=k)`
+///         gives the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of the
+///         larger batch.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
-///     on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
-///         other rows and marks this one `Status.INVALID`, with q NaN.
+///     on_invalid: treatment of an invalid target or start. "raise": raises an error that names the row; "skip": solves
+///         the other rows and marks this row `Status.INVALID`, with q NaN.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///     task: as for `solve`.
 ///     solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
@@ -210,6 +211,14 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 /// Raises:
 ///     InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
 ///     LimitError: a start outside the limits (names the row).
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> targets = robot.fk(robot.random_configurations(100, seed=1))
+///     >>> batch = bik.solve_batch(robot, targets)
+///     >>> batch.q.shape, int(batch.success.sum())
+///     ((100, 6), 100)
 #[pyfunction]
 #[pyo3(signature = (robot, targets, *, starts=None, first_row=0, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=ToleranceArgument::All(1e-6),

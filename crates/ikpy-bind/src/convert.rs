@@ -1,4 +1,4 @@
-//! Conversion of Python values to Rust and back. The only file that depends on numpy's memory layout.
+//! Conversion between Python and Rust values. No other file depends on numpy's memory layout.
 
 #![allow(unsafe_code, reason = "memory of numpy arrays")]
 
@@ -25,15 +25,15 @@ pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// The numbers of an argument, in C order.
 ///
-/// numpy's `readonly()` would register each array in a table of borrows. That costs as much as a step of a solver, and only
-/// guards against mutable borrows, of which there are none here.
+/// Avoids numpy's `readonly()`, which registers each array in a table of borrows. That costs as much as a step of a
+/// solver, and guards only against mutable borrows, which this library never makes.
 pub struct Numbers<'py>(Array<'py>);
 
 impl Numbers<'_> {
     /// The numbers, row by row.
     pub fn as_slice(&self) -> Result<&[f64], AsSliceError> {
-        // SAFETY: this library never writes into an argument. The caller must ensure that no other thread does while a long
-        // call has released the interpreter; numpy's table would not prevent it either.
+        // SAFETY: this library never writes into an argument. The caller must ensure that no other thread does so while
+        // a long call has released the interpreter; numpy's table would not prevent it either.
         unsafe { self.0.as_slice() }
     }
 }
@@ -72,7 +72,7 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
             let aligned = is_aligned(&array);
             Ok(Numbers(if aligned { array } else { array.call_method0(intern!(value.py(), "copy"))?.cast_into()? }))
         }
-        // Ctrl-C during the conversion is not an error of the value.
+        // Passes on Ctrl-C during the conversion, which is no error of the value.
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
     }
@@ -133,23 +133,23 @@ fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
     value.getattr_opt(intern!(py, "as_matrix"))?.map(|matrix| matrix.call0()).transpose()
 }
 
-/// Reads a count or a seed. It is taken as i128, because the overflow error of a narrower type would not name the argument.
+/// Reads a count or a seed; as i128, because the overflow error of a narrower type would not name the argument.
 pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
     let bound = || if value < 0 { "zero or more".into() } else { format!("below 2^{}", 8 * size_of::<T>()) };
     T::try_from(value).map_err(|_| invalid(format!("{what} must be {}, got {value}", bound())))
 }
 
-/// Reads a word. Python's own error for half a surrogate pair would not be one of this library.
+/// Reads a string. An unpaired surrogate raises an error of this library instead of Python's own.
 pub fn text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<&'a str> {
     value.cast::<PyString>()?.to_str().map_err(|_| not_unicode(value))
 }
 
-/// Reads an optional word.
+/// Reads an optional string.
 pub fn optional_text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str>> {
     if value.is_none() { Ok(None) } else { text(value).map(Some) }
 }
 
-/// Reads a file, or text; `what` names it.
+/// Reads a path, or XML as text; `what` names the argument in errors.
 pub fn path_or_text(what: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(text) = value.extract::<String>() {
         return Ok(text);
@@ -160,7 +160,7 @@ pub fn path_or_text(what: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     }
 }
 
-/// Reads an optional list of words.
+/// Reads an optional list of strings.
 pub fn optional_texts(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     if value.is_none() {
         return Ok(None);
@@ -184,7 +184,7 @@ pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Returns the repr of a value, cut to a readable length. A class of this library probably lacks its parentheses.
+/// Returns the repr of a value, cut to a readable length. For a class of this library it suggests an instance.
 pub fn summary(value: &Bound<'_, PyAny>) -> String {
     if let Ok(class) = value.cast::<PyType>()
         && class.module().is_ok_and(|module| module.to_string_lossy().starts_with("beetle_ik"))
@@ -297,7 +297,7 @@ pub fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) 
     let count = values.len();
     match values.into_pyarray(py).reshape(shape) {
         Ok(array) => Ok(read_only(array)),
-        // Only stored values can disagree with their own sizes.
+        // Rejects corrupt stored values: all other sizes agree.
         Err(_) => Err(invalid(format!("{count} stored numbers do not fill shape {}", shape_text(shape)))),
     }
 }

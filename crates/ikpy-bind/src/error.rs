@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// The exception classes, made once. Several have two bases, which pyo3's macro does not support.
+/// Exception classes, created once. Several have two bases, which pyo3's macro does not support.
 struct Classes {
     base: Py<PyType>,
     invalid_input: Py<PyType>,
@@ -120,7 +120,7 @@ pub fn raise(error: Error) -> PyErr {
     })
 }
 
-/// What a caller of Python can do about an error.
+/// Returns advice for Python callers, which is appended to the message of an error.
 fn remedy(error: &Error) -> &'static str {
     match error {
         Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),

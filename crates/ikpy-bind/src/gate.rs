@@ -1,8 +1,9 @@
-//! The gate of every call: an argument that does not fit is refused in the words of this library.
+//! Gates: wrappers of all functions, which word argument errors in the terms of this library.
 //!
-//! PyO3 reads arguments before a function of ours runs. Its errors ("'bool' object is not an instance of 'str'") lack the argument
-//! and the value, and it has no hook for others. So each function, method and constructor of the module stands behind one that
-//! calls it and, where arguments did not fit, lets `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
+//! PyO3 reads arguments before any function of this library runs. Its errors ("'bool' object is not an instance of
+//! 'str'") name neither the argument nor the value, and it offers no hook to replace them. So each function, method and
+//! constructor of the module is wrapped in a gate, which calls it and, if the arguments did not fit, lets
+//! `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 
@@ -20,23 +21,23 @@ use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple, PyType};
 
 use crate::python_calls;
 
-/// How PyO3 is called by Python, unless a function has no arguments or takes any keyword.
+/// Calling convention of PyO3 functions, except functions without arguments or with arbitrary keywords.
 const FAST: i32 = METH_FASTCALL | METH_KEYWORDS;
 
-/// A function or method as PyO3 made it.
+/// A function or method as made by PyO3.
 struct Member {
     object: Py<PyAny>,
-    /// Its C function. A method tells it only once it is bound to an instance.
+    /// C function of the member; for a method, known once it is bound to an instance.
     call: OnceLock<PyCFunctionFastWithKeywords>,
 }
 
-/// The members behind each of [`GATES`].
+/// Members behind the [`GATES`], by index.
 static MEMBERS: [OnceLock<Member>; GATES.len()] = [const { OnceLock::new() }; GATES.len()];
 
-/// The constructors of PyO3, by the address of their class.
+/// Constructors made by PyO3, by the address of their class.
 static CONSTRUCTORS: OnceLock<HashMap<usize, ffi::newfunc>> = OnceLock::new();
 
-/// A C function is told neither its name nor its object, so each member has a gate of its own.
+/// One C function for each member, since a C function receives neither its name nor its object.
 const GATES: [PyCFunctionFastWithKeywords; 128] = gates();
 
 macro_rules! sixteen {
@@ -73,7 +74,7 @@ unsafe extern "C" fn gate<const I: usize>(
 }
 
 impl Member {
-    /// Finds the C function of a method by an instance; sets an exception where it is called in another way.
+    /// Finds the C function of a method by an instance; sets an exception for another calling convention.
     fn resolved(&self, this: *mut PyObject) -> Option<&PyCFunctionFastWithKeywords> {
         Python::attach(|py| {
             let object = self.object.bind(py);
@@ -95,7 +96,7 @@ impl Member {
     }
 }
 
-/// The C function of a function or bound method; None for one that is called in another way.
+/// Returns the C function of a function or bound method; None if it has another calling convention.
 fn fast_call(function: &Bound<'_, PyAny>) -> PyResult<Option<PyCFunctionFastWithKeywords>> {
     let function = function.cast::<PyCFunction>()?.as_ptr();
     // SAFETY: it is a function of C, and the flags say which signature it has.
@@ -111,7 +112,7 @@ fn fast_call(function: &Bound<'_, PyAny>) -> PyResult<Option<PyCFunctionFastWith
 /// Positional arguments and keywords of a call.
 type Given<'py> = (Bound<'py, PyTuple>, Bound<'py, PyDict>);
 
-/// Collects the arguments of a call; the instance that a method belongs to is not among them.
+/// Collects the arguments of a call, without `self`.
 ///
 /// # Safety
 /// `arguments` has `count` entries, and one more for each entry of the tuple `names`, which may be null.
@@ -133,10 +134,10 @@ unsafe fn vector_arguments<'py>(
     Ok((PyTuple::new(py, (0..count).map(entry))?, keywords))
 }
 
-/// Replaces the error of PyO3, if it is one, by ours.
+/// Replaces a pending argument error of PyO3 by an error in the terms of this library.
 fn reword<'py>(py: Python<'py>, member: &Bound<'py, PyAny>, given: impl FnOnce() -> PyResult<Given<'py>>) {
     let Some(error) = PyErr::take(py) else { return };
-    // An error that Python code raised, such as a function of the caller, has a traceback.
+    // Errors raised by Python code, for example by a callback, have a traceback.
     let of_arguments = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyOverflowError>(py);
     let error = if of_arguments && error.traceback(py).is_none() {
         given()
@@ -148,7 +149,7 @@ fn reword<'py>(py: Python<'py>, member: &Bound<'py, PyAny>, given: impl FnOnce()
     error.restore(py);
 }
 
-/// Puts the functions and classes of the module behind gates.
+/// Wraps the functions, methods and constructors of the module in gates.
 pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     let mut free = 0..GATES.len();
@@ -184,7 +185,7 @@ pub fn install(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Returns a function of a module or, without the name of one, a static method of a class behind a gate.
+/// Returns a gated function: of `module`, or a static method of a class if `module` is None.
 fn gated_function<'py>(
     function: &Bound<'py, PyAny>,
     owner: &Bound<'py, PyAny>,
@@ -195,7 +196,7 @@ fn gated_function<'py>(
     let kind = if module.is_some() { 0 } else { METH_STATIC };
     let definition = behind_gate(function, Some(call), kind, free)?;
     let name = module.map_or(std::ptr::null_mut(), |name| name.as_ptr());
-    // SAFETY: the definition is never freed; Python counts its own references to the others.
+    // SAFETY: the definition is never freed; Python counts its own references to `owner` and `name`.
     let made = unsafe { ffi::PyCFunction_NewEx(definition, owner.as_ptr(), name) };
     // SAFETY: a new reference, or null with an exception.
     unsafe { Bound::from_owned_ptr_or_err(function.py(), made) }.map(Some)
@@ -211,13 +212,13 @@ fn gated_method<'py>(
         return Ok(None);
     }
     let definition = behind_gate(method, None, 0, free)?;
-    // SAFETY: the definition is never freed, and the class is one.
+    // SAFETY: the definition is never freed, and `class` is a type object.
     let made = unsafe { ffi::PyDescr_NewMethod(class.as_type_ptr(), definition) };
     // SAFETY: a new reference, or null with an exception.
     unsafe { Bound::from_owned_ptr_or_err(class.py(), made) }.map(Some)
 }
 
-/// Defines a function that has the name and the docstring of a member, behind a gate that is free.
+/// Defines a function with the name and the docstring of a member, which calls the next free gate.
 fn behind_gate(
     member: &Bound<'_, PyAny>,
     call: Option<PyCFunctionFastWithKeywords>,
@@ -243,7 +244,7 @@ fn behind_gate(
     })))
 }
 
-/// Returns `__new__` behind a gate; None for a class that only the library makes.
+/// Returns `__new__` behind a gate; None for a class without a constructor in Python.
 fn gated_constructor<'py>(
     class: &Bound<'py, PyType>,
     constructors: &mut HashMap<usize, ffi::newfunc>,
@@ -251,7 +252,7 @@ fn gated_constructor<'py>(
     if class.getattr("__text_signature__")?.is_none() {
         return Ok(None);
     }
-    // SAFETY: the class is one, and its slot is the constructor that PyO3 made.
+    // SAFETY: `class` is a type object, and its slot holds the constructor made by PyO3.
     let slot = unsafe { ffi::PyType_GetSlot(class.as_type_ptr(), ffi::Py_tp_new) };
     if slot.is_null() {
         return Ok(None);
@@ -271,14 +272,14 @@ fn gated_constructor<'py>(
     unsafe { Bound::from_owned_ptr_or_err(class.py(), made) }.map(Some)
 }
 
-/// Makes an instance. The first argument is the class, or one derived from it.
+/// Makes an instance. The first argument is the class or a subclass of it.
 unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywords: *mut PyObject) -> *mut PyObject {
     Python::attach(|py| {
         // SAFETY: Python calls with the class that the function belongs to, a tuple, and a dict or null.
         let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };
         match derived(&class, &given) {
             Ok((make, made, arguments)) => {
-                // SAFETY: the constructor is that of a class that `made` derives from.
+                // SAFETY: `made` derives from the class of the constructor.
                 let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
                 if instance.is_null() {
                     // SAFETY: as above.
@@ -296,7 +297,7 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
     })
 }
 
-/// Returns the constructor of a class, the class that it is called for, and the arguments after that.
+/// Returns the constructor of a class, the class to instantiate, and the remaining arguments.
 fn derived<'py>(
     class: &Bound<'py, PyAny>,
     given: &Bound<'py, PyAny>,

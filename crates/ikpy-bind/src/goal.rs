@@ -85,7 +85,7 @@ impl PyGoal {
     }
 }
 
-/// Makes an instance of a goal's class, which adds no fields.
+/// Makes an instance of a goal class; the class itself adds no fields.
 fn made<C>(core: Goal, class: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyGoal>,
@@ -175,8 +175,9 @@ impl PyLinkManipulability {
     }
 }
 
-/// Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of bodies
-/// whose distance d is below `up_to`. For calls with `obstacles=` or `self_collision=True`, whose margin is kept besides.
+/// Stays away from obstacles, and links from each other: minimises the sum of ((up_to - d) / up_to)^2 over all pairs of
+/// bodies whose distance d is below `up_to`. It needs a call with `obstacles=` or `self_collision=True`, whose margin
+/// holds in addition.
 ///
 /// Args:
 ///     weight: weight relative to other goals.

@@ -25,13 +25,13 @@ use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
 
-/// The best configuration found, and how the search ended.
+/// The best configuration found, and the outcome of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
-    /// As it was found: perhaps without its nearest bodies.
+    /// Solution as found; its nearest bodies may be missing.
     core: ik::Solution,
     around: Option<Box<Around>>,
-    /// What was asked of each tip.
+    /// Errors by tip.
     tips: TipErrors,
     /// The configuration (n,) (rad, m), inside the limits.
     #[pyo3(get)]
@@ -41,7 +41,7 @@ pub struct PySolution {
     limits: Py<PyLimits>,
 }
 
-/// What the nearest bodies of a solution are found in, when they are first asked for.
+/// Robot and surroundings, from which the nearest bodies are computed at the first access.
 struct Around {
     robot: Arc<Robot>,
     surroundings: Surroundings,
@@ -54,7 +54,7 @@ outcome! {
     PySolution = |result|
     /// Whether the target was reached within the tolerances.
     success,
-    /// Why the search ended, a `Status`.
+    /// Reason why the search ended, a `Status`.
     status: result.core.status,
     message: result.whole().message(),
     /// Evaluations of the forward kinematics.
@@ -132,7 +132,7 @@ impl PySolution {
         Self { q: copied(py, &core.q).unbind(), limits, tips, core, around: None }
     }
 
-    /// With its nearest bodies.
+    /// Returns the solution with its nearest bodies.
     fn whole(&self) -> &ik::Solution {
         let Some(around) = &self.around else { return &self.core };
         let Around { robot, surroundings, whole } = &**around;
@@ -149,23 +149,26 @@ impl PySolution {
 ///
 /// Args:
 ///     robot: the arm.
-///     target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips` a dict of them, such
-///         as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the first.
-///     task: which part of the target counts, one of `tasks`, or a dict for several tips; None: all of it.
-///     start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
-///         where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
-///         inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
+///     target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
+///         dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
+///         "right_tool") gives the pose of the second tip in the frame of the first.
+///     task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
+///     start: configuration (n,). For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+///         search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
+///         solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
+///         target.
 ///     solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
 ///         Levenberg-Marquardt from many starts for everything else.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad); for several tips also a dict.
 ///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
-///     prefer: which solution to return.
-///         "any": the first one found.
-///         "nearest": of those found, the one with the smallest |q - start| (rad, m). Each is moved along its self-motion
-///         and by whole turns towards the start; the search ends when 24 in a row are no nearer.
-///         "best": of those found, the best one for the goals. Each is optimised along its self-motion; the search ends
-///         when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
+///     prefer: solution to return.
+///         "any": the first solution found.
+///         "nearest": of the solutions found, the one with the smallest |q - start| (rad, m). Each is moved along its
+///         self-motion and by whole turns towards the start; the search ends when 24 in a row are no nearer.
+///         "best": of the solutions found, the best one for the goals. Each is optimised along its self-motion; the
+///         search
+///         ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
 ///         traced once instead, including the parts beyond joint limits.
 ///     limits: position limits; None: the robot's.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
@@ -176,13 +179,22 @@ impl PySolution {
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With obstacles a
-///     solution counts as solved only if it is clear by the margin; if none is found, its status is IN_COLLISION, and
-///     `message` names the two bodies and says whether the hand itself is in the way.
+///     A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found. With
+///     obstacles, a solution counts as solved only if it is clear by the margin. If none is found, the status is
+///     IN_COLLISION, and `message` names the two bodies and says whether the hand itself is in the way.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
 ///     LimitError: a start outside the limits.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> solution = bik.solve(robot, bik.pose([0.4, 0.1, 0.3], rpy=[3.14, 0, 0]))
+///     >>> solution.status
+///     <Status.SOLVED: 0>
+///     >>> solution.q.shape
+///     (6,)
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=ToleranceArgument::All(1e-6),
                     rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
@@ -232,7 +244,7 @@ pub fn solve(
     Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
 }
 
-/// A pose (4, 4) or a position (3,).
+/// Reads a pose (4, 4) or a position (3,).
 pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
     let numbers = array(what, value)?;
     match numbers.shape() {

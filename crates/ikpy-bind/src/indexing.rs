@@ -8,7 +8,7 @@ use pyo3::types::PyIterator;
 
 use crate::convert::summary;
 
-/// The items that an index selects.
+/// Items selected by an index.
 pub enum Selection {
     /// One item.
     One(usize),

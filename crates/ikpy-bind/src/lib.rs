@@ -37,7 +37,7 @@ mod traversal;
 
 use pyo3::prelude::*;
 
-// On free-threaded Python the interpreter turns its lock on, and says so: running without it has not been tested.
+// Requires the interpreter's lock: free-threaded Python enables it and warns. Running without it is untested.
 #[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -75,6 +75,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
     gate::install(module)?;
-    // The package lists what is public; a second list would become outdated.
+    // Removes `__all__`: the package lists the public names, and a second list would become outdated.
     module.dict().del_item("__all__")
 }

@@ -1,5 +1,5 @@
-//! Ctrl-C and progress in long calls. Every call that may take longer than 50 ms goes through [`long_call`], [`watched`],
-//! [`in_pieces`] or [`on_a_thread`].
+//! Ctrl-C and progress in long calls. Every call that may take longer than 50 ms runs through [`long_call`],
+//! [`watched`], [`in_pieces`] or [`on_a_thread`].
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,8 +17,8 @@ use crate::convert::summary;
 use crate::error::{invalid, raise};
 use crate::python_calls;
 
-/// Time between two checks for signals, and between two reports of progress: short enough to feel immediate, long enough to cost
-/// nothing.
+/// Interval between two checks for signals, and between two reports of progress: short enough to feel immediate, long
+/// enough to cost nothing.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Monitors a search: ends it at Ctrl-C, and reports progress.
@@ -50,7 +50,7 @@ pub fn long_call<T: Send>(py: Python<'_>, call: impl FnOnce() -> ikcore::Result<
     stopped.map_or_else(|| found.map_err(raise), Err)
 }
 
-/// Rows of a piece for [`in_pieces`], where a row takes a tenth of a microsecond.
+/// Rows between two checks for Ctrl-C in [`in_pieces`], for work of 0.1 microseconds a row.
 pub const QUICK_ROWS: usize = 1 << 17;
 
 /// Runs `work` on rows of `n` numbers without the interpreter, and checks for Ctrl-C after every `piece` of rows.
@@ -67,7 +67,7 @@ pub fn in_pieces(
     let mut results = vec![];
     for piece in rows.chunks(piece * n) {
         py.check_signals()?;
-        // On an error, run again on all rows: its message counts from the first one.
+        // Repeats a failed piece on all rows, so that its error message counts from the first row.
         results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
     }
     Ok(results)
@@ -80,7 +80,7 @@ pub fn on_a_thread<T: Send + 'static>(
     call: impl FnOnce() -> ikcore::Result<T> + Send + 'static,
 ) -> PyResult<T> {
     let (sender, mut receiver) = mpsc::sync_channel(1);
-    // After Ctrl-C nobody receives.
+    // Ignores a failure to send: after Ctrl-C nobody receives.
     let work = move || _ = sender.send(call());
     let worker =
         thread::Builder::new().spawn(work).map_err(|error| invalid(format!("cannot start a thread: {error}")))?;
@@ -112,7 +112,7 @@ pub fn watched_with_interpreter<T>(
     failure.map_or(found, Err)
 }
 
-/// Runs such a call; returns its result and the exception of Ctrl-C or `progress`, if any.
+/// Runs a long call that holds the interpreter; returns its result and the exception of Ctrl-C or `progress`, if any.
 pub fn watched_keeping_result<T>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

@@ -8,7 +8,7 @@ use crate::error::raise;
 use crate::limits::required_limits;
 use crate::trajectory::{PyTrajectory, names};
 
-/// Computes the fastest motion of all joints from one state to another, in which they arrive together.
+/// Computes the fastest joint motion from one state to another; all joints arrive together.
 ///
 /// The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
 /// qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
@@ -33,6 +33,13 @@ use crate::trajectory::{PyTrajectory, names};
 ///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
 ///         limits.
 ///     UnsupportedLimit: limits that vary in time.
+///
+/// For example:
+///
+///     >>> limits = bik.Limits(velocity=2.0, acceleration=5.0)
+///     >>> motion = bik.state_to_state([0.0, 0.0], [1.0, -0.5], limits)
+///     >>> round(motion.duration, 3)
+///     0.9
 #[pyfunction]
 #[pyo3(signature = (q0, q1, limits, *, qd0=None, qdd0=None, qd1=None, qdd1=None, joint_names=None))]
 #[allow(clippy::too_many_arguments)]

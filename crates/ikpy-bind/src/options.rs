@@ -14,11 +14,11 @@ pub trait Shown {
     /// The type of the option in Python.
     type Value;
     fn value(&self) -> Self::Value;
-    /// The option in Python syntax.
+    /// Formats the option in Python syntax.
     fn text(&self) -> String;
 }
 
-/// An option that Python passes in the type that it gets.
+/// An option whose argument and attribute have the same type in Python.
 pub trait Taken: Shown + Sized {
     fn take(name: &str, given: Self::Value) -> PyResult<Self>;
 }

@@ -18,6 +18,14 @@ use crate::error::{invalid, raise};
 ///     matrix: rotation matrix (3, 3).
 ///
 /// Without an orientation the axes are those of the base.
+///
+/// For example:
+///
+///     >>> bik.pose([0.4, 0.1, 0.3])
+///     array([[1. , 0. , 0. , 0.4],
+///            [0. , 1. , 0. , 0.1],
+///            [0. , 0. , 1. , 0.3],
+///            [0. , 0. , 0. , 1. ]])
 #[pyfunction]
 #[pyo3(
     signature = (position, *others, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None, **unknown),

@@ -72,7 +72,7 @@ outcome! {
     PyPlanarPosture = |result|
     /// Whether a posture was found.
     success,
-    /// Why the search ended, a `Status`.
+    /// Reason why the search ended, a `Status`.
     status: result.core.status,
     message: result.core.message(),
     /// Number of postures evaluated.
@@ -82,7 +82,8 @@ outcome! {
 
 #[pymethods]
 impl PyPlanarPosture {
-    /// The configuration (n,) (rad). If no posture was found, the one that brings the tip nearest to the target.
+    /// The configuration (n,) (rad). If no posture was found, the configuration that brings the tip nearest to the
+    /// target.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.q.clone())
@@ -128,7 +129,7 @@ impl PyPlanarPosture {
 /// For other arms, and for poses, use `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
 ///
 /// Args:
-///     robot: an arm of 3 or more revolute joints about z in one plane, such as `Robot.planar([...])`.
+///     robot: an arm of 3 or more revolute joints about z in one plane, for example `Robot.planar([...])`.
 ///     target: position of the tip (3,) (m).
 ///     measure: "tip": Yoshikawa's index of the tip; "overall": the sum of the indices of all links.
 ///     region: (2, 2) (m), lower and upper corner (x, y) of a rectangle for the joint positions; None: no restriction.

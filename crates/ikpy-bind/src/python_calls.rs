@@ -1,4 +1,4 @@
-//! The only calls into the Python package: plots, files, models of other libraries and the progress bar.
+//! Calls into the Python package: plots, files, models of other libraries and the progress bar. No other file calls it.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -41,7 +41,7 @@ pub fn robot<'py>(
     call(py, &format!("beetle_ik.{module}"), "robot", arguments)
 }
 
-/// Calls `beetle_ik._descriptions.named(name, unknown)`: a robot whose name is not built in.
+/// Calls `beetle_ik._descriptions.named(name, unknown)`, which makes a robot that is not built in.
 pub fn described<'py>(py: Python<'py>, name: &str, unknown: String) -> PyResult<Bound<'py, PyAny>> {
     call(py, "beetle_ik._descriptions", "named", (name, unknown))
 }
@@ -51,7 +51,7 @@ pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted
     call(py, "beetle_ik._xacro", "expand", (path, package_dirs, trusted))?.extract()
 }
 
-/// Logs at level INFO under "beetle_ik", for calls that take long.
+/// Logs a long call at level INFO under "beetle_ik".
 pub fn log(py: Python<'_>, message: String) -> PyResult<()> {
     call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
 }
@@ -61,13 +61,14 @@ pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     call(py, "beetle_ik._progress", "Bar", ())
 }
 
-/// Calls `beetle_ik._calls.misfit(argument, value, error)`: the message for a value of the wrong kind.
+/// Calls `beetle_ik._calls.misfit(argument, value, error)`, which words the error for a value of the wrong type.
 pub fn misfit(argument: &str, value: &Bound<'_, PyAny>, error: &PyErr) -> PyResult<String> {
     let py = value.py();
     call(py, "beetle_ik._calls", "misfit", (argument, value, error.value(py)))?.extract()
 }
 
-/// Calls `beetle_ik._calls.worded(error, call, arguments, keywords)`: the error of arguments that do not fit, in our words.
+/// Calls `beetle_ik._calls.worded(error, call, arguments, keywords)`, which words the error for arguments that do not
+/// fit.
 pub fn worded<'py>(
     py: Python<'py>,
     error: &PyErr,

@@ -1,4 +1,4 @@
-//! `MapGrid` and `map_chunks`: what maps of reachability are computed from.
+//! `MapGrid` and `map_chunks`: poses and computation of reachability maps.
 
 use ikcore::batch;
 use ikcore::interrupt::checkpoint_at;
@@ -19,9 +19,10 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::task::read_task;
 
-/// The poses of a map: cubic voxels, and the orientations at the centre of each, counted from 0.
+/// Poses of a reachability map: cubic voxels, and orientations at the centre of each, numbered from 0.
 ///
-/// `axis` is None, or the point (2,) (m) of a vertical axis; orientations then turn with the azimuth of the voxel about it.
+/// `axis` is None, or the point (2,) (m) of a vertical axis; orientations then turn with the azimuth of the voxel about
+/// this axis.
 #[pyclass(name = "MapGrid", module = "beetle_ik._core", frozen, eq)]
 #[derive(PartialEq)]
 pub struct PyMapGrid {
@@ -30,7 +31,7 @@ pub struct PyMapGrid {
 
 #[pymethods]
 impl PyMapGrid {
-    /// The poses of a map of `robot`; arguments as for `reachability` and `map_chunks`.
+    /// Makes the grid of a map of `robot`; arguments as for `reachability` and `map_chunks`.
     #[new]
     #[pyo3(signature = (robot, *, voxel, directions, rolls, region=None, task=None, obstacles=None, margin=None, self_collision=None))]
     #[allow(clippy::too_many_arguments)]
@@ -74,7 +75,8 @@ impl PyMapGrid {
         self.core.voxels().shape()
     }
 
-    /// The vertical axis about which orientations turn with the azimuth of the voxel: its point (2,) (m), or None.
+    /// Point (2,) (m) of the vertical axis about which orientations turn with the azimuth of the voxel; None without
+    /// one.
     #[getter]
     fn axis<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.core.voxels().axis().map(|axis| copied(py, &axis))
@@ -92,13 +94,13 @@ impl PyMapGrid {
         self.core.orientations().rolls()
     }
 
-    /// Bytes of the bits of a voxel.
+    /// Number of bytes that hold a bit for each orientation of a voxel.
     #[getter]
     fn bytes(&self) -> usize {
         self.core.bytes()
     }
 
-    /// Largest shape of a chunk; those at the upper ends are smaller.
+    /// Largest shape of a chunk; chunks at the upper ends may be smaller.
     #[getter]
     fn chunk_shape(&self) -> [usize; 3] {
         self.core.voxels().chunk_shape()
@@ -110,12 +112,13 @@ impl PyMapGrid {
         self.core.voxels().chunks()
     }
 
-    /// First and last + 1 voxel of chunk `number` along x, y and z. Numbers count along z first.
+    /// Returns the first voxel of chunk `number` and the one after its last, along x, y and z. Chunk numbers increase
+    /// along z first.
     fn chunk(&self, number: i128) -> PyResult<[[usize; 2]; 3]> {
         self.core.voxels().chunk(count("number", number)?).map_err(raise)
     }
 
-    /// The poses (orientations, 4, 4) of the voxel (x, y, z).
+    /// Returns the poses (orientations, 4, 4) of the voxel (x, y, z).
     fn poses<'py>(&self, py: Python<'py>, voxel: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let voxels = self.core.voxels();
         let shape = voxels.shape();
@@ -133,8 +136,8 @@ impl PyMapGrid {
         table(py, poses.collect(), &[count, 4, 4])
     }
 
-    /// The voxel of a pose (4, 4), or of each pose (n, 4, 4), and the number of the orientation nearest to its own: (n, 4), with n = 1
-    /// for a pose; -1 outside the map.
+    /// Returns the voxel and the nearest orientation of a pose (4, 4), or of each pose (n, 4, 4), as rows (x, y, z,
+    /// orientation): (n, 4), with n = 1 for a single pose; -1 outside the map.
     #[allow(non_snake_case)]
     fn locate<'py>(&self, py: Python<'py>, T: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
         let numbers = read_poses("T", T)?;
@@ -170,7 +173,7 @@ impl PyMapGrid {
     }
 }
 
-/// The row-major matrix of a frame.
+/// Returns the row-major matrix of a frame.
 fn rows(frame: &Frame) -> [f64; 16] {
     pose::rows(&Pose::from(*frame))
 }
@@ -193,21 +196,23 @@ fn surroundings(
     Ok(Surroundings { obstacles, margin, self_collision })
 }
 
-/// The results of a chunk: bits (x, y, z, bytes), manipulability (x, y, z) and clearance (x, y, z), or None.
+/// Results of a chunk: bits (x, y, z, bytes), and manipulability and clearance (x, y, z) or None.
 type ChunkArrays<'py> =
     (Bound<'py, PyArrayDyn<u8>>, Option<Bound<'py, PyArrayDyn<f32>>>, Option<Bound<'py, PyArrayDyn<f32>>>);
 
-/// Computes `chunks` of the map of a robot, by number; each has the same bits whatever the others are, on any number of threads.
+/// Computes chunks of the reachability map of a robot. The bits of a chunk depend neither on the other chunks nor on
+/// the number of threads.
 ///
 /// Args:
 ///     robot, grid: the robot, and the poses of its map.
 ///     chunks: numbers of chunks.
-///     task, obstacles, margin, self_collision, evaluations, quality, threads, progress: as for `reachability`; the first four are those
-///         of the grid.
+///     task, obstacles, margin, self_collision, evaluations, quality, threads, progress: as for `reachability`. The
+///         first four must be those of the grid.
 ///
 /// Returns:
-///     For each chunk (reached, manipulability, clearance): (x, y, z, grid.bytes) uint8, a bit for each orientation, the lowest first;
-///     (x, y, z) float32 of the best configuration found, NaN where there is none, or None without `quality`.
+///     (reached, manipulability, clearance) for each chunk: (x, y, z, grid.bytes) uint8, a bit for each orientation,
+///     the lowest first; then two arrays (x, y, z) float32 for the best configuration found, NaN where there is none,
+///     or None without `quality`.
 #[pyfunction]
 #[pyo3(signature = (robot, grid, chunks, *, task=None, obstacles=None, margin=None, self_collision=None, evaluations=200, quality=false,
                     threads=None, progress=None))]

@@ -32,13 +32,15 @@ impl PySelfMotion {
         self.core.closed
     }
 
-    /// Name of the joint whose limit ends the curve at its first configuration; None if it is closed, or followed no farther.
+    /// Name of the joint whose limit ends the curve at its first configuration; None if the curve is closed or not
+    /// followed so far.
     #[getter]
     fn lower_cut(&self) -> Option<&str> {
         self.core.lower_cut.map(|joint| self.joint_names[joint].as_str())
     }
 
-    /// Name of the joint whose limit ends the curve at its last configuration; None if it is closed, or followed no farther.
+    /// Name of the joint whose limit ends the curve at its last configuration; None if the curve is closed or not
+    /// followed so far.
     #[getter]
     fn upper_cut(&self) -> Option<&str> {
         self.core.upper_cut.map(|joint| self.joint_names[joint].as_str())
@@ -91,9 +93,10 @@ impl PySelfMotion {
 
 /// Returns the curves of the self-motion: all configurations, inside the limits, that keep the tip at a target.
 ///
-/// The arm has one joint more than the target takes: seven joints and a pose, or four and a position. With a closed form
-/// (`Robot.closed_form`), curves are looked for at 64 values of its parameter, on every branch; elsewhere by search. Each is followed in
-/// short steps past the joint limits, which then cut it, so that short parts between two limits are found too.
+/// The arm must have one joint more than the target constrains: seven joints for a pose, four for a position. With a
+/// closed form (`Robot.closed_form`), curves are sought at 64 values of its parameter, on every branch; otherwise by
+/// search. Each curve is followed in short steps past the joint limits and then cut there, so that short parts between
+/// two limits are found too.
 ///
 /// Args:
 ///     robot: the arm.
@@ -107,7 +110,14 @@ impl PySelfMotion {
 ///     A list of `SelfMotion`; empty if the target is not reached. Every configuration reaches the target to 2e-9 m and rad.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or an arm without one joint more than the target takes.
+///     InvalidInputError: wrong shape, NaN, or an arm that does not have one joint more than the target constrains.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("panda")
+///     >>> curves = bik.self_motion(robot, robot.fk([0.3, 0.2, -0.4, -1.7, 0.2, 1.9, 0.5]))
+///     >>> len(curves)
+///     3
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, start=None, spacing=0.05, limits=None, seed=0))]
 pub fn self_motion(

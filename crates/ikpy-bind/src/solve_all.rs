@@ -29,12 +29,12 @@ use crate::traversal::{Traversed, traversed};
 pub struct PySolutionSet {
     core: ik::SolutionSet,
     dof: usize,
-    /// Made when first asked for.
+    /// Configurations as an array, made at the first access.
     q: PyOnceLock<Py<PyArrayDyn<f64>>>,
-    /// What finds the nearest configuration to a target that is proven out of reach, when that is first asked for.
+    /// Call that finds the configuration nearest to a target proven out of reach, at the first access to `miss`.
     unreached: Option<Box<Unreached>>,
     miss: PyOnceLock<ik::Solution>,
-    /// What was asked of each tip, and the errors of each solution, then those of the best miss.
+    /// Errors by tip: of each solution, then of the best miss.
     tips: TipErrors,
     /// The limits in force.
     #[pyo3(get)]
@@ -60,7 +60,7 @@ outcome! {
     PySolutionSet = |result|
     /// Whether a solution was found.
     success,
-    /// SOLVED if a solution was found; otherwise why the last search ended.
+    /// SOLVED if a solution was found; otherwise the reason why the last search ended.
     status: result.core.status(),
     message: result.core.message(),
     /// Evaluations of the forward kinematics.
@@ -70,14 +70,14 @@ outcome! {
 
 #[pymethods]
 impl PySolutionSet {
-    /// Whether it is proven that no other solution exists inside the limits, whole turns aside; False where a search found them, and
-    /// where `limit` or `separation` left some out.
+    /// Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
+    /// and where `limit` or `separation` left solutions out.
     #[getter]
     fn complete(&self) -> bool {
         self.core.complete
     }
 
-    /// Whether the pose is singular, so that one solution at least stands for a family in which a joint is free.
+    /// Whether the pose is singular: at least one solution then represents a family in which a joint is free.
     #[getter]
     fn singular(&self) -> bool {
         self.core.singular
@@ -90,8 +90,8 @@ impl PySolutionSet {
         Ok(self.q.get_or_try_init(py, || rows().map(Bound::unbind))?.clone_ref(py))
     }
 
-    /// The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
-    /// is computed when first asked for.
+    /// Nearest `Solution` that misses the target, if no solution was found; otherwise None. For a target proven out of
+    /// reach, it is computed at the first access.
     #[getter]
     fn miss(&self, py: Python<'_>) -> PyResult<Option<PySolution>> {
         let miss = self.nearest_miss(py)?;
@@ -172,26 +172,28 @@ impl Unreached {
     }
 }
 
-/// Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
+/// Returns all solutions of a pose for an arm with a closed form (`Robot.closed_form`); otherwise searches for distinct
+/// solutions.
 ///
 /// The closed form serves whole poses without a `solver`, weights or region. `SolutionSet.complete` says whether it is
-/// proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
+/// proven that no solution is missing. A search ends after a hundred known solutions in a row, or when the budget is
+/// spent.
 ///
-/// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-/// start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
-/// are returned; found by search, they are at least `separation` apart.
+/// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if
+/// no start is given. A redundant arm has infinitely many solutions: a closed form returns those at `redundancy` values
+/// of its parameter, a search returns some that are at least `separation` apart.
 ///
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
-///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
+///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
 ///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
 ///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
 ///         a closed form are returned, those of a search differ by 0.1.
-///     redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
-///         limits allow. 0: its solutions are searched for.
+///     redundancy: number of parameter values at which a redundant arm with a closed form is solved, spread over the
+///         range that its limits allow. 0: a search is used instead.
 ///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
-///     task: which part of the target counts, one of `tasks`; None: all of it.
+///     task: part of the target that counts, one of `tasks`; None: all of it.
 ///     solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
@@ -210,6 +212,13 @@ impl Unreached {
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
 ///         configurations.
 ///     LimitError: a start outside the limits.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> solutions = bik.solve_all(robot, bik.pose([0.4, 0.1, 0.3], rpy=[3.14, 0, 0]))
+///     >>> len(solutions), solutions.complete
+///     (8, True)
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), limits=None,

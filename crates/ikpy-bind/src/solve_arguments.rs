@@ -30,7 +30,8 @@ pub struct SolveArguments<'a, 'py> {
 }
 
 impl SolveArguments<'_, '_> {
-    /// Converts the arguments to options of the core for the targets that were `asked`, with the `start` and the `limits` of the call.
+    /// Converts the arguments to options of the core for the targets `asked`, with the `start` and the `limits` of the
+    /// call.
     pub fn read<T>(
         &self,
         robot: &PyRobot,

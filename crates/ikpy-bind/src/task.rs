@@ -1,4 +1,4 @@
-//! `tasks`: which part of a target counts.
+//! `tasks`: the parts of a target that count.
 
 use ikcore::math::{Pose, pose};
 use ikcore::task::{Region, Task, TaskKind};
@@ -20,11 +20,11 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPointing>()
 }
 
-/// Which part of a target counts: `Pose`, `Position`, `Orientation` or `Pointing`.
+/// The part of a target that counts: `Pose`, `Position`, `Orientation` or `Pointing`.
 ///
 /// A `region` keeps the tip in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside the box is
-/// approached as far as the box allows, and the status is `HELD_IN_REGION`. The tip of a solution with status `SOLVED` or
-/// `HELD_IN_REGION` is always inside, and so is the tip at the end of each tick of a track, with any solver. Within a tick
+/// approached as far as the box allows, and the status is `HELD_IN_REGION`. A solution with status `SOLVED` or
+/// `HELD_IN_REGION` always has its tip inside; so has a track at the end of each tick, with any solver. Within a tick
 /// the joints move linearly, so that the tip can leave the box by the curvature of its path.
 #[pyclass(name = "Task", module = "beetle_ik.tasks", frozen, subclass, eq)]
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +106,7 @@ fn made<C>(
 where
     C: PyClass<BaseType = PyTask>,
 {
-    // One number is one too few: the core says how many there should be.
+    // Reads a number as a vector of one entry: the core's error then says how many entries it needs.
     let entries = |what, value: Argument<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
     let weights = entries("weights", weights)?.map(|(weights, _)| weights);
     let tolerance = entries("tolerance", tolerance)?.map(|(tolerance, _)| tolerance);
@@ -159,7 +159,7 @@ task! {
 }
 
 task! {
-    /// The position only; the orientation is free. A target given as a pose counts by its position.
+    /// The position only; the orientation is free. Of a target given as a pose, only the position counts.
     ///
     /// Args:
     ///     weights: (3,), for x, y and z of the base; 0 leaves a component free.

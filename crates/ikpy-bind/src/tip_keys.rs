@@ -10,20 +10,20 @@ use pyo3::types::{PyString, PyTuple};
 use crate::convert::summary;
 use crate::error::{invalid, raise};
 
-/// The name of a tip, or of a tip and the one that is seen from it.
+/// Name of a tip, or names of two tips: the second in the frame of the first.
 pub type TipKey = Vec<String>;
 
-/// What the targets of a call are for.
+/// Keys of the targets of a call.
 #[derive(Debug, Clone)]
 pub struct TipKeys(pub Arc<[TipKey]>);
 
 impl TipKeys {
-    /// The tips of a robot.
+    /// Returns the names of the tips of a robot as keys.
     pub fn of(robot: &Robot) -> Self {
         Self(robot.tips().map(|tip| vec![tip.to_owned()]).collect())
     }
 
-    /// Each key.
+    /// Iterates over the keys.
     pub fn iter(&self) -> impl Iterator<Item = &TipKey> {
         self.0.iter()
     }
@@ -41,7 +41,7 @@ pub fn read_key(what: &str, key: &Bound<'_, PyAny>) -> PyResult<TipKey> {
     names.map_err(wrong)
 }
 
-/// The pose that a key stands for.
+/// Returns the pose that a key selects: of a tip, or of one tip in the frame of another.
 pub fn subject(robot: &Robot, key: &TipKey) -> PyResult<Subject> {
     let number = |name: &String| robot.tip_number(name).map_err(raise);
     match &key[..] {
@@ -51,7 +51,7 @@ pub fn subject(robot: &Robot, key: &TipKey) -> PyResult<Subject> {
     }
 }
 
-/// The key as Python has it.
+/// Converts a key to a Python object: a name or a pair of names.
 pub fn key_object<'py>(py: Python<'py>, key: &TipKey) -> PyResult<Bound<'py, PyAny>> {
     match &key[..] {
         [tip] => Ok(PyString::new(py, tip).into_any()),
@@ -59,7 +59,7 @@ pub fn key_object<'py>(py: Python<'py>, key: &TipKey) -> PyResult<Bound<'py, PyA
     }
 }
 
-/// The key in messages.
+/// Formats a key for messages.
 pub fn in_words(key: &TipKey) -> String {
     match &key[..] {
         [tip] => format!("'{tip}'"),
@@ -67,7 +67,7 @@ pub fn in_words(key: &TipKey) -> String {
     }
 }
 
-/// The tips of a robot in messages.
+/// Formats the names of the tips of a robot for messages.
 pub fn tips_in_words(robot: &Robot) -> String {
     robot.tips().map(|tip| format!("'{tip}'")).collect::<Vec<_>>().join(", ")
 }

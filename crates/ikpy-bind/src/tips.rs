@@ -20,7 +20,7 @@ pub enum Asked<T> {
 }
 
 impl<T> Asked<T> {
-    /// Reads a target of a robot, each by `read`, which gets what to call it in errors.
+    /// Reads the target of the only tip, or a dict of targets; `read` gets the name for errors and the value of each.
     pub fn read<'py>(
         what: &str,
         robot: &PyRobot,
@@ -58,7 +58,7 @@ impl<T> Asked<T> {
         }
     }
 
-    /// What each is for.
+    /// Returns the keys of the targets.
     pub fn keys<'a>(&'a self, robot: &'a PyRobot) -> &'a TipKeys {
         match self {
             Self::One(_) => &robot.tips,
@@ -66,7 +66,7 @@ impl<T> Asked<T> {
         }
     }
 
-    /// The values, in the order of their keys.
+    /// Returns the values, in the order of their keys.
     pub fn values(&self) -> &[T] {
         match self {
             Self::One(one) => std::slice::from_ref(one),
@@ -75,7 +75,7 @@ impl<T> Asked<T> {
     }
 }
 
-/// Reads what is for the only tip of a robot: plain, or in a dict with its name.
+/// Reads the value for the only tip of a robot: plain, or in a dict under its name.
 pub fn read_only<'py, T>(
     what: &str,
     robot: &PyRobot,
@@ -88,7 +88,7 @@ pub fn read_only<'py, T>(
     }
 }
 
-/// A tolerance: one for all, or a dict.
+/// A tolerance for all tips, or a dict by tip.
 pub enum ToleranceArgument<'py> {
     All(f64),
     Each(Bound<'py, PyDict>),
@@ -102,7 +102,7 @@ pub fn read_tolerance<'py>(value: &Bound<'py, PyAny>) -> PyResult<ToleranceArgum
     }
 }
 
-/// The task and tolerances of each tip, or of the only one.
+/// Arguments for task and tolerances, of one tip or several.
 pub struct TaskArguments<'a, 'py> {
     pub task: Option<&'a Bound<'py, PyAny>>,
     pub position_tolerance: &'a ToleranceArgument<'py>,
@@ -110,7 +110,7 @@ pub struct TaskArguments<'a, 'py> {
 }
 
 impl TaskArguments<'_, '_> {
-    /// Reads them for targets that come later.
+    /// Reads task and tolerances before the targets are known.
     pub fn read(&self, robot: &PyRobot) -> PyResult<TipSettings> {
         let robot = &*robot.core;
         let dict = self.task.and_then(|task| task.cast::<PyDict>().ok());
@@ -129,7 +129,7 @@ impl TaskArguments<'_, '_> {
         Ok(TipSettings { task, position, rotation })
     }
 
-    /// Reads them for the targets that were `asked`.
+    /// Reads task and tolerances for the targets `asked`; an error for a tip without a target.
     pub fn read_for<T>(&self, robot: &PyRobot, asked: &Asked<T>) -> PyResult<TipSettings> {
         let (settings, keys) = (self.read(robot)?, asked.keys(robot));
         settings.task.require_targets("task", keys)?;
@@ -147,7 +147,7 @@ pub struct TipSettings {
     rotation: Each<f64>,
 }
 
-/// A value for all keys, or the values of some and the one of the others.
+/// Values of some keys, and one value for all others.
 #[derive(Debug)]
 struct Each<T> {
     keys: Vec<(TipKey, T)>,
@@ -159,7 +159,7 @@ impl<T: Copy> Each<T> {
         self.keys.iter().find(|(known, _)| known == key).map_or(self.others, |(_, value)| *value)
     }
 
-    /// Err for values of tips that are not among `keys`, those of the targets.
+    /// Returns an error for values of tips that are not among `keys`, the keys of the targets.
     fn require_targets(&self, what: &str, keys: &TipKeys) -> PyResult<()> {
         let stranger = self.keys.iter().find(|(name, _)| !keys.iter().any(|key| key == name));
         stranger
@@ -184,12 +184,12 @@ impl<T: Copy> Each<T> {
 }
 
 impl TipSettings {
-    /// Task and tolerance of the only tip of a robot; the default for several tips.
+    /// Returns task and tolerance of the only tip of a robot; the defaults for several tips.
     pub fn of_only(&self, robot: &PyRobot) -> (Option<Task>, Tolerance) {
         if robot.core.tip_count() == 1 { self.of(&robot.tips.0[0]) } else { Default::default() }
     }
 
-    /// The tasks of the targets that were `asked` of several tips; none of one.
+    /// Returns the tasks of the targets `asked` of several tips; empty for the only tip.
     pub fn tasks<T>(&self, asked: &Asked<T>) -> Vec<NamedTask> {
         let Asked::Tips { keys, subjects, .. } = asked else { return vec![] };
         let task = |(key, subject): (_, &Subject)| {
@@ -204,7 +204,8 @@ impl TipSettings {
     }
 }
 
-/// The errors of what was `asked` at the configurations `qs` (m, n); `targets` returns those of a row.
+/// Computes the errors of the targets `asked` at the configurations `qs` (m, n); `targets` gives the targets of each
+/// row.
 pub fn tip_errors<T>(
     robot: &PyRobot,
     asked: &Asked<T>,
@@ -219,26 +220,26 @@ pub fn tip_errors<T>(
     Ok(TipErrors { keys: asked.keys(robot).clone(), errors })
 }
 
-/// What was asked of each tip, and the errors; without errors of each for the only tip.
+/// Keys of the targets, and their errors.
 #[derive(Debug, Clone)]
 pub struct TipErrors {
     pub keys: TipKeys,
-    /// One for each key, row by row; none for the only tip.
+    /// Errors by key, row by row; empty for the only tip, whose errors the result itself has.
     pub errors: Vec<TipError>,
 }
 
 impl TipErrors {
-    /// Those of the only tip, whose errors the result itself has.
+    /// Keeps the key of the only tip, whose errors the result itself has.
     pub fn of_one(keys: TipKeys) -> Self {
         Self { keys, errors: vec![] }
     }
 
-    /// Those of the only tip of an arm without a model.
+    /// Keeps a default key, for the only tip of an arm without a model.
     pub fn unnamed() -> Self {
         Self::of_one(TipKeys([vec!["tip".to_owned()]].into()))
     }
 
-    /// The rows `rows`.
+    /// Selects `rows`.
     pub fn select(&self, rows: &[usize]) -> Self {
         let count = self.keys.0.len();
         let errors = match self.errors[..] {
@@ -248,7 +249,7 @@ impl TipErrors {
         Self { keys: self.keys.clone(), errors }
     }
 
-    /// A dict with what `value` makes of the errors of each key, row by row; `only` are those of the only tip.
+    /// Makes a dict from each key to `value` of its errors, row by row; `only` gives the errors of the only tip.
     pub fn dict<'py, V: IntoPyObject<'py>>(
         &self,
         py: Python<'py>,
@@ -266,7 +267,7 @@ impl TipErrors {
         Ok(dict)
     }
 
-    /// A dict with what `value` makes of the rows of each key in `table`, which has a value for each key in each row.
+    /// Makes a dict from each key to `value` of its column in `table`, which has one entry per key in each row.
     pub fn columns<'py, T: Copy, V: IntoPyObject<'py>>(
         &self,
         py: Python<'py>,
@@ -281,13 +282,13 @@ impl TipErrors {
         Ok(dict)
     }
 
-    /// For pickling.
+    /// Converts keys and errors to bytes, for pickling.
     pub fn bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let keys: Vec<&TipKey> = self.keys.iter().collect();
         pickling::bytes(py, to_bytes("errors of tips", &(keys, &self.errors)))
     }
 
-    /// From bytes; before robots had several tips, results were stored without.
+    /// Restores keys and errors from bytes; None: a result stored before robots could have several tips.
     pub fn restored(bytes: Option<&[u8]>) -> PyResult<Self> {
         let Some(bytes) = bytes else { return Ok(Self::unnamed()) };
         let (keys, errors): (Vec<TipKey>, Vec<TipError>) = from_bytes("errors of tips", bytes).map_err(raise)?;

@@ -19,6 +19,13 @@ use crate::python_calls;
 ///     time: the knots (k,) (s), starting at 0.
 ///     coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
 ///     joint_names: n names; None: "q1", "q2" and so on.
+///
+/// For example:
+///
+///     >>> motion = bik.Trajectory.from_samples([0.0, 1.0, 2.0], [[0.0], [0.5], [0.0]])
+///     >>> q, qd, qdd = motion.at(0.5)
+///     >>> float(q[0]), float(qd[0])
+///     (0.25, 0.5)
 #[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyTrajectory(Trajectory);
@@ -35,7 +42,7 @@ impl PyTrajectory {
     }
 }
 
-/// Returns the names of `n` joints; by default "q1", "q2" and so on.
+/// Returns the given names of `n` joints; by default "q1", "q2" and so on.
 pub fn names(given: Option<Vec<String>>, n: usize) -> PyResult<Vec<String>> {
     match given {
         None => Ok((1..=n).map(|i| format!("q{i}")).collect()),

@@ -31,7 +31,7 @@ impl<T: Traversed, const N: usize> Traversed for [T; N] {
     }
 }
 
-/// Shows the garbage collector the fields of a class that can lead to objects of the user, such as callables. Arrays of
+/// Shows the garbage collector the fields of a class that can lead to objects of the user, for example callables. Arrays of
 /// numbers lead nowhere and are left out.
 ///
 /// No class needs `__clear__`: all are frozen, so every cycle passes through a mutable object (a dict, a closure, an

@@ -5,34 +5,34 @@ from typing import Any
 from .._own_files import RefusedError
 
 _MOST = 30_000_000  # steps, of a quarter of a microsecond or less: a large robot needs a fiftieth
-_ITEM = 4  # steps
-_BITS = 4096  # of a whole number
+_ITEM = 4  # steps for an item
+_BITS = 4096  # bits of a whole number
 
 
 class Budget:
-    """Work that is left, in steps. A character of a result takes one, an item four."""
+    """Remaining work, in steps: a character of a result takes one step, an item four."""
 
     def __init__(self) -> None:
-        """Begins with all of it."""
+        """Starts with the full budget."""
         self.left = _MOST
 
     def spend(self, work: int) -> None:
-        """Takes `work` away.
+        """Subtracts `work`.
 
         Raises:
-            RefusedError: there is not so much left.
+            RefusedError: less work is left.
         """
         self.left -= work
         if self.left < 0:
             raise RefusedError("so much work or memory")
 
     def keep(self, value: Any) -> Any:
-        """Takes the size of `value` away, and returns it."""
+        """Subtracts the size of `value`, and returns `value`."""
         self.spend(self.size(value))
         return value
 
     def size(self, value: Any) -> int:
-        """Returns the steps that characters and items of a value take; counting ends where there is not so much left.
+        """Returns the steps of the characters and items of a value; counting ends once they exceed the budget.
 
         Lists that share their items may be exponentially larger than the memory that they take.
         """
@@ -42,11 +42,11 @@ class Budget:
             total += _ITEM
             if isinstance(each, str):
                 total += len(each)
-            elif isinstance(each, int) and each.bit_length() > 2 * _BITS:  # its quotients take long
+            elif isinstance(each, int) and each.bit_length() > 2 * _BITS:  # quotients of long integers are slow
                 raise RefusedError("a number that is too large")
             elif isinstance(each, list | tuple):
                 waiting.extend(each)
-            elif type(each) is dict:  # not a scope of xacro, which is not copied
+            elif type(each) is dict:  # a scope of xacro is not copied
                 waiting.extend(each)
                 waiting.extend(each.values())
         return total

@@ -1,4 +1,4 @@
-"""A copy of the package xacro for each call: its state and functions are global, and belong to whoever imports it."""
+"""A copy of the package xacro for each call: its state and functions are global, and shared by all importers."""
 
 import sys
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ _numbers = count()
 
 
 class NotInstalledError(Exception):
-    """There is no package xacro."""
+    """The package xacro is not installed."""
 
 
 @contextmanager
@@ -19,11 +19,11 @@ def copied() -> Iterator[ModuleType]:
     """Loads the package xacro under another name, and forgets it afterwards.
 
     Raises:
-        NotInstalledError: it is not installed.
+        NotInstalledError: xacro is not installed.
     """
     try:
         found = find_spec("xacro")
-    except ValueError:  # there is something else of that name
+    except ValueError:  # another object has that name
         found = None
     if found is None or found.origin is None:
         raise NotInstalledError

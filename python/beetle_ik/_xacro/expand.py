@@ -1,4 +1,4 @@
-"""One xacro file, expanded."""
+"""Expansion of one xacro file."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,10 +13,10 @@ from .packages import Packages
 
 
 def expand(path: str, package_dirs: Sequence[str], trusted: bool) -> str:
-    """Returns the URDF of a xacro file. One that is not trusted executes nothing, and reads its own packages alone.
+    """Returns the URDF of a xacro file. An untrusted file executes nothing, and reads only its own packages.
 
     Raises:
-        UrdfError: xacro is not installed, or cannot expand the file; or what the file asks for is refused.
+        UrdfError: xacro is not installed, cannot expand the file, or a request of the file is refused.
     """
     guard = None
     packages = Packages(Path(path), package_dirs)
@@ -52,7 +52,7 @@ def _said(error: Exception) -> str:
 
 
 def _find_packages(xacro: ModuleType, packages: Packages) -> None:
-    """Has `$(find package)` look where `package://` does; xacro alone knows only what is installed by ROS."""
+    """Lets `$(find package)` search where `package://` does; xacro alone finds only packages installed by ROS."""
     resolve = xacro.eval_extension
 
     def eval_extension(text: str) -> Any:

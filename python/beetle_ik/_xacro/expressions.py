@@ -1,4 +1,4 @@
-"""Values of expressions, in Python's grammar. Nothing is given to Python's `eval`; what is not here is refused."""
+"""Evaluation of expressions in Python's grammar, without Python's `eval`: anything not listed here is refused."""
 
 import ast
 import operator
@@ -10,7 +10,7 @@ from .budget import Budget
 from .functions import CALLABLE, Reads, mapped
 
 _LONGEST = 20_000  # characters
-_EXPRESSION, _PARSED, _NODE = 50, 2, 10  # steps: of an expression, a character and a node
+_EXPRESSION, _PARSED, _NODE = 50, 2, 10  # steps for an expression, a character and a node
 
 _ARITHMETIC: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -60,15 +60,15 @@ _WORDS = {
 
 
 class Expressions:
-    """Finds the values of expressions.
+    """Evaluates expressions.
 
     Args:
-        budget: what the work is taken from.
+        budget: budget that pays for the work.
         functions: functions that may be called besides `CALLABLE`.
     """
 
     def __init__(self, budget: Budget, functions: Collection[Callable[..., Any]]) -> None:
-        """Knows no names: each expression comes with its own."""
+        """Starts without names: each expression brings its own."""
         self._budget = budget
         self._functions = CALLABLE | set(functions)
 
@@ -76,7 +76,7 @@ class Expressions:
         """Returns the value of an expression, in which `names` may be used.
 
         Raises:
-            RefusedError: it contains more than arithmetic, comparisons, conditions, literals and known functions.
+            RefusedError: the text contains more than arithmetic, comparisons, conditions, literals and known functions.
             Exception: as Python raises them, for example for a division by zero.
         """
         if len(text) > _LONGEST:
@@ -120,7 +120,7 @@ class Expressions:
         raise _refusal(node.op if isinstance(node, ast.UnaryOp) else node)
 
     def _attribute(self, owner: Any, name: str) -> Any:
-        """Returns an item of a namespace or dict. Nothing else has attributes: they lead out of what is given."""
+        """Returns an item of a namespace or dict. Other values have no attributes, which lead out of the names."""
         if not isinstance(owner, dict) or name.startswith("_"):
             raise RefusedError(f"the attribute '.{name:.60}'")
         try:
@@ -195,7 +195,7 @@ class Expressions:
                 raise RefusedError("an unpacking **")
             options[keyword.arg] = self._of(keyword.value, names)
         passed = arguments[function is mapped :] + list(options.values())
-        if any(callable(each) for each in passed):  # it would be called for each item, out of the budget
+        if any(callable(each) for each in passed):  # a function would be called for each item, outside the budget
             raise RefusedError("a function as an argument")
         self._budget.keep((arguments, options))
         return self._budget.keep(function(*arguments, **options))

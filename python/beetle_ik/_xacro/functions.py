@@ -7,11 +7,11 @@ from typing import Any
 
 from .._own_files import RefusedError
 
-_MOST_ITEMS = 100_000  # of a range
-_MOST_DIGITS = 100  # to round to
+_MOST_ITEMS = 100_000  # items of a range
+_MOST_DIGITS = 100  # digits to round to
 
 _CONSTANTS = ("e", "inf", "nan", "pi", "tau")
-# Not factorial, comb and perm, whose results may be too large to write down.
+# Functions of `math`, without factorial, comb and perm, whose results may be too large to write down.
 _MATHEMATICS = (
     *("acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "ceil", "copysign", "cos", "cosh", "degrees", "dist"),
     *("erf", "erfc", "exp", "expm1", "fabs", "floor", "fmod", "frexp", "fsum", "gamma", "gcd", "hypot", "isclose"),
@@ -25,7 +25,7 @@ _WORDS = {"True": True, "False": False}
 
 
 class Reads:
-    """Stands for a function of xacro that reads files; calling it is refused."""
+    """Placeholder for a function of xacro that reads files; calls are refused."""
 
 
 def _rounded(number: Any, ndigits: int | None = None) -> Any:
@@ -36,7 +36,7 @@ def _rounded(number: Any, ndigits: int | None = None) -> Any:
 
 def _counted(*arguments: int) -> list[int]:
     numbers = range(*arguments)
-    if numbers and (abs(numbers[-1] - numbers[0]) // abs(numbers.step)) >= _MOST_ITEMS:  # its length may overflow
+    if numbers and (abs(numbers[-1] - numbers[0]) // abs(numbers.step)) >= _MOST_ITEMS:  # the length may overflow
         raise RefusedError(f"a range of more than {_MOST_ITEMS} numbers")
     return list(numbers)
 
@@ -49,7 +49,7 @@ def _sum(numbers: Any) -> Any:
 
 
 def mapped(function: Any, *values: Any) -> list[Any]:
-    """Returns what Python's `map` does, as a list. Results of the function are no longer than the items."""
+    """Returns the result of Python's `map` as a list, for functions whose results are no longer than the items."""
     if function not in _OF_ITEMS:
         raise RefusedError("map() of another function than those of numbers and texts")
     return list(map(function, *values))
@@ -91,7 +91,7 @@ CALLABLE = frozenset(
 
 
 def symbols(argument: Callable[[str], Any]) -> Mapping[str, Any]:
-    """Returns what xacro calls its global symbols; `argument` returns the value of an argument of the file."""
+    """Returns the global symbols of xacro; `argument` returns the value of an argument of the file."""
     of_xacro = {**_READS, **_SILENT, "dotify": _dotified, "fatal": _fatal, "tokenize": _tokenized, "arg": argument}
     namespaces = {"math": dict(_OF_MATH), "python": dict(_OF_PYTHON), "xacro": of_xacro}
     return {**_OF_MATH, **_OF_PYTHON, **_READS, "dotify": _dotified, **namespaces}

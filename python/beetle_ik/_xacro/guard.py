@@ -1,4 +1,4 @@
-"""What replaces functions of the package xacro where a file is not trusted."""
+"""Replacements for functions of the package xacro, for untrusted files."""
 
 import glob
 import keyword
@@ -23,26 +23,26 @@ _REPLACED = ("eval_all", "eval_extension", "eval_text", "get_include_files", "gr
 _USED = ("XacroException", "_global_symbols", "abs_filename_spec", "filestack", "re_macro_arg", "safe_eval")
 _ELEMENT, _CHILD, _TEXT = 600, 50, 20  # steps
 _COPIES = 1000  # characters that are copied in one step
-_COMPARISONS = 50  # of two elements in one step
+_COMPARISONS = 50  # comparisons of two elements in one step
 _LONGEST = 20_000  # characters of the parameters of a macro
-# Equal to xacro's, without its choices that take exponentially long where a quote is not closed.
+# xacro's pattern, without the alternatives that take exponential time on an unclosed quote.
 _MACRO_ARGUMENT = re.compile(
     r"""^\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|"[^"]*"|[^\s'"])+|)(?:\s+|$)(.*)"""
 )
 
 
 class Guard:
-    """Stands between the package xacro and a file that anyone may have written.
+    """Guard between the package xacro and an untrusted file.
 
     Attributes:
-        refusal: what was refused first, and where; None if nothing was.
+        refusal: the first refused request, and its place; None if nothing was refused.
     """
 
     def __init__(self, module: ModuleType, packages: Packages) -> None:
         """Replaces functions of `module`.
 
         Raises:
-            BeetleIkError: this version of xacro has not what is to be replaced.
+            BeetleIkError: this version of xacro lacks a function to be replaced.
         """
         missing = [name for name in (*_REPLACED, *_USED) if not hasattr(module, name)]
         if missing:
@@ -57,7 +57,8 @@ class Guard:
             "load_yaml": self._noted(partial(_refused, "load_yaml(), which reads files,")),
             "_global_symbols": global_symbols(self._argument),
             "re_macro_arg": _MACRO_ARGUMENT,
-            # xacro does without these now. A version that did not would fail here, and not read or execute anything.
+            # Functions that xacro does not use now. A version that did would fail here, and neither read nor execute
+            # anything.
             **{name: self._noted(partial(_refused, f"{name}()")) for name in ("open", "eval", "exec", "compile")},
         }
         vars(module).update(changed)
@@ -72,10 +73,10 @@ class Guard:
         self._budget.spend(_ELEMENT)
         self._spend_on_children(node)
         self._eval_all(node, macros, names)
-        self._spend_on_children(node)  # which the caller puts in place of the node
+        self._spend_on_children(node)  # the caller puts them in place of the node
 
     def _spend_on_children(self, node: Any) -> None:
-        """Takes the work of replacing the children away: each is looked for among all."""
+        """Subtracts the work of replacing the children: each is searched for among all."""
         children = node.childNodes.length
         self._budget.spend(children * (_CHILD + children // _COMPARISONS))
 
@@ -123,13 +124,13 @@ class Guard:
             if not path.is_file():
                 raise FileNotFoundError(2, "No such file", filename)
         except OSError as error:
-            self._module.filestack.pop()  # as xacro does
+            self._module.filestack.pop()  # like xacro
             raise self._module.XacroException(f"{error.strerror}: {filename:.200}", exc=error) from error
         require_no_entities(content)
         return xml.dom.minidom.parseString(content)
 
     def _noted(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Returns a function that notes what is refused first: xacro wraps errors, and takes some for others."""
+        """Wraps a function so that the first refusal is recorded: xacro wraps errors, and mistakes some for others."""
 
         @wraps(function)
         def noting(*arguments: Any, **options: Any) -> Any:
@@ -143,7 +144,7 @@ class Guard:
         return noting
 
     def _place(self, arguments: tuple[Any, ...]) -> str:
-        """Names the file, unless it is the first, the line and the text of the first argument, where they are known."""
+        """Names the place of an error, as far as known: included file, line, and text of the first argument."""
         files = self._module.filestack or [""]
         text = arguments[0] if arguments and isinstance(arguments[0], str) else ""
         where = f"in '{files[-1]}': " if len(files) > 1 else ""
@@ -162,7 +163,7 @@ def found(module: ModuleType, packages: Packages, name: str) -> str:
     """Returns the folder of a package.
 
     Raises:
-        XacroException: it is not found.
+        XacroException: the package is not found.
     """
     folder = packages.find(name)
     if folder is None:

@@ -1,4 +1,4 @@
-"""`$(find package)`, and which files a file that is not trusted may include."""
+"""Search for packages, and the files that an untrusted file may include."""
 
 import os
 import re
@@ -14,13 +14,13 @@ class Packages:
     """The packages that a file may name, and the folders whose files it may include."""
 
     def __init__(self, file: Path, given: Sequence[str]) -> None:
-        """Begins with the package of the file, or its folder if it is in none, and the folders given."""
+        """Starts with the package of the file, or its folder outside a package, and the given folders."""
         self._around = list(file.absolute().parents)
         self._given = [Path(each).absolute() for each in given]
         self._open = [package_of(file.absolute()), package_of(file.resolve()), *self._given]
 
     def find(self, name: str) -> Path | None:
-        """Returns the folder of a package, looked for as for `package://`; its files may be included from then on.
+        """Returns the folder of a package, searched as for `package://`; its files may be included from then on.
 
         Above the file only folders with a package.xml count: any folder of the system may be above it.
         """
@@ -44,10 +44,10 @@ class Packages:
                     yield folder
 
     def require_open(self, file: str) -> Path:
-        """Returns a file, with links followed, that is in one of the folders.
+        """Resolves the links of a file, and checks that it is in one of the folders.
 
         Raises:
-            RefusedError: it is elsewhere.
+            RefusedError: the file is elsewhere.
         """
         return require_inside(self._open, Path(file), file)
 

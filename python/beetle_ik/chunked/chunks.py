@@ -1,7 +1,7 @@
 """Work cut into chunks: computed here or by the workers of a dask client, kept in memory or in a store.
 
 A chunk is a pure function of the job, its number and its inputs. So it may be computed anywhere, and again after a
-worker was lost; what a store holds is not computed again.
+worker was lost; chunks that a store holds are not computed again.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _AT_LEAST, _AT_MOST = 2, 3  # chunks sent for each thread of a worker: one in work, others that wait
 ANY = "any"
-"""The instruction set of a store that workers of several may fill."""
+"""Instruction set of a store that workers of different instruction sets may fill."""
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,20 @@ class Job:
     call: str
     """The public call, by its name."""
     options: Mapping[str, Any]
-    """What the results depend on besides the inputs, as JSON."""
+    """Arguments that determine the results besides the inputs, as JSON."""
     layout: Layout
     inputs: Sequence[Any]
-    """Arrays cut like the results. Of zarr arrays the workers read their part; parts of others are sent to them."""
+    """Arrays cut like the results. Workers read their part of a zarr array; parts of other arrays are sent to them."""
     compute: Compute
     """Returns the columns of a chunk, from its number, its region, its parts of the inputs and the number of threads.
     It is pickled.
     """
     attached: Mapping[str, Array] = field(default_factory=dict)
-    """What a store holds besides the results, to be read without the call."""
+    """Further arrays of a store, so that it can be read without the call."""
 
 
 class Build(NamedTuple):
-    """What the bits of results depend on."""
+    """Version and instruction set on which the bits of results depend."""
 
     version: str
     instructions: str
@@ -73,7 +73,7 @@ class _Part(NamedTuple):
     region: Region
 
     def read(self) -> Array:
-        """Reads the part. The array is opened anew: one that is not here would be read as zeros.
+        """Reads the part. The array is opened anew: a missing array would be read as zeros.
 
         Raises:
             FileNotFoundError: this machine does not see the array.
@@ -96,12 +96,12 @@ def run(
     progress: object,
     any_instruction_set: bool,
 ) -> Mapping[str, Any]:
-    """Computes all chunks; returns the columns: numpy's in memory, or zarr's where there is a store.
+    """Computes all chunks; returns the columns: arrays of numpy, or of zarr with a store.
 
     Raises:
         BeetleIkError: a worker has another version of the library or another instruction set, or the connection to the
             scheduler is lost.
-        InvalidInputError: the store is of another job; or what `job.compute` raises.
+        InvalidInputError: the store belongs to another job; or an error of `job.compute`.
         OSError: the store cannot be written.
     """
     build = Build(__version__, ANY if any_instruction_set else _instructions)
@@ -131,9 +131,9 @@ def _here(job: Job, store: Store | None, threads: int | None) -> Chunks:
 
 
 def _on_workers(job: Job, client: Client, store: Path | None, build: Build) -> Chunks:
-    """Yields chunks as they end. Few are sent at a time, so memory does not grow with their number."""
+    """Yields chunks as they finish. Few are sent at a time, so that memory does not grow with their number."""
     as_completed = library("distributed", "dask", "client=", extra="distributed").as_completed
-    # Made by a task: the scheduler can make it again for a new worker.
+    # Sends the work as a task, which the scheduler can repeat for a new worker.
     work = client.submit(_same, pickle.dumps((job.compute, job.layout, store)), pure=False)
     left = iter(range(job.layout.chunks))
     chunk_of: dict[Any, int] = {}
@@ -184,7 +184,7 @@ def _same(value: bytes) -> bytes:
 
 
 def _on_a_worker(work: bytes, build: Build, chunk: int, inputs: Sequence[Any]) -> Mapping[str, Array]:
-    """Computes a chunk in one thread: the others of the worker have chunks of their own."""
+    """Computes a chunk in one thread: the other threads of the worker have chunks of their own."""
     _require_same_build(build)
     arrays = [part.read() if isinstance(part, _Part) else part for part in inputs]
     compute, layout, store = _opened(work)
@@ -194,7 +194,7 @@ def _on_a_worker(work: bytes, build: Build, chunk: int, inputs: Sequence[Any]) -
 def _computed(
     compute: Compute, layout: Layout, chunk: int, inputs: Sequence[Array], store: Store | None, threads: int | None
 ) -> Mapping[str, Array]:
-    """Returns the columns of a chunk, or writes them to the store, unless it holds them, and returns none."""
+    """Returns the columns of a chunk; with a store, writes those that it lacks, and returns none."""
     region = layout.region(chunk)
     if store is None:
         return compute(chunk, region, inputs, threads)
@@ -206,7 +206,7 @@ def _computed(
 
 @lru_cache(maxsize=2)
 def _opened(work: bytes) -> tuple[Compute, Layout, Store | None]:
-    """Returns what all chunks of a job share, kept from one to the next."""
+    """Unpickles the data shared by all chunks of a job; cached from one chunk to the next."""
     compute, layout, store = pickle.loads(work)
     return compute, layout, None if store is None else Store(store, layout)
 
@@ -236,7 +236,7 @@ def require_client(client: object, threads: int | None) -> None:
 
     Raises:
         BeetleIkError: dask is not installed.
-        InvalidInputError: anything else, or `threads` together with a client.
+        InvalidInputError: another value, or `threads` together with a client.
     """
     if client is None:
         return

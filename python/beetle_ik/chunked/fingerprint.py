@@ -1,4 +1,4 @@
-"""Fingerprints of arguments: by them a store knows the job whose results it holds."""
+"""Fingerprints of arguments, by which a store recognises its job."""
 
 import hashlib
 import io
@@ -13,7 +13,7 @@ _SHOWN = 16  # digits of a hash in a message
 
 
 def description(value: object) -> str | int | float | bool | None:
-    """Returns a value of JSON that tells arguments apart: plain values as they are, others as type and hash."""
+    """Returns a JSON value that identifies an argument: a plain value itself, any other by type and hash."""
     if value is None or isinstance(value, str | bool | np.bool_):
         return bool(value) if isinstance(value, np.bool_) else value
     if isinstance(value, Integral):
@@ -44,7 +44,7 @@ def sealed(job: bytes, number: int, arrays: Mapping[str, NDArray[np.generic]]) -
 
 
 def _content(value: object) -> bytes:
-    """Returns the pickled value, the same for equal values: without a memo, which tells apart who shares what."""
+    """Pickles a value without a memo, so that equal values give equal bytes whatever objects they share."""
     written = io.BytesIO()
     pickler = pickle.Pickler(written, protocol=5)
     pickler.fast = True

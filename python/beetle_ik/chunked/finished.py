@@ -21,8 +21,8 @@ def read_finished(folder: Path, call: str) -> dict[str, NDArray[np.generic]]:
 
     Raises:
         BeetleIkError: zarr is not installed.
-        InvalidInputError: the folder is not such a store, or is not finished or damaged, or holds parts of another one.
-            Names it.
+        InvalidInputError: the folder is no such store, is unfinished or damaged, or holds parts of another store; the
+            message names it.
     """
     there = description(folder)
     if there is None or there.get("call") != call:

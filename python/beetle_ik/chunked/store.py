@@ -1,7 +1,7 @@
 """The results of a job on disk: a zarr group with one array per column, written chunk by chunk.
 
-The array `chunks` holds two hashes for each chunk: of what it was computed from, and of its results, its number and the
-job. They are written last, so a chunk whose results do not match them is not finished, or is of another place or store.
+The array `chunks` holds two hashes for each chunk: of its inputs, and of its results, its number and the job. They are
+written last, so a chunk whose results do not match them is unfinished, or belongs elsewhere or to another store.
 Nothing in the store depends on time or on who computed it: two stores of one job are equal byte for byte.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 FORMAT = 2
 ATTRIBUTE = "beetle_ik"
 CONTENT = "content"
-HASHES = (2, 32)  # of a chunk
+HASHES = (2, 32)  # two hashes of 32 bytes for each chunk
 FINISHED = "chunks"
 _ENCODING = {"name": "default", "separator": "."}  # files, not a folder for each chunk
 
@@ -43,7 +43,7 @@ class Column(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """What a store is made of: items in a grid of one or several axes, cut into chunks."""
+    """Layout of a store: items in a grid of one or several axes, cut into chunks."""
 
     columns: Mapping[str, Column]
     shape: tuple[int, ...]
@@ -51,16 +51,16 @@ class Layout(NamedTuple):
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The number of chunks along each axis; the last ones may be smaller."""
+        """Number of chunks along each axis; the last ones may be smaller."""
         return tuple(-(-items // chunk) for items, chunk in zip(self.shape, self.chunk_shape, strict=True))
 
     @property
     def chunks(self) -> int:
-        """The number of chunks. They count along the last axis first."""
+        """Number of all chunks, which are numbered along the last axis first."""
         return prod(self.counts)
 
     def region(self, chunk: int) -> tuple[slice, ...]:
-        """The items of a chunk."""
+        """Returns the range of items of a chunk along each axis."""
         place = np.unravel_index(chunk, self.counts)
         axes = zip(place, self.chunk_shape, self.shape, strict=True)
         return tuple(slice(int(i) * length, min((int(i) + 1) * length, end)) for i, length, end in axes)
@@ -70,7 +70,7 @@ def store_path(store: object) -> Path:
     """Returns the folder that the argument `store` names, as an absolute path.
 
     Raises:
-        InvalidInputError: the argument is not the path of a folder; an address such as s3:// is none.
+        InvalidInputError: the argument is not the path of a folder, for example an address like s3://.
     """
     if not isinstance(store, str | os.PathLike) or not str(store) or "\0" in str(store):
         raise InvalidInputError(f"store must be the path of a folder, got {store!r:.60}")
@@ -109,7 +109,7 @@ class Store:
                 _require_same_job(folder, wanted)
             else:
                 _require_empty(folder)
-                # Written first, in one file: an empty store of this job continues like any other.
+                # Writes the attributes first, in one file, so that an empty store of this job can be continued.
                 attributes = {ATTRIBUTE: wanted, CONTENT: content(layout, attached)}
                 zarr.create_group(store=folder, attributes=attributes, zarr_format=3)
             store = cls(folder, layout)
@@ -125,10 +125,10 @@ class Store:
         return store
 
     def holds(self, chunk: int, inputs: NDArray[np.uint8]) -> bool:
-        """Whether a chunk is there and whole, and was computed from what has the hash `inputs`.
+        """Whether a chunk is there and whole, and was computed from inputs with the hash `inputs`.
 
         Raises:
-            InvalidInputError: it was computed from something else.
+            InvalidInputError: the chunk was computed from other inputs.
         """
         hashes = self._read(FINISHED, (slice(chunk, chunk + 1),))
         if hashes is None or not hashes.any():
@@ -147,7 +147,7 @@ class Store:
         """Writes a whole chunk. Each file replaces the old one when it is complete.
 
         Raises:
-            OSError: it cannot be written; names the chunk. The other chunks are as before.
+            OSError: the chunk, which the message names, cannot be written; the other chunks are unchanged.
         """
         region = self._layout.region(chunk)
         columns = {name: np.ascontiguousarray(arrays[name]) for name in self._layout.columns}
@@ -201,7 +201,7 @@ class Store:
         )
 
     def _array(self, name: str) -> Any:
-        """Opens a column, once. It writes chunks of NaN too, which zarr leaves out otherwise."""
+        """Opens a column, once. Chunks of NaN are written too, which zarr otherwise leaves out."""
         if name not in self._opened:
             self._opened[name] = self.group[name].with_config({"write_empty_chunks": True})
         return self._opened[name]
@@ -216,7 +216,7 @@ class Store:
 
 
 def content(layout: Layout, attached: Arrays) -> dict[str, Any]:
-    """Returns what a store says of its arrays."""
+    """Returns the description that a store keeps of its arrays."""
     return {
         "columns": sorted(layout.columns),
         "shape": list(layout.shape),
@@ -226,31 +226,31 @@ def content(layout: Layout, attached: Arrays) -> dict[str, Any]:
 
 
 def job(attributes: Mapping[str, Any]) -> bytes:
-    """Returns what the results of a store depend on, and their layout."""
+    """Returns the identity and layout of the results of a store, as bytes."""
     return json.dumps([attributes.get(ATTRIBUTE), attributes.get(CONTENT)], sort_keys=True).encode()
 
 
 def zarr_library() -> Any:
-    """Returns zarr, which is imported when it is needed."""
+    """Returns zarr, imported at its first use."""
     return library("zarr", "zarr", "store=", extra="distributed")
 
 
 def _absent(dtype: np.dtype[Any]) -> object:
-    """The value of rows that were not computed."""
+    """Returns the fill value of rows that were not computed."""
     if dtype.kind == "f":
         return np.nan
     return False if dtype.kind == "b" else np.iinfo(dtype).max
 
 
 def _require_empty(folder: Path) -> None:
-    """A process that was killed as it made the store may have left unfinished files."""
+    """Refuses a folder with other files; unfinished files of a killed process are allowed."""
     others = sorted(entry.name for entry in folder.iterdir() if entry.suffix != ".partial")
     if others:
         raise InvalidInputError(f"store: folder '{folder}' holds other files: {listed(others)}: give another folder")
 
 
 def description(folder: Path) -> dict[str, Any] | None:
-    """Returns what a store says of its job; None where there is no store of this library."""
+    """Returns the description that a store keeps of its job; None if the folder is no store of this library."""
     try:
         there = zarr_library().open_group(store=folder, mode="r", zarr_format=3).attrs.asdict().get(ATTRIBUTE)
     except (ValueError, KeyError, TypeError, FileNotFoundError):

@@ -1,4 +1,4 @@
-"""The list of commands, and how errors are reported."""
+"""The list of commands, and the reporting of errors."""
 
 import logging
 from typing import Annotated, Any
@@ -30,7 +30,7 @@ class _Commands(TyperGroup):
         return sorted(super().list_commands(ctx), key=lambda name: name == "reproduce")
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Reads numbers that are apart, as in `--position 0.4 0.2 0.5`, as one value of the option."""
+        """Reads numbers separated by spaces, as in `--position 0.4 0.2 0.5`, as one value of the option."""
         return super().parse_args(ctx, numbers_joined(args))
 
     def invoke(self, ctx: Any) -> Any:
@@ -46,7 +46,7 @@ class _Commands(TyperGroup):
             typer.echo(f"Error: {where}{error.strerror or error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
         except KeyboardInterrupt as interrupt:
-            # Holds for every command: files appear only when all of them are complete.
+            # True for every command: its files appear only when all of them are complete.
             typer.echo("Interrupted: nothing was written.", err=True)
             raise typer.Exit(_INTERRUPTED) from interrupt
 

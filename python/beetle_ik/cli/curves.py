@@ -29,7 +29,7 @@ class CurveName(StrEnum):
 @dataclass(frozen=True)
 class _Curve:
     make: Callable[..., ReferencePath]
-    lengths: dict[str, float]  # as fractions of the arm's stretched length
+    lengths: dict[str, float]  # fractions of the arm's stretched length
     others: dict[str, Any] = field(default_factory=dict)
 
 
@@ -63,7 +63,7 @@ def make_curve(name: CurveName, robot: Robot, duration: float | None, given: dic
 def _agile_place(robot: Robot) -> tuple[NDArray[np.float64], float]:
     """Returns the tip position (m) at the most manipulable of many random configurations, and the arm's length (m).
 
-    Directions in which no configuration moves the tip, such as out of a planar arm's plane, do not count.
+    Directions in which no configuration moves the tip, for example out of a planar arm's plane, do not count.
     """
     configurations = robot.random_configurations(_PLACES_TRIED)
     gains = np.linalg.svd(robot.jacobian(configurations), compute_uv=False)

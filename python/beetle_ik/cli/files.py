@@ -35,7 +35,7 @@ def write_files(
 
 
 def print_files(out: Path | None) -> None:
-    """Prints where the files are, and why a figure is missing."""
+    """Prints the folder of the files, and the reason for a missing figure."""
     if out is not None:
         figure = "" if can_draw() else ", without a figure: drawing needs `pip install beetle-ik[plot]`"
         typer.echo(f"Files in {out}/{figure}")

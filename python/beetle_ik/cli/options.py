@@ -1,4 +1,4 @@
-"""Options that several commands share, and how their text is read."""
+"""Options shared by several commands, and readers of their text."""
 
 import re
 from enum import StrEnum
@@ -170,7 +170,7 @@ def _named(name: str, options: dict[str, Any]) -> Robot:
 
 
 def numbers(option: str, text: str, length: int | None = None) -> list[float]:
-    """Reads numbers separated by commas or spaces, as numpy prints them too; `length` is how many there must be."""
+    """Reads numbers separated by commas or spaces, as numpy prints them; `length` is the required count."""
     entries = re.split(r"\s*,\s*|\s+", text.strip().removeprefix("[").removesuffix("]").strip())
     values = [_number(option, entry) for entry in entries]
     if length is not None and len(values) != length:
@@ -195,11 +195,11 @@ def sinusoid(option: str, text: str) -> Sinusoid:
 
 
 _NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
-_NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # also `tip=0.4,` and `--position=0.4`
+_NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # `tip=0.4,` and `--position=0.4` too
 
 
 def numbers_joined(arguments: list[str]) -> list[str]:
-    """Joins numbers that follow the value of an option, such as `--position 0.4 0.2, 0.5`, with commas."""
+    """Joins numbers that follow the value of an option with commas, as in `--position 0.4 0.2, 0.5`."""
     joined: list[str] = []
     for argument in arguments:
         last, before = joined[-1:], joined[-2:-1]

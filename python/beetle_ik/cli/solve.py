@@ -79,7 +79,7 @@ def solve(
 
 
 def _wanted(position: str | None, rpy: str | None, targets: list[str] | None) -> Any:
-    """Returns the target of the only tip, or those of several by name."""
+    """Returns the target of the only tip, or a dict of targets by tip."""
     if targets:
         if position is not None or rpy is not None:
             raise InvalidInputError("--target gives tips their targets: leave out --position and --rpy")
@@ -152,11 +152,11 @@ def _show(robot: Robot, solution: Solution, as_json: bool) -> None:
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],
     )
-    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on its own line, so that no terminal width breaks it
+    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # a line of its own: no terminal width breaks it
 
 
 def _errors(robot: Robot, tip: Any, position: float, rotation: float) -> list[tuple[str, str]]:
-    """Returns the errors of a tip with their names, those of tasks that leave them free left out."""
+    """Returns the errors of a tip with their names, without errors that the task leaves free."""
     of = f" of {tip}" if len(robot.tips) > 1 else ""
     both = ((f"position error{of} [m]", position), (f"rotation error{of} [rad]", rotation))
     return [(name, f"{value:.3g}") for name, value in both if not math.isnan(value)]

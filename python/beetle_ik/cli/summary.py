@@ -53,7 +53,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
 
 
 def print_summary(summary: dict[str, Any], out: Path | None) -> None:
-    """Prints the summary as a table, a note on limits above the robot's own, and where the files are."""
+    """Prints the summary as a table, a note on limits above the robot's own, and the folder of the files."""
     error, limit = summary["position_error"], summary["velocity_limit"]
     clearance = summary["clearance"]
     print_pairs(

@@ -55,6 +55,6 @@ def _loaded(*given: Any, trusted: bool) -> Robot:
     try:
         return load_robot(*given, trusted=trusted, collision="hulls")
     except UrdfError as error:
-        arm = load_robot(*given, trusted=trusted)  # raises what else is wrong
+        arm = load_robot(*given, trusted=trusted)  # raises any other error
         typer.echo(f"Without its meshes: {error}", err=True)
         return arm

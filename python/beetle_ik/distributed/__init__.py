@@ -14,6 +14,6 @@ from .maps import reachability
 
 __all__ = ["BatchArrays", "reachability", "solve_batch"]
 
-# Names as users write them, in messages and pages.
+# Sets the module names that users see in messages and on pages.
 for _public in (BatchArrays, reachability, solve_batch):
     _public.__module__ = "beetle_ik.distributed"

@@ -44,9 +44,9 @@ _COLUMNS = (
 
 @dataclass(frozen=True, repr=False)
 class BatchArrays:
-    """The results of a batch in the order of the targets: arrays of numpy in memory, or of zarr where there is a store.
+    """Results of a batch in the order of the targets: numpy arrays in memory, or zarr arrays with a store.
 
-    Of an array of zarr, `q[a:b]` reads rows and `q[:]` all. They have the names and the bits of `bik.BatchSolution`.
+    `q[a:b]` reads rows of a zarr array, and `q[:]` reads all. Names and bits are those of `bik.BatchSolution`.
     """
 
     q: Any
@@ -54,7 +54,7 @@ class BatchArrays:
     success: Any
     """Whether each target was reached within the tolerances (m,)."""
     status: Any
-    """Why each search ended (m,), values of `Status`."""
+    """Reason why each search ended (m,), values of `Status`."""
     position_error: Any
     """Distances of the tip from the targets (m,) (m); the largest of several tips."""
     rotation_error: Any
@@ -70,7 +70,7 @@ class BatchArrays:
     evaluations: Any
     """Evaluations of the forward kinematics (m,)."""
     message: str
-    """How many were solved, and what to try for the others."""
+    """Number of solved targets, and advice on the others."""
     elapsed: float
     """Time of this call (s)."""
     limits: Limits
@@ -84,7 +84,7 @@ class BatchArrays:
         return count
 
     def __repr__(self) -> str:
-        """Says how many were solved, and where the arrays are."""
+        """Shows the number of solved targets, and the folder of the store."""
         return f"<BatchArrays{'' if self.store is None else f' in {str(self.store)!r}'}: {self.message}>"
 
 
@@ -124,9 +124,9 @@ def solve_batch(
         client: a `distributed.Client`; None: the chunks are computed here, one after the other.
         robot: the arm.
         targets: poses (m, 4, 4) or positions (m, 3) (m), or a dict of them, as for `bik.solve_batch`. The rows of a
-            chunk are sent to its worker; of an array of zarr, the worker reads them.
-        store: folder of a zarr group for the results, on a file system that all workers share; None: they are kept in
-            memory.
+            chunk are sent to its worker; rows of a zarr array are read by the worker.
+        store: folder of a zarr group for the results, on a file system that all workers share; None: the results stay
+            in memory.
         rows_per_chunk: targets of a chunk, which is one task and one chunk of each array of the store.
         any_instruction_set: whether workers may differ in their instruction set, and so in the last bits of results.
         starts: as for `bik.solve_batch`.
@@ -137,12 +137,12 @@ def solve_batch(
         solver: the solver of a search.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error (rad).
-        goals: what to prefer along the self-motion.
-        prefer: which of several solutions.
+        goals: secondary objectives along the self-motion.
+        prefer: choice among several solutions.
         limits: position limits; None: the robot's.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
-        self_collision: whether links are kept from each other.
+        self_collision: whether links must keep clear of each other.
         stop: budgets of each target. After `max_time` bits differ from run to run.
         seed: seed of the random draws.
 
@@ -184,7 +184,7 @@ def solve_batch(
         options["starts"] = all_starts
     rows = _row_count(inputs, each_starts)
     solve = partial(_solve_rows, robot, keys, options)
-    # Without targets, the core checks all other arguments.
+    # Checks all other arguments in the core, by a batch without targets.
     none = _solved(robot, keys, options, 0, [array[:0] for array in inputs], threads)
     columns = {name: Column(array.dtype, array.shape[1:]) for name, array in _columns(none).items()}
     asked = {"robot": robot, "tips": keys, **options, "rows": rows, "rows_per_chunk": chunk_rows}
@@ -209,7 +209,7 @@ def _solved(
     inputs: Sequence[Any],
     threads: int | None,
 ) -> BatchSolution:
-    """Solves targets: the first inputs, one for each key; another one is their starts."""
+    """Solves targets: the first inputs are the targets of each key, and a further input is their starts."""
     count = 1 if keys is None else len(keys)
     targets = inputs[0] if keys is None else dict(zip(keys, inputs, strict=False))
     starts = {"starts": inputs[count]} if len(inputs) > count else {}
@@ -250,7 +250,7 @@ def _message(status: Any, layout: Layout) -> str:
 
 
 def _array(name: str, value: Any) -> Any:
-    """Returns a zarr array as it is, and another value as an array of numpy."""
+    """Returns a zarr array unchanged, and another value as a numpy array."""
     if type(value).__module__.partition(".")[0] == "zarr" and hasattr(value, "shape"):
         return value
     try:
@@ -263,7 +263,7 @@ def _array(name: str, value: Any) -> Any:
 
 
 def _row_count(inputs: Sequence[Any], starts: bool) -> int:
-    """Returns the number of targets, checked to be that of all tips and of the starts, which come last."""
+    """Returns the number of targets, which must agree for all tips and for the starts, the last input."""
     rows: int = inputs[0].shape[0] if inputs else 0
     for i, array in enumerate(inputs):
         what = "starts" if starts and i == len(inputs) - 1 else "targets"

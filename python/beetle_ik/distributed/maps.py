@@ -37,11 +37,11 @@ def reachability(
     threads: int | None = None,
     progress: _Progress = None,
 ) -> ReachabilityMap:
-    """Computes which poses an arm reaches, on the workers of a dask client: `bik.reachability` in chunks of voxels.
+    """Computes a reachability map on the workers of a dask client: `bik.reachability` in chunks of voxels.
 
-    The map has the bits of `bik.reachability`, for any number of workers of one instruction set. With a store, each
-    chunk is written as soon as it is computed, and the same call goes on after a worker, the scheduler or this process
-    was killed.
+    The map is bit-identical to that of `bik.reachability`, for any number of workers of one instruction set. With a
+    store, each chunk is written as soon as it is computed, and the same call goes on after a worker, the scheduler or
+    this process was killed.
 
     Args:
         client: a `distributed.Client`; None: the chunks are computed here, as by `bik.reachability`.
@@ -52,11 +52,11 @@ def reachability(
         directions: number of directions of the tip's z axis.
         rolls: number of rolls about each direction.
         region: two opposite corners of a box (2, 3) (m); None: all that the tip can reach.
-        task: the part of a pose that matters.
+        task: the part of a pose that counts.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
-        self_collision: whether links are kept from each other.
-        evaluations: most evaluations of a pose.
+        self_collision: whether links must keep clear of each other.
+        evaluations: largest number of evaluations for a pose.
         quality: whether to measure manipulability and clearance.
         threads: number of threads if `client` is None; None: one per core. Workers compute a chunk in each thread.
         progress: True shows a progress bar; a callable is called with (done, total), in voxels, after each chunk.

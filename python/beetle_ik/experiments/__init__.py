@@ -1,4 +1,4 @@
-"""Papers run again: `beetle-ik reproduce NAME --out DIR`, or `reproduce(name, out)`.
+"""Reproduction of papers: `beetle-ik reproduce NAME --out DIR`, or `reproduce(name, out)`.
 
 How to write an experiment. Make one module here (or a small folder, whose `__init__` combines its parts), and add its
 name to `registry.py`. The module contains settings with their sources, functions that run, functions that draw, and
@@ -52,7 +52,7 @@ where `run` takes a `Context` and returns a `Report`:
             ],
         )
 
-What the library expects of it:
+Rules for an experiment:
 
 - An experiment of several parts is a folder with one module per part, whose function returns a `Part`: a section, and
   the claims and checks that it decides. `Report.of(summary, parts)` puts them together.

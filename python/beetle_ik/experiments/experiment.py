@@ -1,4 +1,4 @@
-"""What an experiment is, and what it is given to run."""
+"""Experiments, and the context in which they run."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -7,32 +7,32 @@ from typing import TypeAlias, TypeVar
 from ..report import Report
 
 Progress: TypeAlias = Callable[[str, int, int], None]
-"""Called with what is being done, how many of its items are done, and how many there are."""
+"""Called with the current activity, the number of items done, and their total."""
 Item = TypeVar("Item")
 
 
 def no_progress(_what: str, _done: int, _total: int) -> None:
-    """Show nothing."""
+    """Shows nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Context:
-    """How thoroughly to run, from which seed, and where to show progress."""
+    """Thoroughness, first seed and progress of a run."""
 
     short: bool = False
     seed: int = 0
     progress: Progress = no_progress
 
     def pick(self, *, full: Item, short: Item) -> Item:
-        """The setting of a full run or of a short one."""
+        """Returns the setting of a full run or of a short one."""
         return short if self.short else full
 
     def seeds(self, count: int) -> range:
-        """`count` seeds, no two alike."""
+        """Returns `count` different seeds."""
         return range(self.seed, self.seed + count)
 
     def each(self, what: str, items: Sequence[Item]) -> Iterator[Item]:
-        """Iterate over `items`, with a progress bar labelled `what`."""
+        """Iterates over `items`, with a progress bar labelled `what`."""
         for done, item in enumerate(items):
             self.progress(what, done, len(items))
             yield item
@@ -41,14 +41,14 @@ class Context:
 
 @dataclass(frozen=True, kw_only=True)
 class Experiment:
-    """A paper that can be run again."""
+    """A reproducible paper."""
 
     name: str
-    """As on the command line: "cheng2020"."""
+    """Name on the command line, for example "cheng2020"."""
     title: str
-    """A headline of our own: what is reproduced."""
+    """Our headline for the reproduced results."""
     paper: str
     """Authors, title, journal, year."""
     run: Callable[[Context], Report]
     extras: tuple[str, ...] = ()
-    """Of beetle-ik, beside `report`: what has to be installed."""
+    """Extras of beetle-ik that have to be installed, besides `report`."""

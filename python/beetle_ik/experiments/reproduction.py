@@ -1,4 +1,4 @@
-"""Run experiments and write their reports."""
+"""Runs of experiments and their reports."""
 
 import os
 import platform
@@ -23,12 +23,12 @@ def reproduce(
     progress: Progress = no_progress,
     option: str = "out",
 ) -> list[tuple[Report, Provenance]]:
-    """Run the experiment `name`, or "all", anew and write its report into the folder `out`.
+    """Runs the experiment `name`, or "all", anew and writes its report into the folder `out`.
 
     The report appears in `out` when it is complete; until then, and after any failure, the old content stays.
 
     Args:
-        name: one of `names()`, or "all": then each report has a folder of its name, with an `index.html` over them.
+        name: one of `names()`, or "all", which makes a folder for each report, with an `index.html` over them.
         out: the folder; it may contain an earlier report, which is replaced, and nothing else.
         short: a quick pass with fewer runs.
         seed: first seed of all random draws.
@@ -36,7 +36,7 @@ def reproduce(
         option: the name of `out` in messages.
 
     Raises:
-        UnknownNameError: there is no such experiment; lists them.
+        UnknownNameError: no experiment of that name; the message lists them.
         BeetleIkError: the extra `report`, or another that an experiment needs, is not installed.
         InvalidInputError: `out` cannot be written, or contains files that do not belong to a report.
     """

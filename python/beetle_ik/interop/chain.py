@@ -26,7 +26,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Link:
-    """Marks the current frame as that of a link."""
+    """Marks the current frame as the frame of a link."""
 
     name: str
 
@@ -74,7 +74,7 @@ def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Li
     """Returns pose of the base link, elements up to the last link, and tool, for a library without mimic joints.
 
     Raises:
-        InvalidInputError: not a `Robot`, or one with a mimic joint; names the joint that it follows.
+        InvalidInputError: not a `Robot`, or a robot with a mimic joint; the message names the joint that it follows.
     """
     require("robot", robot, Robot)
     base, elements, tool = robot._chain()
@@ -93,7 +93,7 @@ def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Li
                     f"which the conversion to {library} does not support"
                 )
             seen.add(joint)
-            # A scale of -1 is the opposite axis.
+            # Turns the axis around for a scale of -1.
             shown.append(Motion(joint, turns, scale * axis, scale * offset))
     return base, shown, tool
 
@@ -102,7 +102,7 @@ def only_leaf(library: str, what: str, leaves: list[str]) -> str:
     """Returns the only leaf, as the default tip.
 
     Raises:
-        InvalidInputError: there are several; lists them.
+        InvalidInputError: several leaves; the message lists them.
     """
     if len(leaves) == 1:
         return leaves[0]

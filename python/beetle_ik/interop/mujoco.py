@@ -16,5 +16,5 @@ def from_mujoco(
     tip: str | None = None,
     trusted: bool = False,
 ) -> Robot:
-    """Makes a robot from a MuJoCo model: `Robot.from_mjcf` under the name that goes with the other conversions."""
+    """Makes a robot from a MuJoCo model; another name of `Robot.from_mjcf`, beside the other conversions."""
     return Robot.from_mjcf(model, base=base, tip=tip, trusted=trusted)

@@ -19,7 +19,7 @@ def from_roboticstoolbox(robot: "rtb.Robot | rtb.DHRobot | rtb.ETS", *, tip: str
 
     Args:
         robot: a robot of revolute and prismatic joints; its base and tool are kept.
-        tip: name of the end link of a `Robot` with several, without its tool; None: the toolbox's default.
+        tip: name of the end link of a `Robot` with several, without its tool; None: the default of the toolbox.
 
     A joint without limits in the toolbox has none here. The toolbox has no velocity limits.
 

@@ -26,8 +26,8 @@ def to_ros(
 
     Args:
         trajectory: the motion.
-        dt: time between points (s). Needed if the controller interpolates with another degree, or if derivatives of
-            the trajectory jump. None: points at the knots.
+        dt: time between points (s), for a controller that interpolates with another degree, or a trajectory whose
+            derivatives jump. None: points at the knots.
         frame_id: frame_id of the header.
         joint_names: the controller's names of the joints, in the order of q; None: those of the trajectory.
 

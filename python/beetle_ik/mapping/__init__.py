@@ -1,4 +1,4 @@
-"""Maps of what an arm reaches: how they are made, asked, inverted, stored and drawn, and where a base best stands."""
+"""Reachability maps: computation, queries, inverse, storage and figures, and the best placement of a base."""
 
 from .base_placement import BasePlacement, best_base
 from .compute import reachability

@@ -1,4 +1,4 @@
-"""Where the base best stands for several targets."""
+"""Best placement of the base for several targets."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _YAWS = 24
-_WIDEST = 8  # voxels: how far around a place it is looked
-_VERIFIED = 32  # places that are verified
+_WIDEST = 8  # largest distance around a place that counts for its margin, in voxels
+_VERIFIED = 32  # places verified by `solve`
 _MOST_PLACES = 10_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class BasePlacement:
-    """Where the base of a robot best stands for several targets, found by `best_base`."""
+    """The best placement of a robot's base for several targets, found by `best_base`."""
 
     pose: NDArray[np.float64]
     """Pose of the base (4, 4)."""
     reached: NDArray[np.bool_]
-    """Which targets are reached from there (k,) bool, by `solve`."""
+    """Whether each target is reached from there (k,) bool, by `solve`."""
     margin: float
-    """How far the base may be off in x, y and z (m) with the same targets still reached by the map, within the region:
-    in steps of its voxels, at most 8."""
+    """Displacement of the base in x, y and z (m) within the region at which the map still reaches the same targets: in
+    steps of its voxels, at most 8."""
 
     @property
     def success(self) -> bool:
@@ -46,7 +46,7 @@ class BasePlacement:
 
     @property
     def message(self) -> str:
-        """How many targets are reached."""
+        """Number of reached targets."""
         x, y, z = self.pose[:3, 3]
         count = f"{int(self.reached.sum())} of {counted(len(self.reached), 'target')}"
         found = f"{count} reached from ({x:.3g}, {y:.3g}, {z:.3g})"
@@ -67,7 +67,7 @@ class BasePlacement:
         return f"<b>BasePlacement</b>: {escape(self.message)}{table(rows)}"
 
     def __repr__(self) -> str:
-        """Says how many targets are reached."""
+        """Shows the number of reached targets."""
         return f"<BasePlacement: {self.message}>"
 
 
@@ -80,7 +80,7 @@ def best_base(
     obstacles: Iterable[Obstacle] | None = None,
     map: ReachabilityMap | None = None,  # noqa: A002
 ) -> BasePlacement:
-    """Finds where an upright base reaches most of several targets, with the widest margin.
+    """Finds the placement of an upright base that reaches most of several targets, with the widest margin.
 
     A map ranks the places of a grid as fine as its voxels, at 24 yaws each; the best 32 are verified by `solve`.
 
@@ -88,8 +88,8 @@ def best_base(
         robot: the arm.
         targets: poses (k, 4, 4) of its tip.
         region: two opposite corners (2, 3) (m) of the box in which the base may stand, in the frame of the targets.
-        obstacles: what solutions keep clear of, in the frame of the targets.
-        map: a map of the robot; None: one of 5 cm is computed.
+        obstacles: obstacles that solutions keep clear of, in the frame of the targets.
+        map: a map of the robot; None: a map with voxels of 5 cm is computed.
 
     Returns:
         A `BasePlacement`.
@@ -147,7 +147,7 @@ def _ranked(
     targets: NDArray[np.float64],
     axes: list[NDArray[np.float64]],
 ) -> list[tuple[int, float, NDArray[np.float64]]]:
-    """Returns the best places: how many targets the map reaches from there, the margin (m), and the base (4, 4)."""
+    """Returns the best places: number of targets that the map reaches from there, margin (m), and base (4, 4)."""
     shape = tuple(map_axis.size for map_axis in axes)
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     found: list[tuple[int, float, NDArray[np.float64]]] = []
@@ -167,7 +167,7 @@ def _ranked(
 
 
 def _margins(reached: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Returns how many steps around each place (k, x, y, z) all of its targets stay reached, at most 8."""
+    """Returns the steps around each place (k, x, y, z) within which its targets stay reached, at most 8."""
     margins = np.zeros(reached.shape[1:], np.int64)
     eroded = kept = reached
     alive = np.ones(reached.shape[1:], bool)

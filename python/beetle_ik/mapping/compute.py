@@ -1,4 +1,4 @@
-"""Computes a map, chunk by chunk."""
+"""Computation of a map, chunk by chunk."""
 
 from __future__ import annotations
 
@@ -44,34 +44,34 @@ def reachability(
     progress: _Progress = None,
     store: str | os.PathLike[str] | None = None,
 ) -> ReachabilityMap:
-    """Computes which poses an arm reaches: cubic voxels, with the same orientations at the centre of each.
+    """Computes a reachability map: cubic voxels, with the same orientations at the centre of each.
 
-    Arms whose first axis is vertical have maps that cost about an eighth: the orientations turn with the azimuth of the
-    voxel about that axis, so that the voxels at one distance from it and one height differ by the limits of the first
-    joint alone. Obstacles and checks of the robot against itself end that.
+    The map of an arm whose first axis is vertical takes an eighth of the time: its orientations turn with the azimuth
+    of the voxel about that axis, so that voxels at the same distance and height differ only by the limits of the first
+    joint. Obstacles and self-collision checks remove this saving.
 
-    An orientation is reached where a solution is found within the tolerances of `solve`. Of arms with a closed form and
-    at most six joints, all others cannot be reached, but for those within rounding of a limit or of the edge of the
-    reach. Elsewhere `evaluations` bounds the search, and a few orientations that can be reached are missed.
+    An orientation is reached if a solution is found within the tolerances of `solve`. For an arm with a closed form and
+    at most six joints, all other orientations are out of reach, except within rounding of a limit or of the edge of the
+    reach. For other arms, `evaluations` bounds the search, and a few reachable orientations are missed.
 
     Args:
         robot: an arm with one tip.
         voxel: edge of the voxels (m).
-        directions: number of directions of the tip's z axis, a spherical Fibonacci set. A tip that keeps a direction,
-            as of planar arms and SCARAs, has no other.
+        directions: number of directions of the tip's z axis, a spherical Fibonacci set. A tip with one constant
+            direction, as of planar arms and SCARAs, has no other.
         rolls: number of rolls about each direction.
         region: two opposite corners of a box (2, 3) (m) in the frame of the robot's base, extended to whole voxels,
             whose faces are at multiples of `voxel` from the first axis; None: all that the tip can reach.
-        task: the part of a pose that matters; `tasks.Pointing()` has no rolls, `tasks.Position()` one orientation.
-        obstacles: what solutions keep clear of, in the frame of the robot's base, as for `solve`.
+        task: the part of a pose that counts; `tasks.Pointing()` has no rolls, `tasks.Position()` one orientation.
+        obstacles: obstacles that solutions keep clear of, in the frame of the robot's base, as for `solve`.
         margin: distance to keep (m), as for `solve`.
         self_collision: whether links must not touch each other, as for `solve`.
-        evaluations: most evaluations of a pose: values of the parameter of a redundant arm with a closed form, and
-            evaluations of the forward kinematics for arms without one.
+        evaluations: largest number of evaluations for a pose: parameter values of a redundant arm with a closed form,
+            or evaluations of the forward kinematics for an arm without one.
         quality: whether to measure manipulability and clearance of the best configuration found in each voxel.
         threads: number of threads; None: one per core. The map has the same bits for any number.
         progress: True shows a progress bar; a callable is called with (done, total), in voxels, after each chunk.
-        store: folder of a zarr group to compute into. The same call goes on after it was interrupted;
+        store: folder of a zarr group to compute into. The same call continues after an interruption;
             `ReachabilityMap.load` reads the finished store.
 
     Returns:
@@ -79,7 +79,7 @@ def reachability(
 
     Raises:
         InvalidInputError: a robot with several tips, or whose tip moves in too few directions for the task; a voxel,
-            region or count that makes no map; a store that cannot be written, or is of another map.
+            region or count that makes no map; a store that cannot be written, or belongs to another map.
         OSError: a chunk cannot be written to the store, which keeps the others.
     """
     poses = {"voxel": voxel, "directions": directions, "rolls": rolls, "region": region}

@@ -1,4 +1,4 @@
-"""Where the base may stand so that a target is reached."""
+"""Placements of the base from which a target is reached."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _MOST_YAWS = 3600
-_PLACES = 81  # of a figure, along x and y
+_PLACES = 81  # places of a figure along x and y
 
 
 @runtime_checkable
 class _Map(MappedVoxels, Protocol):
-    """What is asked of a `ReachabilityMap`."""
+    """Interface of `ReachabilityMap` that the inverse map uses."""
 
     def query(self, T: ArrayLike) -> Any: ...  # noqa: N803
 
 
 class InverseReachabilityMap:
-    """The same map seen from the target, made by `ReachabilityMap.inverse`. Bases and targets are poses in one frame.
+    """A reachability map seen from the target, made by `ReachabilityMap.inverse`. Bases and targets are in one frame.
 
     A base B reaches the target T where the map reaches B^-1 T, so both maps agree by construction.
 
     Attributes:
-        map: the map.
+        map: the reachability map.
     """
 
     def __init__(self, map: _Map) -> None:  # noqa: A002
-        """Keeps the map."""
+        """Stores the map."""
         if not isinstance(map, _Map):
             raise InvalidInputError(f"map must be a ReachabilityMap, got {map!r:.60}")
         self.map = map
@@ -56,7 +56,7 @@ class InverseReachabilityMap:
     def on_floor(
         self, x: ArrayLike, y: ArrayLike, *, target: ArrayLike | None = None, height: float = 0.0, yaws: int = 24
     ) -> NDArray[np.float32]:
-        """Returns the share of yaws at which an upright base reaches a target, for each place (x, y).
+        """Returns the fraction of yaws at which an upright base reaches a target, for each place (x, y).
 
         Args:
             x: coordinates of the places (i,) (m).
@@ -81,7 +81,7 @@ class InverseReachabilityMap:
         return (reached / yaws).astype(np.float32)
 
     def plot(self, target: ArrayLike | None = None, *, height: float = 0.0) -> Figure:
-        """Draws where an upright base at this height (m) reaches a target (4, 4), by the share of its yaws."""
+        """Draws the fraction of yaws at which an upright base at this height (m) reaches a target (4, 4), by place."""
         radius = 0.5 * self.map.voxel * max(self.map.index.shape[:2])
         at = one_target(target)[:2, 3]
         x, y = (centre + np.linspace(-radius, radius, _PLACES) for centre in at)
@@ -101,7 +101,7 @@ class InverseReachabilityMap:
 
 
 def _numbers(name: str, value: ArrayLike, *, dimensions: int = 1) -> NDArray[np.float64]:
-    """Returns finite numbers of at most so many dimensions."""
+    """Returns finite numbers with at most `dimensions` dimensions."""
     try:
         numbers = np.asarray(value, float)
     except (TypeError, ValueError):

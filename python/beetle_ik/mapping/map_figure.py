@@ -1,4 +1,4 @@
-"""Figures of maps: slices and clouds of what is reached, and where a base may stand."""
+"""Figures of maps: slices and clouds of reached voxels, and placements of a base."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 KINDS = ("slices", "cloud")
 _COLOURS = "viridis"
-_MOST_POINTS = 20_000  # of a cloud; matplotlib draws more slowly
-_WIDTH = 180.0  # of all voxels, in points
+_MOST_POINTS = 20_000  # points of a cloud; matplotlib draws more slowly
+_WIDTH = 180.0  # points, width of all voxels
 _NAMES = "xyz"
 
 
@@ -47,7 +47,7 @@ def drawn(map: MappedVoxels, kind: str) -> Figure:  # noqa: A002
 
 
 def drawn_on_floor(title: str, at: NDArray[Any], x: NDArray[Any], y: NDArray[Any], share: NDArray[Any]) -> Figure:
-    """Draws the share of yaws (i, j) at which a base at the places `x` (i,) and `y` (j,) reaches a target `at` (2,)."""
+    """Draws the fraction of yaws (i, j) at which a base at `x` (i,) and `y` (j,) reaches a target `at` (2,)."""
     with style():
         figure = new_figure(6.5, 5.5)
         axes = figure.add_subplot()
@@ -61,7 +61,7 @@ def drawn_on_floor(title: str, at: NDArray[Any], x: NDArray[Any], y: NDArray[Any
 
 
 def _slices(figure: Figure, map: MappedVoxels) -> Any:  # noqa: A002
-    """Draws the planes through the middle, and the layer that is reached best."""
+    """Draws the planes through the middle, and the layer with the largest reach."""
     best = [map.index.shape[0] // 2, map.index.shape[1] // 2, int(np.argmax(map.index.mean(axis=(0, 1))))]
     centres = [origin + map.voxel * (np.arange(n) + 0.5) for origin, n in zip(map.origin, map.index.shape, strict=True)]
     planes = [kept for kept in ((0, 2), (1, 2), (0, 1)) if min(map.index.shape[axis] for axis in kept) > 1]
@@ -78,7 +78,7 @@ def _slices(figure: Figure, map: MappedVoxels) -> Any:  # noqa: A002
 
 
 def _shown(axes: Axes, x: NDArray[Any], y: NDArray[Any], share: NDArray[Any]) -> Any:
-    """Draws shares (x, y) in per cent; nothing where none is reached."""
+    """Draws fractions (x, y) in per cent; empty where none is reached."""
     axes.set_aspect("equal")
     axes.grid(visible=False)
     percent = np.where(share > 0, 100.0 * share, np.nan).T
@@ -103,6 +103,6 @@ def _cloud(figure: Figure, map: MappedVoxels) -> Any:  # noqa: A002
 
 
 def cloud(map: MappedVoxels) -> tuple[NDArray[np.float64], NDArray[np.float32]]:  # noqa: A002
-    """Returns the centres (k, 3) (m) of the voxels that are reached, and the share of each (k,)."""
+    """Returns the centres (k, 3) (m) of the reached voxels, and the fraction of orientations of each (k,)."""
     voxels = np.argwhere(map.index > 0)
     return map.origin + map.voxel * (voxels + 0.5), map.index[tuple(voxels.T)]

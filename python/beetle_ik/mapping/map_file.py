@@ -1,4 +1,4 @@
-"""Maps as npz files, and as the stores they are computed into."""
+"""Maps as npz files, and as the stores that they are computed into."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ FORMAT = 2
 """Version of the file; a file of another version is refused."""
 
 QUALITY = ("manipulability", "clearance")
-"""What may be measured beside the bits."""
+"""Optional results besides the bits."""
 
 _SEAL = "seal"
 _SEALED = ("robot", "grid", "bits", *QUALITY)
 
 
 def write(file: str | os.PathLike[str], robot: Robot, grid: MapGrid, results: Mapping[str, Any]) -> None:
-    """Writes a map, of which `results` are the arrays that there are; the file appears complete or not at all."""
+    """Writes a map; `results` are its arrays. The file appears complete or not at all."""
     kept = {**attached(robot, grid), **results}
     arrays: dict[str, Any] = {"reachability_map": np.array(FORMAT), **kept, _SEAL: _seal(kept)}
     with whole_file(file) as stream:
@@ -37,7 +37,7 @@ def write(file: str | os.PathLike[str], robot: Robot, grid: MapGrid, results: Ma
 
 
 def read(file: str | os.PathLike[str], robot: Robot | None) -> dict[str, Any]:
-    """Returns robot, grid and results of a map, checked; of `robot` if that is given."""
+    """Returns robot, grid and results of a map, checked; `robot` is the required robot, if given."""
     if robot is not None:
         require("robot", robot, Robot)
     place = path_of(file)
@@ -64,7 +64,7 @@ def read(file: str | os.PathLike[str], robot: Robot | None) -> dict[str, Any]:
 
 
 def _require_sealed(arrays: Mapping[str, Any]) -> None:
-    """Raises `InvalidInputError` unless all arrays are of one map: a whole array may come from another file."""
+    """Raises `InvalidInputError` unless all arrays belong to one map: an array may come from another file."""
     seal = arrays[_SEAL]
     if seal.dtype != np.uint8 or not np.array_equal(seal, _seal(arrays)):
         raise InvalidInputError("its arrays do not belong together")
@@ -95,7 +95,7 @@ def require_same_robot(what: str, mapped: Robot, robot: Robot | None) -> None:
 
 
 def attached(robot: Robot, grid: MapGrid) -> dict[str, NDArray[np.uint8]]:
-    """Returns what a file says of a map besides its results."""
+    """Returns the contents of a file besides the results: robot and grid."""
     return {"robot": _stored(robot), "grid": _stored(grid)}
 
 

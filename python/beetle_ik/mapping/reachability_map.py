@@ -1,4 +1,4 @@
-"""The map of what an arm reaches."""
+"""The reachability map of an arm."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-_A_BATCH = 3  # dimensions
+_A_BATCH = 3  # dimensions of a batch of poses
 
 
 class ReachabilityMap:
-    """Which poses an arm reaches, made by `reachability`: voxels, and orientations at the centre of each.
+    """Poses that an arm reaches, computed by `reachability`: voxels, and orientations at the centre of each.
 
     Attributes:
         robot: the arm.
@@ -30,11 +30,12 @@ class ReachabilityMap:
         orientations: number of orientations of each voxel.
         axis: None, or the point (2,) (m) of a vertical axis, about which the orientations turn with the azimuth of the
             voxel.
-        index: share of the orientations that are reached (x, y, z) float32.
+        index: fraction of the orientations that are reached (x, y, z) float32.
         bits: a bit for each orientation (x, y, z, bytes) uint8, the lowest first.
-        manipulability: largest of a configuration found in each voxel (x, y, z) float32, NaN where there is none; None
-            unless `quality` was asked for.
-        clearance: largest (x, y, z) float32 (m), likewise; NaN without obstacles and self-collision.
+        manipulability: largest manipulability found in each voxel (x, y, z) float32, NaN where there is none; None
+            without `quality`.
+        clearance: largest clearance found in each voxel (x, y, z) float32 (m), NaN without obstacles and
+            self-collision; None without `quality`.
     """
 
     def __init__(
@@ -45,7 +46,7 @@ class ReachabilityMap:
         manipulability: NDArray[np.float32] | None = None,
         clearance: NDArray[np.float32] | None = None,
     ) -> None:
-        """Keeps the results of all chunks of a grid; to make a map, call `reachability` or `load`."""
+        """Stores the results of all chunks of a grid; to make a map, call `reachability` or `load`."""
         require("robot", robot, Robot)
         require("grid", grid, MapGrid)
         require_results(grid, {"bits": bits, "manipulability": manipulability, "clearance": clearance})
@@ -53,7 +54,7 @@ class ReachabilityMap:
         self.manipulability, self.clearance = manipulability, clearance
         self.origin, self.voxel, self.axis, self.orientations = grid.origin, grid.voxel, grid.axis, grid.orientations
         self.index = np.empty(grid.shape, np.float32)
-        for layer, part in zip(self.index, bits, strict=True):  # by layers: the counts take eight times the bits
+        for layer, part in zip(self.index, bits, strict=True):  # by layers: counts take eight times the bits
             layer[:] = np.bitwise_count(part).sum(axis=-1, dtype=np.float32) / grid.orientations
         for array in (bits, self.index):
             array.setflags(write=False)
@@ -65,7 +66,7 @@ class ReachabilityMap:
         return x, y, z
 
     def query(self, T: ArrayLike) -> Any:  # noqa: N803
-        """Returns whether poses are reached: by the voxel that each is in, and the orientation nearest to its own.
+        """Returns whether poses are reached, by the voxel and the nearest orientation of each.
 
         Args:
             T: pose (4, 4), or poses (n, 4, 4).
@@ -81,20 +82,20 @@ class ReachabilityMap:
         return bool(reached[0]) if np.ndim(T) != _A_BATCH and len(reached) == 1 else reached
 
     def poses(self, voxel: tuple[int, int, int]) -> NDArray[np.float64]:
-        """Returns the poses (orientations, 4, 4) of the voxel (x, y, z), counted from 0."""
+        """Returns the poses (orientations, 4, 4) of the voxel (x, y, z), numbered from 0."""
         return self.grid.poses(voxel)
 
     def reached(self, voxel: tuple[int, int, int]) -> NDArray[np.bool_]:
-        """Returns which `poses` of the voxel (x, y, z) are reached (orientations,) bool."""
+        """Returns whether each of the `poses` of the voxel (x, y, z) is reached (orientations,) bool."""
         self.grid.poses(voxel)  # refuses voxels outside
         return np.unpackbits(self.bits[tuple(voxel)], count=self.orientations, bitorder="little").astype(bool)
 
     def inverse(self) -> InverseReachabilityMap:
-        """Returns the inverse map: where may the base stand so that a target is reached?"""
+        """Returns the inverse map: the placements of the base from which a target is reached."""
         return InverseReachabilityMap(self)
 
     def plot(self, kind: Literal["slices", "cloud"] = "slices") -> Figure:
-        """Draws the share of orientations reached: in three planes through the best voxel, or as a cloud, cut open."""
+        """Draws the fraction of orientations reached: in three planes through the best voxel, or as an open cloud."""
         return drawn(self, kind)
 
     def to_npz(self, file: str | os.PathLike[str]) -> None:
@@ -108,10 +109,11 @@ class ReachabilityMap:
 
         Args:
             file: the file.
-            robot: the robot that the map must be of; None: any.
+            robot: the required robot of the map; None: any.
 
         Raises:
-            InvalidInputError: the file is no map, is damaged, of another version, or of another robot. Names the file.
+            InvalidInputError: the file, which the message names, is no map, is damaged, or is of another version or
+                robot.
         """
         return ReachabilityMap(**read(file, robot))
 
@@ -133,7 +135,7 @@ class ReachabilityMap:
         return reachability_map(self)
 
     def __repr__(self) -> str:
-        """Says how much of the voxels is reached."""
+        """Shows the size of the map and the fraction that is reached."""
         held = int(np.count_nonzero(self.index))
         share = f"{100 * float(self.index.mean()):.3g} %"
         size = "x".join(map(str, self.shape))

@@ -24,7 +24,7 @@ def rigid(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Returns poses (4, 4) or (n, 4, 4) as an array.
 
     Raises:
-        InvalidInputError: another shape, or no numbers. Names the argument.
+        InvalidInputError: another shape, or no numbers; the message names the argument.
     """
     try:
         poses = np.asarray(value, float)

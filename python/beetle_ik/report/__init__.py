@@ -1,4 +1,4 @@
-"""Reports to read: text, figures, tables with the printed value beside the measured one, claims with verdicts, checks.
+"""Reports: text, figures, tables of printed and measured values, claims with verdicts, and checks.
 
     from beetle_ik.report import Claim, Column, Figure, Report, Section, Table, drawing
 

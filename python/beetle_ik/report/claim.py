@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 
 class Verdict(StrEnum):
-    """What became of a paper's claim."""
+    """Outcome of a paper's claim."""
 
     REPRODUCED = "reproduced"
     WITH_READING = "reproduced with a stated reading"
@@ -22,7 +22,7 @@ class Verdict(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """One line for the reader of a report."""
+        """Explanation of the verdict, in one line."""
         return _MEANINGS[self]
 
 
@@ -37,13 +37,13 @@ _MEANINGS = {
 
 
 class Printed(Enum):
-    """Why there is no printed value to set beside the measured one."""
+    """Reason for a missing printed value."""
 
-    NOT_IN_COPY = "not in our copy"  # the paper prints it; the text that we have lost it
-    NOT_STATED = "not stated"  # the paper does not give it
+    NOT_IN_COPY = "not in our copy"  # the paper prints the value; the text that we have lost it
+    NOT_STATED = "not stated"  # the paper does not give the value
 
 
-# Where readings differ, and where all agree.
+# Labels of the readings, if they differ and if all agree.
 _HOLDS = ("Holds", "Holds under each reading")
 _FAILS = ("Does not hold", "Holds under no reading")
 
@@ -56,21 +56,21 @@ class Claim:
     """A statement of a paper beside the measured result. Made by `Claim.judged`."""
 
     statement: str
-    """What the paper says, in our words or, in quotes, in its own."""
+    """Statement of the paper, in our words or, in quotes, in its own."""
     source: str
-    """Where it says so: "Section IV-A, Figure 2"."""
+    """Place of the statement in the paper, for example "Section IV-A, Figure 2"."""
     rule: str
     """The criterion, as a sentence."""
     measured: str
-    """What came out, with units."""
+    """Result of the run, with units."""
     holds: bool | Readings | None
-    """Whether the rule is met, for all readings alike or for each; None where nothing was run."""
+    """Whether the rule is met, for all readings alike or for each; None if nothing was run."""
     reading: str = ""
-    """What was chosen where the paper leaves a choice. Another choice might do better: with one, nothing fails."""
+    """Our choice where the paper leaves one open. Another choice might do better: with a reading, nothing fails."""
     missing: tuple[str, ...] = ()
     """Quantities that the claim depends on and that the paper does not give."""
     reason: str = ""
-    """Why it came out so, or why nothing was run."""
+    """Reason for the result, or for not running anything."""
     section: str | None = None
     """Title of the section that shows it."""
 
@@ -88,7 +88,7 @@ class Claim:
         reason: str = "",
         section: str | None = None,
     ) -> Claim:
-        """A claim whose verdict follows from the data.
+        """Makes a claim whose verdict follows from the data.
 
         - `missing` quantities (see `not_given`): not identifiable, whatever `holds` is.
         - `holds` is True: reproduced; with a `reading`: reproduced with a stated reading.
@@ -113,7 +113,7 @@ class Claim:
         )
 
     def __post_init__(self) -> None:
-        """Refuse a verdict that nothing supports."""
+        """Refuses a verdict without support."""
         if not self.rule:
             raise ValueError(f"claim '{self.statement}': state the rule by which it is judged")
         if self.holds is None and not self.missing and not self.reason:
@@ -123,7 +123,7 @@ class Claim:
 
     @property
     def verdict(self) -> Verdict:
-        """As `judged` says."""
+        """Verdict by the rules of `judged`."""
         if self.missing:
             return Verdict.NOT_IDENTIFIABLE
         if self.holds is None:
@@ -135,7 +135,7 @@ class Claim:
 
     @property
     def notes(self) -> list[str]:
-        """The lines below the measured values: readings, missing quantities, the reason."""
+        """Lines below the measured values: readings, missing quantities, the reason."""
         notes = [f"Reading: {self.reading}"] if self.reading else []
         if isinstance(self.holds, Mapping):
             for words, met in ((_HOLDS, True), (_FAILS, False)):
@@ -156,14 +156,14 @@ class Check:
     rule: str
     """The criterion, as a sentence."""
     measured: str
-    """What came out, with units."""
+    """Result of the run, with units."""
     holds: bool
     section: str | None = None
     """Title of the section that shows it."""
 
 
 def not_given(quantities: Mapping[str, object]) -> tuple[str, ...]:
-    """Names of the quantities whose value is `Printed`: what `Claim.judged` takes as `missing`.
+    """Returns the names of the quantities whose value is `Printed`, for `missing` of `Claim.judged`.
 
     The names carry the reason: "link length (not stated)".
     """

@@ -1,6 +1,6 @@
-"""What a report is made of: sections of text, tables and figures; claims of the paper and checks of the library.
+"""Contents of a report: sections of text, tables and figures; claims of the paper and checks of the library.
 
-Everything is checked when it is made, so that a mistake shows where it was written and not in the finished page.
+Each part is checked when it is made, so that a mistake shows where it was written and not in the finished page.
 """
 
 from __future__ import annotations
@@ -29,21 +29,22 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """Mean and (sample) standard deviation of `values`; the deviation of a single one is NaN."""
+        """Returns mean and (sample) standard deviation of `values`; the deviation of a single value is NaN."""
         mean = sum(values) / len(values)
         squares = sum((value - mean) ** 2 for value in values)
         return cls(mean, (squares / (len(values) - 1)) ** 0.5 if len(values) > 1 else float("nan"))
 
 
 Value: TypeAlias = str | int | float | Spread | None
-"""None: does not apply. Text, and numbers, which are rounded for reading and kept whole in the CSV."""
+"""Content of a cell: text, or numbers, which are rounded on the page and kept whole in the CSV; None: not
+applicable."""
 Cell: TypeAlias = Value | tuple[Value | Printed, Value]
-"""In a compared column: (printed, measured)."""
+"""Content of a cell, or (printed, measured) in a compared column."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """A column of a table. In one that is `compared` each cell is the pair (printed, measured)."""
+    """A column of a table. Each cell of a `compared` column is the pair (printed, measured)."""
 
     name: str
     unit: str = ""
@@ -61,18 +62,18 @@ class Table:
     """A table of the report, and a CSV file of the same name."""
 
     name: str
-    """Stem of its file: "table_2"."""
+    """Stem of the file, for example "table_2"."""
     title: str
     columns: Sequence[Column]
     rows: Sequence[Sequence[Cell]]
     caption: str = ""
     folded: bool = False
-    """Shown when the reader asks for it: for the numbers behind a figure."""
+    """Whether the table is hidden until the reader opens it, for the numbers behind a figure."""
     carried_over: str = ""
-    """The command that computes it, where this run did not."""
+    """Command that computes the table, if this run did not."""
 
     def __post_init__(self) -> None:
-        """Refuse rows that do not fit the columns."""
+        """Refuses rows that do not fit the columns."""
         _check_file_stem(self.name)
         for i, row in enumerate(self.rows):
             if len(row) != len(self.columns):
@@ -85,20 +86,20 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """A figure of the report, and a PNG file of the same name; a GIF file where it moves."""
+    """A figure of the report, and a PNG file of the same name; a GIF file for an animation."""
 
     name: str
-    """Stem of its file: "figure_2"."""
+    """Stem of the file, for example "figure_2"."""
     title: str
     drawing: Drawing
-    """Made by `report.drawing`."""
+    """Figure made by `report.drawing`."""
     caption: str = ""
-    """What to look at, and what it means."""
+    """Explanation of the figure."""
     frames: Frames | None = None
-    """What moves in the drawing."""
+    """Animation of the drawing, if any."""
 
     def __post_init__(self) -> None:
-        """Refuse a name that is no file's."""
+        """Refuses a name that cannot be a file's."""
         _check_file_stem(self.name)
 
 
@@ -107,9 +108,9 @@ class CarriedOver:
     """Text with numbers that this run did not compute. The page marks it and names the command."""
 
     text: str
-    """As the text of a section."""
+    """Text of a section."""
     command: str
-    """What computes them."""
+    """Command that computes the numbers."""
 
 
 Block: TypeAlias = str | CarriedOver | Table | Figure
@@ -117,10 +118,10 @@ Block: TypeAlias = str | CarriedOver | Table | Figure
 
 @dataclass(frozen=True)
 class Section:
-    """A title and what follows it.
+    """A title and its content.
 
-    Text is paragraphs separated by empty lines; a paragraph whose lines begin with "- " is a list. `code`,
-    *emphasis*, **strong** and [words](address) are understood, everything else stands as written.
+    Text is paragraphs separated by empty lines; a paragraph whose lines begin with "- " is a list. `code`, *emphasis*,
+    **strong** and [words](address) are understood, everything else is shown as written.
     """
 
     title: str
@@ -133,17 +134,17 @@ Part: TypeAlias = tuple[Section, Sequence[Claim | Check]]
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """What an experiment found."""
+    """Findings of an experiment."""
 
     summary: str
-    """The finding in a few sentences: what a reader should know who reads nothing else."""
+    """Findings in a few sentences, for readers who read nothing else."""
     sections: Sequence[Section]
     claims: Sequence[Claim] = field(default=())
     checks: Sequence[Check] = field(default=())
-    """What the run says of the library itself."""
+    """Statements of the run on the library itself."""
 
     def __post_init__(self) -> None:
-        """Refuse links to nowhere and names used twice."""
+        """Refuses unknown section titles and names used twice."""
         titles = {section.title for section in self.sections}
         decided: list[Claim | Check] = [*self.claims, *self.checks]
         for judged in decided:
@@ -156,7 +157,7 @@ class Report:
 
     @classmethod
     def of(cls, summary: str, parts: Sequence[Part]) -> Report:
-        """A report of several parts, in this order."""
+        """Makes a report of several parts, in this order."""
         return cls(
             summary=summary,
             sections=[section for section, _ in parts],
@@ -181,12 +182,12 @@ class Report:
 
     @property
     def failed(self) -> list[Check]:
-        """Checks that do not hold: something has changed or broken."""
+        """Checks that do not hold: a regression or a changed result."""
         return [check for check in self.checks if not check.holds]
 
     @property
     def carried_over(self) -> list[str]:
-        """Commands that compute what this run did not; empty where it computed everything."""
+        """Commands that compute parts left out by this run; empty if it computed everything."""
         tables = [table.carried_over for table in self.tables if table.carried_over]
         texts = [block.command for block in self.blocks if isinstance(block, CarriedOver)]
         return list(dict.fromkeys(tables + texts))

@@ -1,4 +1,4 @@
-"""Figures for reports: the package's style, and the few things that most of them need."""
+"""Common parts of figures in reports, in the style of the package."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from .._core import Robot, TrackResult
 
 WIDTH = 9.0  # inches: the width of the page
-_NEAR = 0.4  # of the limit: from here on it is worth its room
-_ROD, _SHINE, _JOINT = "#7F8C99", "#C3CBD3", "#3B4650"  # an arm of steel
+_NEAR = 0.4  # fraction of the limit from which it is worth drawing
+_ROD, _SHINE, _JOINT = "#7F8C99", "#C3CBD3", "#3B4650"  # colours of a steel arm
 _SAME = 1e-6  # m
 
 
 @contextmanager
 def drawing(height: float, width: float = WIDTH) -> Iterator[Figure]:
-    """A figure of this size (inches) to draw on, in the style of the package.
+    """Makes a figure of this size (inches) to draw on, in the style of the package.
 
     with drawing(3.0) as figure:
         axes = figure.subplots()
@@ -42,7 +42,7 @@ def drawing(height: float, width: float = WIDTH) -> Iterator[Figure]:
 
 
 def draw_error(axes: Axes, time: ArrayLike, error: ArrayLike, *, band: float | None = None, **line: Any) -> None:
-    """An error (m) over time (s) on a logarithmic scale, with its tolerance as a dashed line."""
+    """Draws an error (m) over time (s) on a logarithmic scale, with its tolerance as a dashed line."""
     axes.semilogy(time, error, **line)
     if band is not None:
         axes.axhline(band, color=VERMILION, linestyle="--", linewidth=1.0, label="error band")
@@ -52,9 +52,9 @@ def draw_error(axes: Axes, time: ArrayLike, error: ArrayLike, *, band: float | N
 def draw_velocities(
     axes: Axes, time: NDArray[np.float64], velocity: NDArray[np.float64], limit: ArrayLike, *, linewidth: float = 0.9
 ) -> None:
-    """Joint velocities (k, n) in rad/s over time, and their `limit`: a number, or (k,).
+    """Draws joint velocities (k, n) in rad/s over time, and their `limit`: a number, or (k,).
 
-    What lies beyond the limit is shaded. Where the joints stay far below it, the axes show the joints and name it.
+    Values beyond the limit are shaded. A limit far above the joints is written instead of drawn.
     """
     for j, joint in enumerate(velocity.T):
         axes.plot(time, joint, label=f"joint {j + 1}", linewidth=linewidth, **line(j))
@@ -72,7 +72,7 @@ def draw_velocities(
 
 
 def draw_velocities_by_joint(strips: Sequence[Axes], result: TrackResult) -> None:
-    """The velocity of each joint (rad/s) in axes of its own, the same for all; shaded is what lies beyond its limit.
+    """Draws the velocity of each joint (rad/s) in axes of its own, on one scale, and shades values beyond its limit.
 
     The second half of the motion sets the scale: an approach from afar may leave the axes.
     """
@@ -93,7 +93,7 @@ def draw_velocities_by_joint(strips: Sequence[Axes], result: TrackResult) -> Non
 
 
 def draw_arm_in_space(axes: Any, robot: Robot, q: NDArray[np.float64], *, alpha: float = 1.0) -> None:
-    """The arm at `q` as a body of rods and joints in 3-D axes, one scale along all of them."""
+    """Draws the arm at `q` as a body of rods and joints in 3-D axes, on one scale."""
     corners = _corners(robot.link_poses(q)[:, :3, 3])
     for i, (a, b) in enumerate(itertools.pairwise(corners)):
         width = 13.0 - 7.0 * i / len(corners)
@@ -106,13 +106,13 @@ def draw_arm_in_space(axes: Any, robot: Robot, q: NDArray[np.float64], *, alpha:
 
 
 def scale_alike(axes: Any, *, zoom: float = 0.95) -> None:
-    """One scale along all three axes, so that a circle looks like one."""
+    """Scales all three axes alike, so that a circle looks like one."""
     spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
     axes.set_box_aspect(spans, zoom=zoom)
 
 
 def _corners(origins: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The places where the arm bends, each once."""
+    """Returns the points where the arm bends, each once."""
     apart = np.linalg.norm(np.diff(origins, axis=0), axis=1) > _SAME
     bends: NDArray[np.float64] = origins[np.concatenate([[True], apart])]
     return bends

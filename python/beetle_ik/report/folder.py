@@ -1,4 +1,4 @@
-"""The folder of a report: the whole new one, the whole old one, but nothing in between."""
+"""The folder of a report: it holds the whole old report or the whole new one, nothing in between."""
 
 import json
 from collections.abc import Iterator
@@ -13,10 +13,10 @@ MANIFEST = "report.json"
 
 @contextmanager
 def report_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
-    """Yield an empty place to write; it takes the place of the report in `folder` when the block ends well.
+    """Yields an empty folder to write into; it replaces the report in `folder` when the block succeeds.
 
     Raises:
-        InvalidInputError: on entering, where `folder` cannot be written or holds what no earlier report put there.
+        InvalidInputError: on entering, `folder` cannot be written or holds files that no earlier report wrote.
     """
     earlier = _files_of_report(folder, option)
     with whole_folder(folder, option=option) as staging:
@@ -29,12 +29,12 @@ def report_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
 
 
 def files_in(folder: Path) -> list[str]:
-    """All files in `folder`, named relative to it."""
+    """Returns all files in `folder`, named relative to it."""
     return sorted(file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file())
 
 
 def _files_of_report(folder: Path, option: str) -> list[Path]:
-    """The files of the report in `folder`, none where there is no report yet."""
+    """Returns the files of the report in `folder`; empty if there is no report yet."""
     if not folder.is_dir():
         return []
     found = [name for name in files_in(folder) if not name.startswith(".")]

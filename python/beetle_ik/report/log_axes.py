@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-# Upper over lower end of an axis.
-_NARROW = 60.0  # up to here powers of ten alone would be too few labels
-_WIDE = 1000.0  # from here they are enough by themselves
+# Bounds on the upper over the lower end of an axis.
+_NARROW = 60.0  # below this, powers of ten alone are too few labels
+_WIDE = 1000.0  # above this, powers of ten are enough
 
 
 def label_log_axes(figure: Figure) -> None:
-    """Label the logarithmic axes of a finished drawing, but for those that were given ticks of their own."""
+    """Labels the logarithmic axes of a finished drawing, except axes with ticks of their own."""
     from matplotlib.ticker import LogFormatterSciNotation
 
     for axes in figure.axes:

@@ -1,4 +1,4 @@
-"""The few marks that text of a report may hold, as HTML."""
+"""The marks that text of a report may contain, as HTML."""
 
 import html
 import re
@@ -10,18 +10,18 @@ _LINK = re.compile(r"\[([^\]]+)\]\((https?://[^)\s]+)\)")
 
 
 def paragraphs(text: str) -> str:
-    """Paragraphs and lists; see `Section` for the marks."""
+    """Returns paragraphs and lists; see `Section` for the marks."""
     return "\n".join(_paragraph(part) for part in re.split(r"\n\s*\n", text.strip()) if part.strip())
 
 
 def inline(text: str) -> str:
-    """One run of text: `code`, *emphasis*, **strong**, [words](address)."""
-    pieces = _CODE.split(html.escape(text, quote=False))  # every second piece is code, in which nothing else is marked
+    """Returns one run of text: `code`, *emphasis*, **strong**, [words](address)."""
+    pieces = _CODE.split(html.escape(text, quote=False))  # every second piece is code, without marks
     return "".join(f"<code>{piece}</code>" if i % 2 else _marked(piece) for i, piece in enumerate(pieces))
 
 
 def slug(title: str) -> str:
-    """A title as the address of its section."""
+    """Returns the address of a section with this title."""
     return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
 
 

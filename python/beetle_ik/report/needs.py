@@ -1,11 +1,11 @@
-"""What reports need beyond the package itself."""
+"""Optional packages that reports need."""
 
 from collections.abc import Iterable
 from importlib.util import find_spec
 
 from .._core import BeetleIkError
 
-# What each extra brings: how it is imported, and how it is called.
+# Packages of each extra: module name, and name in messages.
 _BROUGHT = {
     "report": {"jinja2": "jinja2", "matplotlib": "matplotlib"},
     "sim": {"mujoco": "mujoco"},
@@ -14,12 +14,12 @@ _BROUGHT = {
 
 
 def check_installed(extras: Iterable[str] = ()) -> None:
-    """Raise where something is missing that the extra `report`, or one of `extras`, brings.
+    """Raises an error if a package of the extra `report`, or of one of `extras`, is missing.
 
-    To be called before any work is done for nothing.
+    Call it before any work that would be lost.
 
     Raises:
-        BeetleIkError: names all that is missing, and what to install.
+        BeetleIkError: the message names all missing packages, and the extras to install.
     """
     lacking, missing = [], []
     for extra in dict.fromkeys(["report", *extras]):

@@ -1,15 +1,15 @@
-"""Numbers as they are read: rounded, with powers of ten where those help."""
+"""Numbers for reading: rounded, with powers of ten where they help."""
 
 import math
 
 _THIN_SPACE = "\u202f"
-_SPACE = "\u00a0"  # where no line may break
+_SPACE = "\u00a0"  # no line breaks here
 _MINUS = "\u2212"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float, digits: int = 3) -> str:
-    """`value` in so many significant digits; whole numbers (int) in full, with their thousands set apart."""
+    """Formats `value` in this many significant digits; whole numbers (int) in full, with separated thousands."""
     if isinstance(value, int):
         return _signed(f"{value:,}".replace(",", _THIN_SPACE))
     if not math.isfinite(value):
@@ -19,7 +19,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def spread(mean: float, std: float, digits: int = 3) -> str:
-    """Mean and standard deviation to the same decimal, over a common power of ten."""
+    """Formats mean and standard deviation to the same decimal, over a common power of ten."""
     if not (math.isfinite(mean) and math.isfinite(std)):
         return number(mean, digits)
     exponent = _exponent(mean, digits)
@@ -29,23 +29,23 @@ def spread(mean: float, std: float, digits: int = 3) -> str:
 
 
 def brief(value: float) -> str:
-    """`value` in as few digits as tell it: a round number, such as a tick."""
+    """Formats `value` in as few digits as it needs: a round number, for example a tick."""
     digits = f"{value:.9e}".partition("e")[0].replace(".", "").strip("-0")
     return number(value, len(digits) or 1)
 
 
 def superscript(exponent: int) -> str:
-    """As in 10⁻³."""
+    """Formats an exponent as in 10⁻³."""
     return str(exponent).translate(_SUPERSCRIPT)
 
 
 def _magnitude(value: float, digits: int) -> int:
-    """The power of ten of the first digit, after rounding: 0.9996 in three digits is 1.00."""
+    """Returns the power of ten of the first digit, after rounding: 0.9996 in three digits is 1.00."""
     return int(f"{value:.{digits - 1}e}".partition("e")[2]) if value else 0
 
 
 def _exponent(value: float, digits: int) -> int:
-    """The power of ten to set apart: 0 for numbers that read well without."""
+    """Returns the power of ten to factor out: 0 for numbers that read well without."""
     magnitude = _magnitude(value, digits)
     return 0 if -3 <= magnitude < 7 else magnitude
 

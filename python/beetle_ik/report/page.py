@@ -1,4 +1,4 @@
-"""The pages themselves: templates filled with a report."""
+"""Pages: templates filled with a report."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
 
     from .provenance import Provenance
 
-_INCHES = 96  # pixels of a page
+_INCHES = 96  # pixels an inch of a page
 
 
 def report_page(report: Report, provenance: Provenance, pictures: dict[str, str]) -> str:
-    """The page of one report; `pictures` are the figures by name, as data addresses."""
+    """Returns the page of one report; `pictures` are the figures by name, as data addresses."""
     page = _templates().get_template("report.html")
     return page.render(report=report, made=provenance, pictures=pictures, counts=_counts([report]))
 
 
 def index_page(reports: list[tuple[Report, Provenance]]) -> str:
-    """The page over several reports, with all their claims."""
+    """Returns the page over several reports, with all their claims."""
     page = _templates().get_template("index.html")
     return page.render(reports=reports, counts=_counts([report for report, _ in reports]))
 
 
 def _counts(reports: list[Report]) -> list[tuple[Verdict, int]]:
-    """How many claims met each verdict; those that none met are explained too."""
+    """Counts the claims of each verdict, zero included: every verdict is explained."""
     counts = Counter(claim.verdict for report in reports for claim in report.claims)
     return [(verdict, counts[verdict]) for verdict in Verdict]
 
@@ -54,7 +54,7 @@ def _templates() -> Environment:
     }
     templates.tests.update(tests)
     templates.filters.update(
-        paragraphs=lambda text: Markup(paragraphs(text)),  # both escape what they are given
+        paragraphs=lambda text: Markup(paragraphs(text)),  # both functions escape their text
         inline=lambda text: Markup(inline(text)),
         slug=slug,
         rows=shown_rows,

@@ -1,4 +1,4 @@
-"""Figures as files: PNG, and GIF where something moves."""
+"""Figures as files: PNG, and GIF for animations."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 def png(drawing: Drawing, dpi: int) -> bytes:
-    """The drawing as PNG, without metadata: the same figure gives the same bytes."""
+    """Returns the drawing as PNG, without metadata: the same figure gives the same bytes."""
     file = io.BytesIO()
     _canvas(drawing, dpi).print_png(file, metadata={"Software": None})
     return file.getvalue()
 
 
 def gif(drawing: Drawing, frames: Frames, dpi: int) -> bytes:
-    """All frames, looped. The static part is drawn once."""
+    """Returns all frames as a looped GIF. The static part is drawn once."""
     from PIL import Image
 
     canvas, moving = _canvas(drawing, dpi), frames.moving
@@ -40,7 +40,7 @@ def gif(drawing: Drawing, frames: Frames, dpi: int) -> bytes:
 
 
 def _canvas(drawing: Drawing, dpi: int) -> Any:
-    """A canvas for the drawing, laid out once: savefig would repeat the layout for every frame."""
+    """Returns a canvas for the drawing, laid out once: savefig would repeat the layout for every frame."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     drawing.set_dpi(dpi)

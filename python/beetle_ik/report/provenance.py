@@ -1,11 +1,11 @@
-"""Where a report comes from."""
+"""Provenance of a report."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
 class Provenance:
-    """What was run to make a report, and where."""
+    """Command, time and machine of a report."""
 
     name: str
     title: str
@@ -14,8 +14,8 @@ class Provenance:
     short: bool
     seed: int
     made: str
-    """Date and time."""
+    """Date and time of the run."""
     elapsed: float
-    """Seconds."""
+    """Duration of the run (s)."""
     machine: str
     """Versions and processor."""

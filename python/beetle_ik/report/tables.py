@@ -1,4 +1,4 @@
-"""Tables as they are read and as they are kept: cells of the page, lines of the CSV file."""
+"""Tables on the page and in files: cells of the page, lines of the CSV file."""
 
 import csv
 import io
@@ -16,14 +16,14 @@ _PARTS = ("printed", "measured")
 
 @dataclass(frozen=True)
 class ShownCell:
-    """A cell of the page: its text and what kind it is (classes of the style sheet)."""
+    """A cell of the page: its text and its kind (classes of the style sheet)."""
 
     text: str
     kind: str
 
 
 def shown_rows(table: Table) -> list[list[ShownCell]]:
-    """The body of the table for the page: one cell a column, two where it is compared."""
+    """Returns the body of the table for the page: one cell a column, two for a compared column."""
     shown = [
         [ShownCell(_text(entry, part, column), _kind(entry, part)) for entry in entries]
         for column, part, entries in _flat_columns(table)
@@ -32,7 +32,7 @@ def shown_rows(table: Table) -> list[list[ShownCell]]:
 
 
 def to_csv(table: Table) -> str:
-    """The table with all digits: compared columns as two, a spread as mean and standard deviation."""
+    """Returns the table with all digits: compared columns as two, a spread as mean and standard deviation."""
     columns = [
         csv_column for column, part, entries in _flat_columns(table) for csv_column in _csv(column, part, entries)
     ]
@@ -42,7 +42,7 @@ def to_csv(table: Table) -> str:
 
 
 def _flat_columns(table: Table) -> Iterator[tuple[Column, str, list[_Entry]]]:
-    """Each column with its entries; a compared one as two, named "printed" and "measured"."""
+    """Yields each column with its entries; a compared column as two, named "printed" and "measured"."""
     for i, column in enumerate(table.columns):
         cells = [row[i] for row in table.rows]
         if column.compared:
@@ -53,7 +53,7 @@ def _flat_columns(table: Table) -> Iterator[tuple[Column, str, list[_Entry]]]:
 
 
 def _csv(column: Column, part: str, entries: list[_Entry]) -> Iterator[list[object]]:
-    """Header and entries, as they are written: one column, two where any of them is a spread."""
+    """Yields header and entries as written: one column, or two if any entry is a spread."""
     header = f"{column.header} {part}".rstrip()
     if any(isinstance(entry, Spread) for entry in entries):
         yield [f"{header} mean", *(_plain(entry.mean if isinstance(entry, Spread) else entry) for entry in entries)]
@@ -87,6 +87,6 @@ def _text(entry: _Entry, part: str, column: Column) -> str:
 
 
 def _printed_digits(entry: _Entry) -> int:
-    """As many digits as the number was given with: what a paper prints is shown as it is printed."""
+    """Counts the digits of a number as given: a printed value is shown as the paper prints it."""
     value = entry.mean if isinstance(entry, Spread) else entry
     return len(str(value).partition("e")[0].replace(".", "").lstrip("-0")) or 1

@@ -1,4 +1,4 @@
-"""A report as a folder: the page, a CSV file for each table, a PNG file for each figure, everything said as JSON."""
+"""A report as a folder: the page, a CSV file for each table, a PNG file for each figure, and all of it as JSON."""
 
 import base64
 import csv
@@ -23,7 +23,7 @@ _DPI_MOVING = 80
 
 
 def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
-    """Write the page, its JSON, `claims.csv`, `checks.csv`, tables (CSV) and figures (PNG, GIF) into `folder`."""
+    """Writes the page, its JSON, `claims.csv`, `checks.csv`, tables (CSV) and figures (PNG, GIF) into `folder`."""
     dpi = _DPI_SHORT if provenance.short else _DPI
     for kind in ("tables", "figures"):
         (folder / kind).mkdir()
@@ -37,13 +37,13 @@ def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
 
 
 def write_index(folder: Path, reports: list[tuple[Report, Provenance]]) -> None:
-    """Write the page over several reports, which are in folders of their names within `folder`."""
+    """Writes the page over several reports, which are in folders of their names within `folder`."""
     (folder / "index.html").write_text(index_page(reports), encoding="utf-8")
     _write_manifest(folder, {"reports": [described(report, provenance) for report, provenance in reports]})
 
 
 def described(report: Report, provenance: Provenance) -> dict[str, Any]:
-    """A report for machines: how it was made, what it says, each claim."""
+    """Returns a report as data: its provenance, its contents, each claim."""
     return {
         **asdict(provenance),
         "success": not report.failed,
@@ -60,7 +60,7 @@ def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
 
 
 def _picture(figure: Figure, folder: Path, dpi: int) -> str:
-    """Write a figure into `folder`; the same as an address that a page can hold."""
+    """Writes a figure into `folder`, and returns it as a data address for the page."""
     if figure.frames is None:
         kind, content = "png", png(figure.drawing, dpi)
     else:

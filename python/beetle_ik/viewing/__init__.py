@@ -1,26 +1,26 @@
-"""A robot in the browser, to look at and to steer: `beetle_ik.view`, on viser.
+"""Interactive view of a robot in the browser: `beetle_ik.view`, on viser.
 
     viewer      the public class: joins the parts below, and answers Python
-    checks      its arguments
+    checks      checks of its arguments
     worker      the only thread that moves the arm
     address     a free port
-    admission   who may use the page
-    incoming    which messages it may send
+    admission   access to the page
+    incoming    checks of the messages that it sends
     served      the server of viser, with both
-    arm         the state of the arm: configuration, target, obstacles, how it follows the target. Without a page
-    start       bodies, speeds and a configuration for robots that come without
-    parts       what the page consists of
-    page        what its parts share
-    looks       what is seen of the links: visual meshes, or solids along the joints
-    camera      from where it is seen first
-    surfaces    the links in the scene, and ghosts of them
+    arm         the state of the arm, without a page: configuration, target, obstacles, mode of following the target
+    start       bodies, speeds and a configuration for robots whose models lack them
+    parts       the parts of the page together
+    page        data shared by the parts
+    looks       appearance of the links: visual meshes, or solids along the joints
+    camera      the first view
+    surfaces    the links in the scene, and their ghosts
     handle, joints, obstacles, postures, playback, planning, reach, report
                 the parts of the page: each shows and changes one thing of the state
-    files       what visitors take along and bring: programs, scenes
+    files       files that visitors save and load: programs, scenes
     program     the state as a program in Python
     displaced, sizes
-                obstacles, moved and made larger
-    recording   what the page shows, as a file that plays by itself
+                obstacles, moved and resized
+    recording   the scene and its motion as a file that plays by itself
 
 viser calls back in the thread of its server. A part of the page never moves the arm there: it asks the worker.
 """

@@ -1,4 +1,4 @@
-"""Where a page can be served."""
+"""Address of a page."""
 
 import errno
 import os
@@ -13,15 +13,15 @@ _TRIED = 100
 
 
 def free_port(host: str, port: int) -> int:
-    """Returns `port`, or the next one that is free; for 0 any free one.
+    """Returns `port`, or the next free one; for 0 any free port.
 
-    viser looks for a free port too, but takes every error of the system for a port in use.
+    viser searches for a free port too, but takes every error of the system for a port in use.
 
     Raises:
         InvalidInputError: no such host on this machine, or a port that may not be used.
     """
     require_text("host", host)
-    if not host:  # the system would take it for all addresses
+    if not host:  # the system would listen on all addresses
         raise InvalidInputError("host is empty: 127.0.0.1 is this machine")
     if not isinstance(port, Integral) or not 0 <= port < _PORTS:
         raise InvalidInputError(f"port must be a whole number from 0 to {_PORTS - 1}, got {port!r:.60}")

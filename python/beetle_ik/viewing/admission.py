@@ -1,4 +1,4 @@
-"""Who may use a page: decided from the headers of a request, for pages and websockets alike."""
+"""Access to a page, decided from the headers of a request, for pages and websockets alike."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 _HERE = ("localhost", "127.0.0.1", "::1")
-_BYTES = 24  # of a token
+_BYTES = 24  # bytes of a token
 
 
 class Admission:
-    """Lets the page itself in, and programs of this machine; on addresses that others reach, those that know a token.
+    """Admits the page itself and programs of this machine; on addresses open to others, only holders of a token.
 
-    A browser says by `Host` which name it was given, and by `Origin` which page asks. A page elsewhere on the web has
-    another origin. It may have its own name point to this machine, which then is another host.
+    A browser sends the requested name as `Host` and the requesting page as `Origin`. A page elsewhere on the web has
+    another origin. If it points its own name to this machine, the host differs.
 
     Attributes:
-        token: what the address of the page must contain; None if only this machine reaches it.
+        token: token that the address of the page must contain; None if only this machine reaches it.
     """
 
     def __init__(self, host: str) -> None:
@@ -39,7 +39,7 @@ class Admission:
         return page if self.token is None else f"{page}/?token={self.token}"
 
     def refusal(self, path: str, headers: Mapping[str, str]) -> tuple[HTTPStatus, str] | None:
-        """Returns why a request is refused; None if it is not."""
+        """Returns status and reason of a refusal; None if the request is admitted."""
         host, origin = headers.get("Host", ""), headers.get("Origin")
         if not self._is_ours(host):
             return HTTPStatus.MISDIRECTED_REQUEST, "this viewer is not at this address"
@@ -50,7 +50,7 @@ class Admission:
         return None
 
     def cookie(self, path: str) -> str | None:
-        """Returns a cookie that carries a right token of the address on; the page opens its websocket without it."""
+        """Returns a cookie with a valid token of the address: the page opens its websocket without the token."""
         if self.token is None or not any(self._knows(given) for given in _queried(path)):
             return None
         return f"{_COOKIE}={self.token}; Path=/; HttpOnly; SameSite=Strict"
@@ -64,7 +64,7 @@ class Admission:
             name = (urlsplit(f"//{host}").hostname or "").lower()
         except ValueError:
             return False
-        # A name can be pointed here by whoever owns it, a number cannot.
+        # Anyone can point a name of theirs to this machine, but not a number.
         return name in self._names or (self._all and _is_number(name))
 
 

@@ -1,4 +1,4 @@
-"""The state that a viewer shows. Draws nothing and knows no threads."""
+"""The state that a viewer shows, without drawing and threads."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ Part = Literal["pose", "position", "pointing"]
 FOLLOWS: tuple[Follow, ...] = get_args(Follow)
 PARTS: tuple[Part, ...] = get_args(Part)
 
-DT = 1.0 / 60.0  # s, of a tick
+DT = 1.0 / 60.0  # s: one tick
 QUICKLY = Stop(max_time=0.1)  # the viewer ends within this time
-_MARGIN = 1e-3  # m, that of solvers
-_REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: what one can see
-_ACCELERATION = 20.0  # rad/s^2, m/s^2: at full speed within a tenth of a second or so
-_STILL = 1e-3  # rad, m: an arm that comes no farther within `_PAUSE` has arrived,
-_HUNTING = 0.05  # rad, m: as has one that comes no farther than this, and no nearer to its target by more than
-_NEARER = 1e-4  # m, rad
+_MARGIN = 1e-3  # m: margin of the solvers
+_REACHED: dict[str, Any] = {"position_tolerance": 1e-4, "rotation_tolerance": 1e-3}  # m, rad: visible differences
+_ACCELERATION = 20.0  # rad/s^2, m/s^2: reaches full speed within about a tenth of a second
+_STILL = 1e-3  # rad, m: an arm that moves less within `_PAUSE` has arrived,
+_HUNTING = 0.05  # rad, m: and so has an arm that moves less than this and gains less than
+_NEARER = 1e-4  # m, rad: towards its target
 _PAUSE = 30  # ticks
 
 
 class Arm:
-    """A robot, its configuration, a target for each tip, the obstacles around it, and how it follows the targets.
+    """A robot, its configuration, targets of its tips, obstacles around it, and the mode of following the targets.
 
     Attributes:
         q: the configuration (n,). Set it by `put`.
-        outcome: the last `Step` or `Solution` on the way to the target; None where the arm was put by hand.
-        moves: whether it is under way to the target.
-        stays: whether it stays where it is because it would collide at the last solution.
+        outcome: the last `Step` or `Solution` on the way to the target; None after `put`.
+        moves: whether the arm is moving to the target.
+        stays: whether the arm stays in place because the last solution would collide.
     """
 
     def __init__(self, robot: Robot, q: Array, obstacles: list[Obstacle]) -> None:
-        """Rests at `q` (n,)."""
+        """Starts at rest at `q` (n,)."""
         self.robot = robot
         self.q = q
         self.outcome: Step | Solution | None = None
@@ -64,7 +64,7 @@ class Arm:
 
     @property
     def targets(self) -> Targets:
-        """The pose (4, 4) that each tip is to reach, by its name; another dict after each change."""
+        """Target pose (4, 4) of each tip, by its name; a new dict after each change."""
         return self._targets
 
     @targets.setter
@@ -90,7 +90,7 @@ class Arm:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the target."""
+        """Mode of following the target."""
         return self._follow
 
     @follow.setter
@@ -120,21 +120,21 @@ class Arm:
 
     @property
     def goal(self) -> Any:
-        """What solvers take: for each tip a position (3,) if the orientation is free, otherwise a pose (4, 4).
+        """Target for the solvers: for each tip a position (3,) if the orientation is free, otherwise a pose (4, 4).
 
-        That of an only tip is no dict.
+        For a single tip it is not a dict.
         """
         goals = {tip: each[:3, 3] if self._part == "position" else each for tip, each in self._targets.items()}
         return goals if len(goals) > 1 else goals[self.robot.tips[0]]
 
     @property
     def task(self) -> Task | None:
-        """The task that goes with `goal`."""
+        """Task that belongs to `goal`."""
         return tasks.Pointing() if self._part == "pointing" else None
 
     @property
     def inside(self) -> Array:
-        """The configuration inside the limits where solvers start; a motion that was shown may have left them."""
+        """Configuration clipped to the limits, where solvers start; a motion that was shown may have left them."""
         return self.robot.clip(self.q)
 
     @property
@@ -150,7 +150,7 @@ class Arm:
         self._tracker, self.moves = None, False
 
     def advance(self) -> bool:
-        """Moves towards the target for one tick, unless the arm was put somewhere; returns whether it is under way."""
+        """Moves towards the target for one tick, unless the arm was put somewhere; returns whether it still moves."""
         if not self.moves:
             return False
         if self._follow == "solve":
@@ -164,7 +164,8 @@ class Arm:
         self._ticks += 1
         if self._ticks == _PAUSE:
             if self._tries_again and not self.outcome.success:
-                # The tracker takes a shaky hand for noise, and averages. This one has seen the hand at rest only.
+                # Starts a new tracker: the old one takes a shaky hand for noise and averages, the new one sees the hand
+                # at rest.
                 self._tracker, self._tries_again, self._ticks = None, False, 0
             else:
                 self.moves = False
@@ -175,21 +176,21 @@ class Arm:
         found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
         self.outcome = found
         self._tracker, self.moves = None, False
-        # A target out of reach is approached without looking at obstacles.
+        # Tests the solution: a target out of reach is approached regardless of obstacles.
         self.stays = self._keeps_clear and clearance(self.robot, found.q, self._obstacles) < _MARGIN
         if not self.stays:
             self.q = found.q
 
     @property
     def avoided(self) -> list[Obstacle] | None:
-        """What solvers take as `obstacles`."""
+        """Obstacles for the solvers."""
         return self._obstacles if self._keeps_clear else None
 
     def _track(self) -> Step:
         """Returns a step of the tracker.
 
         Under acceleration limits an arm follows smoothly and comes to rest beside an obstacle; without them it moves
-        out of one that was moved into it.
+        out of an obstacle that was moved into it.
         """
         if self._tracker is None:
             limits = None if self._escapes else Limits(acceleration=_ACCELERATION)

@@ -1,4 +1,4 @@
-"""From where a page and a recording are seen first."""
+"""First view of a page and of a recording."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 FIELD = 0.8  # rad: the vertical field of view
-_FROM = np.array([1.05, 0.9, 0.45])  # from where it looks, as a fraction of what it looks at
-_ASIDE = np.array([-0.1, 0.12, 0.0])  # to the right of what it looks at: the controls cover that side of the page
-_MARGIN, _ASPECT = 1.08, 1.3  # of a recording: distance over the least one, width over height of narrow frames
-_UPRIGHT, _BELOW = 0.75, 0.24  # of an upright window: distance, and how much of its height the arm is above the middle
-_SAME = 1e-3  # m: between two places of a camera that are one
+_FROM = np.array([1.05, 0.9, 0.45])  # viewpoint relative to the target, as a fraction of its size
+_ASIDE = np.array([-0.1, 0.12, 0.0])  # shift of the view to the right: the controls cover that side
+_MARGIN, _ASPECT = 1.08, 1.3  # recording: distance over the least one, width over height of narrow frames
+_UPRIGHT, _BELOW = 0.75, 0.24  # upright window: distance, and height of the arm above the middle
+_SAME = 1e-3  # m: two camera positions nearer than this are one
 _NARROWEST = 0.3  # width over height of a window; a camera for a narrower one would be far away
 
 
 class Camera:
     """The first camera of visitors.
 
-    It is `server.initial_camera`, unless the window of a visitor is upright: there the controls cover the lower half,
-    and the camera looks from farther away, so that the width fits, and below the arm, so that it is in the upper half.
+    It is `server.initial_camera`, unless the window of a visitor is upright. Then the controls cover the lower half:
+    the camera looks from farther away, so that the width fits, and below the arm, which appears in the upper half.
     """
 
     def __init__(self, server: viser.ViserServer, low: Array, high: Array, size: float) -> None:
-        """Looks at a box with the corners `low` and `high` (3,), of which `size` (m) is to fit into the window."""
+        """Looks at a box with the corners `low` and `high` (3,), of which `size` (m) must fit into the window."""
         self._server = server
         self._middle, self._size = 0.5 * (low + high), size
         look = self._middle + _ASIDE * size
@@ -67,7 +67,7 @@ class Camera:
     def _visited(self, client: viser.ClientHandle) -> None:
         self._turn(client.camera)
 
-        # A page that is slow to appear takes the first camera after it was sent another.
+        # Repeats the view: a page that is slow to appear takes the first camera after it was sent another.
         @client.camera.on_update
         def _(seen: viser.CameraHandle) -> None:
             if np.allclose(seen.position, self._server.initial_camera.position, atol=_SAME):
@@ -80,7 +80,7 @@ class Camera:
         away = _UPRIGHT * self._size / narrow * _FROM
         below = _BELOW * 2.0 * float(np.linalg.norm(away)) * np.tan(0.5 * FIELD)
         look = self._middle - [0.0, 0.0, below]
-        seen.position = look + away  # viser moves the other along
+        seen.position = look + away  # viser moves it along with the position
         seen.look_at = look
 
 
@@ -91,7 +91,7 @@ def _corners(boxes: Array) -> Array:
 
 
 def _fitting(points: Array) -> Array:
-    """Returns from where (3,) points (k, 3) about the origin fill the window."""
+    """Returns the viewpoint (3,) from which points (k, 3) about the origin fill the window."""
     toward = _FROM / np.linalg.norm(_FROM)
     right = np.cross([0.0, 0.0, 1.0], toward)
     right /= np.linalg.norm(right)

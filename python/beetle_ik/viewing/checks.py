@@ -1,4 +1,4 @@
-"""Arguments of the viewer, checked and read."""
+"""Checks of the viewer's arguments."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PATH_POINTS = 500
 
 
 def configuration(robot: Robot, q: ArrayLike) -> Array:
-    """Returns `q` as an array (n,) of finite numbers, of its own."""
+    """Returns `q` as a new array (n,) of finite numbers."""
     robot.fk(q)  # refuses other lengths and NaN
     if np.ndim(q) != 1:
         raise InvalidInputError(f"q must be one configuration ({robot.dof},), got shape {np.shape(q)}")
@@ -30,7 +30,7 @@ def configuration(robot: Robot, q: ArrayLike) -> Array:
 
 
 def inside_limits(robot: Robot, q: ArrayLike) -> Array:
-    """Returns `configuration`, if it is inside the position limits."""
+    """Returns `configuration`; an error if it is outside the position limits."""
     checked = configuration(robot, q)
     for name, value, low, high in zip(robot.joint_names, checked, robot.lower, robot.upper, strict=True):
         if not low <= value <= high:
@@ -39,7 +39,7 @@ def inside_limits(robot: Robot, q: ArrayLike) -> Array:
 
 
 def target_poses(target: Any, present: Targets) -> Targets:
-    """Returns the targets `present` with those of `target`: a dict by the names of tips, or that of the only tip."""
+    """Returns the targets `present`, updated by `target`: a dict by the names of tips, or the pose of the only tip."""
     if not isinstance(target, Mapping):
         if len(present) > 1:
             raise InvalidInputError(
@@ -102,7 +102,7 @@ def postures_of(result: Any) -> Array:
     """Returns the configurations (k, n) of a result without a motion.
 
     Raises:
-        InvalidInputError: it has none.
+        InvalidInputError: the result has no configurations.
     """
     if isinstance(result, _core.Solution | _core.SolutionSet | _core.SelfMotion):
         return np.atleast_2d(result.q)

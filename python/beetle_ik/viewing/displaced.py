@@ -1,4 +1,4 @@
-"""Obstacles, moved to other places."""
+"""Displacement of obstacles."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def displaced(shape: Obstacle, by: NDArray[np.float64]) -> Obstacle | None:
-    """Returns the shape moved rigidly by a pose (4, 4); None if it cannot be moved so: a `Grid` or an `Ellipse`."""
+    """Returns the shape moved rigidly by a pose (4, 4); None for a `Grid` or an `Ellipse`, which cannot be turned."""
     turn, touch = by[:3, :3], list(shape.touch)
 
     def at(points: NDArray[np.float64]) -> NDArray[np.float64]:

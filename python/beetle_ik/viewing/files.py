@@ -1,4 +1,4 @@
-"""What a page gives to take along: a program, and the scene as a file; and the scene that it takes from a file."""
+"""Files of a page: the state as a program, and the scene to save and load."""
 
 from __future__ import annotations
 

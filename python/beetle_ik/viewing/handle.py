@@ -1,4 +1,4 @@
-"""The handles at the tips, and how the arm follows them."""
+"""Handles at the tips, and the mode of following them."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
     from .page import Page
 
-_SIZE = 0.2  # of a handle, as a fraction of the arm
-_DECIMALS = 4  # m, of the position that is typed
+_SIZE = 0.2  # size of a handle, as a fraction of the arm
+_DECIMALS = 4  # decimals of a typed position (m)
 
 
 class Handles:
-    """A handle for each tip, and what they have in common."""
+    """Handles of all tips, and their common controls."""
 
     def __init__(self, page: Page) -> None:
-        """Adds the handles, and the controls of what follows them."""
+        """Adds the handles, and the controls of the arm that follows them."""
         self._arm = arm = page.arm
         gui = page.server.gui
         self._handles = [_Handle(page, tip) for tip in arm.targets]
@@ -72,14 +72,14 @@ class _Handle:
         self._shown = np.full((4, 4), np.nan)
 
         @self.gizmo.on_update
-        async def _(_: object) -> None:  # in the thread of the server, in order
+        async def _(_: object) -> None:  # runs in the thread of the server, in order
             target = pose(self.gizmo.position, wxyz=self.gizmo.wxyz)
             page.ask(self.gizmo, lambda: self._drag(target))
 
         page.on_input(self._position, self._type)
 
     def _drag(self, target: NDArray[np.float64]) -> None:
-        self._shown = target  # moved by the hand that holds it, it is not to be moved back
+        self._shown = target  # the handle already shows the dragged target
         self._arm.aim(self._tip, target)
 
     def _type(self) -> None:

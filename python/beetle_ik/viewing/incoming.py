@@ -1,4 +1,4 @@
-"""Messages that a page may send: viser takes whatever comes, and sets what it says."""
+"""Checks of the messages from a page: viser accepts any message and sets its values."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ _KNOWN = frozenset(
         "ViewerCameraMessage",
     }
 )
-"""Those that viser's page sends, but for the ones that share it with the internet."""
+"""Message types that viser's page sends, without those that share it on the internet."""
 
-_FARTHEST = 1e6  # m, rad, and of any other number
+_FARTHEST = 1e6  # m, rad: largest number of any kind
 _ROUNDING = 1e-6
-_LONGEST = 100_000  # characters of a text that is typed
-_LARGEST_FILE, _MOST_PARTS, _LARGEST_PART = 16_000_000, 64, 2**20  # bytes of a file, its parts, bytes of one
+_LONGEST = 100_000  # characters of a typed text
+_LARGEST_FILE, _MOST_PARTS, _LARGEST_PART = 16_000_000, 64, 2**20  # bytes of a file, its parts, bytes of a part
 
 
 class Incoming:
-    """Tells messages that viser can use from others."""
+    """Filter for the messages that viser can use."""
 
     def __init__(self) -> None:
-        """Knows no server yet."""
+        """Starts without a server."""
         self.server: viser.ViserServer | None = None
-        """The server whose controls are changed; set when it has been made."""
+        """Server whose controls are changed; set after its construction."""
 
     def accepts(self, raw: object) -> bool:
-        """Whether a message has the shape that its type says, finite numbers, and values that its control can take."""
+        """Whether a message has the fields of its type, finite numbers, and values that its control can take."""
         from msgspec import DecodeError, msgpack
         from viser import _messages
 
@@ -61,7 +61,7 @@ class Incoming:
 
     def _can_be_set(self, kind: str, fields: dict[str, Any]) -> bool:
         if kind == "TransformControlsUpdateMessage":
-            return math.hypot(*fields["wxyz"]) > 1e-3  # that of a rotation is 1
+            return math.hypot(*fields["wxyz"]) > 1e-3  # the norm of a rotation is 1
         if kind in ("GuiFormDirtyMessage", "GuiFormSubmitMessage"):  # viser keeps them for later pages
             return any(fields["uuid"] in owner.gui._container_handle_from_uuid for owner in self._owners())
         if kind == "FileTransferStartUpload":  # viser would set any control to the file
@@ -73,7 +73,7 @@ class Incoming:
         if kind != "GuiUpdateMessage":
             return True
         handle = self._control(fields["uuid"])
-        # viser would set any attribute.
+        # Limits updates to `value`: viser would set any attribute.
         return (
             handle is not None
             and fields["updates"].keys() == {"value"}
@@ -81,17 +81,17 @@ class Incoming:
         )
 
     def _control(self, uuid: str) -> Any:
-        """Returns a control of all pages, or of one; None if there is none."""
+        """Returns a control of all pages, or of one page; None if there is none."""
         found = (owner.gui._gui_input_handle_from_uuid.get(uuid) for owner in self._owners())
         return next((handle for handle in found if handle is not None), None)
 
     def _owners(self) -> list[Any]:
-        """Returns what has controls: the server, for all pages, and each page."""
+        """Returns the owners of controls: the server, for all pages, and each page."""
         return [] if self.server is None else [self.server, *self.server.get_clients().values()]
 
 
 def _is_value(handle: Any, value: Any) -> bool:
-    """Whether a control can take a value: of the type that it has, in its range, among its options."""
+    """Whether a control can take a value: of its type, in its range, among its options."""
     if not _resembles(value, handle.value):
         return False
     options = getattr(handle, "options", None)
@@ -112,7 +112,7 @@ def _is_value(handle: Any, value: Any) -> bool:
 
 
 def _resembles(value: Any, present: Any) -> bool:
-    """Whether a value is of the kind of the present one. A page sends tuples as lists and whole floats as ints."""
+    """Whether a value is of the kind of the present one. Pages send tuples as lists, and whole floats as ints."""
     if isinstance(present, bool):
         return isinstance(value, bool)
     if isinstance(present, int | float):
@@ -126,7 +126,7 @@ def _resembles(value: Any, present: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _FARTHEST  # NaN is not
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _FARTHEST  # excludes NaN
 
 
 def _fits(value: Any, hint: Any) -> bool:

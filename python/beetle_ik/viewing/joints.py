@@ -1,4 +1,4 @@
-"""A slider for each joint."""
+"""Sliders of the joints."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from .page import Page
 
 _STEP = 0.001  # rad, m
-_UNLIMITED = {"prismatic": 2.0}  # m; other joints without limits: a turn each way
+_UNLIMITED = {"prismatic": 2.0}  # m; other joints without limits: one turn each way
 
 
 class Joints:
-    """Sliders between the limits of the joints, which put the arm."""
+    """Sliders between the limits of the joints, which move the arm."""
 
     def __init__(self, page: Page) -> None:
         """Adds the sliders."""
@@ -44,7 +44,7 @@ class Joints:
         self._arm.put(self._arm.robot.clip(q))
 
     def refresh(self) -> None:
-        """Shows where the joints are."""
+        """Shows the positions of the joints."""
         for slider, q in zip(self._sliders, self._arm.q.tolist(), strict=True):
             shown = min(max(q, slider.min), slider.max)
             if abs(slider.value - shown) > 0.5 * _STEP:

@@ -1,4 +1,4 @@
-"""How the links of a robot look: their visual meshes, read by trimesh with their materials."""
+"""Appearance of a robot's links: their visual meshes, read by trimesh with their materials."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _GLOSS = 0.45  # roughness of varnish
 
 
 class Look(NamedTuple):
-    """What is seen of a link: a scene of trimesh in its frame."""
+    """Appearance of a link: a scene of trimesh in its frame."""
 
     link: str
     scene: trimesh.Scene
 
 
 def looks(robot: Robot) -> tuple[list[Look], list[str]]:
-    """Returns how the links look, and sentences about files that are missing or broken.
+    """Returns the appearance of the links, and sentences about files that are missing or broken.
 
-    These are the visual shapes; for links without one, meshes of collision shapes.
+    It consists of the visual shapes; of the collision meshes for links without visual shapes.
     """
     colors: dict[str, Color] = dict(zip(robot.all_link_names, cycle(map(rgb, LINKS)), strict=False))
     made, missing, notes = [], [], []
@@ -50,7 +50,7 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
             scene = _read(shape) if isinstance(shape, str) else _surface(shape)
             scene.apply_transform(placement)
             _paint(scene, colors[link] if color is None else tuple(np.round(255 * color).astype(int).tolist()))
-        except Exception as error:  # the parsers raise whatever comes up
+        except Exception as error:  # parsers raise many kinds of errors
             notes.append(f"cannot read '{shape}': {error}")
             continue
         if not scene.is_empty:
@@ -59,7 +59,7 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
         notes.append(f"{counted(len(missing), 'file')} of visual meshes not found, such as {missing[0]}")
     try:
         collision_meshes = robot.collision_meshes()
-    except BeetleIkError as error:  # a file that has gone
+    except BeetleIkError as error:  # a file that no longer exists
         return made, [*notes, str(error)]
     seen = {look.link for look in made}
     for link, mesh in collision_meshes:
@@ -71,7 +71,7 @@ def looks(robot: Robot) -> tuple[list[Look], list[str]]:
 
 
 def drawn_looks(robot: Robot, q: Array) -> list[Look]:
-    """Returns how an arm without meshes is drawn. `q` (n,) is any configuration."""
+    """Returns the appearance of an arm without meshes. `q` (n,) is any configuration."""
     from trimesh import Scene, Trimesh
 
     scenes: dict[str, trimesh.Scene] = {}
@@ -85,7 +85,7 @@ def drawn_looks(robot: Robot, q: Array) -> list[Look]:
 def _read(file: str) -> trimesh.Scene:
     """Returns the content of a mesh file, in metres."""
     scene: trimesh.Scene = library("trimesh", "trimesh", "the viewer", extra="view").load_scene(file)
-    return scene if scene.units is None else scene.convert_units("meters")  # COLLADA says what its units are
+    return scene if scene.units is None else scene.convert_units("meters")  # COLLADA states its units
 
 
 def _surface(shape: Obstacle) -> trimesh.Scene:
@@ -95,13 +95,13 @@ def _surface(shape: Obstacle) -> trimesh.Scene:
 
 
 def _paint(scene: trimesh.Scene, color: Color) -> None:
-    """Gives meshes without a material this colour, shows both sides of all, and makes large ones smaller."""
+    """Colours meshes without a material, shows both sides of all meshes, and reduces large ones."""
     from trimesh import Trimesh
     from trimesh.visual import TextureVisuals
     from trimesh.visual.material import PBRMaterial, SimpleMaterial
 
     for name, mesh in list(scene.geometry.items()):
-        if not isinstance(mesh, Trimesh):  # lines and points
+        if not isinstance(mesh, Trimesh):  # lines and points have no faces
             scene.delete_geometry(name)
             continue
         visual: Any = mesh.visual
@@ -120,13 +120,13 @@ def _paint(scene: trimesh.Scene, color: Color) -> None:
 
 
 def _painted(color: Color, roughness: float = 1.0) -> Any:
-    """Returns a material of one colour, as trimesh keeps it."""
+    """Returns a material of one colour for trimesh."""
     from trimesh.visual import TextureVisuals
     from trimesh.visual.material import PBRMaterial
 
     mode = "OPAQUE" if color[3:] in ((), (255,)) else "BLEND"
     shade = np.array(color[:3]) / 255.0
-    linear = np.where(shade <= 0.04045, shade / 12.92, ((shade + 0.055) / 1.055) ** 2.4)  # as glTF keeps colours
+    linear = np.where(shade <= 0.04045, shade / 12.92, ((shade + 0.055) / 1.055) ** 2.4)  # colours of glTF are linear
     factor = [*np.round(255 * linear).astype(int).tolist(), *color[3:]]
     material = PBRMaterial(baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=roughness, alphaMode=mode)
     return TextureVisuals(material=material)

@@ -1,4 +1,4 @@
-"""The obstacles, which are added, moved and taken away."""
+"""The obstacles of the page, which visitors add, move and remove."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from .page import Page
 
 _NONE = "none"
-_SIZE = 0.15  # of a new obstacle and of the handle, as a fraction of the arm
-_ARROW = 0.08  # of an arrow that changes the size
-_BESIDE = np.array([0.4, 0.4, 0.2])  # where a new obstacle appears, as a fraction of the arm
+_SIZE = 0.15  # size of a new obstacle and of the handle, as a fraction of the arm
+_ARROW = 0.08  # size of an arrow that resizes, as a fraction of the arm
+_BESIDE = np.array([0.4, 0.4, 0.2])  # position of a new obstacle, as a fraction of the arm
 _OPACITY = 0.7
 _NEW: dict[str, Callable[[NDArray[np.float64], float], Obstacle]] = {
     "box": lambda center, size: shapes.Box(center, (size, size, size)),
@@ -36,7 +36,7 @@ _NEW: dict[str, Callable[[NDArray[np.float64], float], Obstacle]] = {
 
 
 class Obstacles:
-    """Obstacles of the arm in the scene. One of them, clicked or chosen from a list, has a handle."""
+    """Obstacles of the arm in the scene. The chosen obstacle, clicked or selected from a list, has a handle."""
 
     def __init__(self, page: Page) -> None:
         """Adds the controls; `refresh` draws the obstacles."""
@@ -53,7 +53,7 @@ class Obstacles:
             page.on_input(gui.add_button(f"Add {kind}"), lambda kind=kind: self._add(kind))  # type: ignore[misc]
 
     def refresh(self) -> None:
-        """Draws the obstacles of the arm, if they are not those that are drawn."""
+        """Draws the obstacles of the arm if they have changed."""
         if self._page.arm.obstacles is not self._shapes:
             self._draw(self._page.arm.obstacles)
 
@@ -100,7 +100,7 @@ class Obstacles:
         self._choose(self._chosen)
 
     def _choose(self, i: int | None) -> None:
-        """Gives obstacle `i` the handle; None: no obstacle."""
+        """Gives the handle to obstacle `i`, or to none."""
         for old in [*([] if self._handle is None else [self._handle]), *self._grips]:
             old.remove()
         self._handle, self._grips = None, []
@@ -113,14 +113,14 @@ class Obstacles:
         )
 
         @handle.on_update
-        async def _(_: object) -> None:  # in the thread of the server, in order
+        async def _(_: object) -> None:  # runs in the thread of the server, in order
             target = pose(handle.position, wxyz=handle.wxyz)
             self._page.ask(handle, lambda: self._move(i, target))
 
         self._grips = [self._grip(i, k, grip) for k, grip in enumerate(grips(self._shapes[i]))]
 
     def _grip(self, i: int, k: int, grip: Grip) -> viser.TransformControlsHandle:
-        """Adds handle `k` of the size of obstacle `i`: an arrow, which is dragged along itself."""
+        """Adds the arrow `k`, which resizes obstacle `i` when dragged along itself."""
         handle = self._page.server.scene.add_transform_controls(
             f"/obstacle_size/{k}", scale=_ARROW * self._page.scale, depth_test=False, position=grip.point,
             wxyz=wxyz(_turned(grip.along)), active_axes=(True, False, False), disable_sliders=True,
@@ -136,7 +136,7 @@ class Obstacles:
 
     def _resize(self, i: int, k: int, point: NDArray[np.float64]) -> None:
         if i >= len(self._drawn):
-            return  # taken away a moment ago
+            return  # removed a moment ago
         old, points = self._drawn[i], grips(self._shapes[i])
         if k >= len(points):
             return
@@ -146,7 +146,7 @@ class Obstacles:
         self._changed(i, but=k)
 
     def _changed(self, i: int, but: int | None = None) -> None:
-        """Tells the arm, and moves the arrows along, `but` the one that is in the hand."""
+        """Passes the obstacles to the arm, and moves the arrows along, except arrow `but`, which is being dragged."""
         self._shapes = [drawn.shape for drawn in self._drawn]
         self._page.arm.obstacles = self._shapes
         for k, (handle, grip) in enumerate(zip(self._grips, grips(self._shapes[i]), strict=True)):
@@ -155,7 +155,7 @@ class Obstacles:
 
     def _move(self, i: int, place: NDArray[np.float64]) -> None:
         if i >= len(self._drawn):
-            return  # taken away a moment ago
+            return  # removed a moment ago
         self._drawn[i].move(place)
         self._changed(i)
 
@@ -164,14 +164,14 @@ class _Drawn:
     """An obstacle in the scene.
 
     Attributes:
-        shape: the obstacle where it is now.
-        place: where its handle is now, (4, 4).
+        shape: the obstacle at its present position.
+        place: present pose of its handle (4, 4).
     """
 
     def __init__(
         self, scene: viser.SceneApi, name: str, shape: Obstacle, home: NDArray[np.float64] | None = None
     ) -> None:
-        """Draws the obstacle; its handle is at the pose `home` (4, 4), None: in its middle."""
+        """Draws the obstacle; its handle is at the pose `home` (4, 4), or in its middle for None."""
         self._first = self.shape = shape
         corners = shape.triangles
         if home is None:

@@ -1,4 +1,4 @@
-"""What the parts of the page share."""
+"""Data shared by the parts of the page."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class Page:
     """A served page, and the arm that it shows.
 
-    Parts ask for changes; they are carried out one at a time by the thread of the viewer, which then refreshes all.
+    The thread of the viewer carries out the changes that parts request, one at a time, and then refreshes all parts.
     """
 
     server: viser.ViserServer
@@ -26,9 +26,9 @@ class Page:
     """Length of the arm (m)."""
 
     def on_input(self, handle: Any, change: Callable[[], None]) -> None:
-        """Has `change` carried out when someone uses an input or a button of the page, but not when Python sets it.
+        """Requests `change` when someone uses an input or a button of the page, but not when Python sets it.
 
-        viser calls back in any of several threads, in any order: `change` must read the input when it is carried out.
+        viser calls back in any of several threads, in any order: `change` must read the input when it runs.
         """
 
         def asked(event: Any) -> None:
@@ -39,5 +39,5 @@ class Page:
 
 
 def set_value(handle: Any, value: Any) -> None:
-    """Sets an input of the page. viser sends nothing if it has that value already."""
-    handle.value = value  # typed as read-only
+    """Sets an input of the page. viser sends nothing if the value is unchanged."""
+    handle.value = value  # annotated as read-only by viser

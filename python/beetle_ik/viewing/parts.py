@@ -1,4 +1,4 @@
-"""What the page consists of."""
+"""The parts of the page together."""
 
 from __future__ import annotations
 
@@ -34,25 +34,25 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # of the floor
-_LARGE = 2.0  # m: the floor of a larger robot has larger cells
+_CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # colours of the floor
+_LARGE = 2.0  # m: floors of larger robots have larger cells
 _REFERENCE = 2.0  # pixels
-_SLOW = 0.1  # s: how often text and sliders show an arm in motion; the page has to lay them out
+_SLOW = 0.1  # s: interval of text and sliders during a motion, which the page has to lay out
 
 
 class Parts:
-    """The parts of the page, and what they do together."""
+    """All parts of the page, and their common actions."""
 
     def __init__(self, page: Page, looks: list[Look], notes: list[str]) -> None:
-        """Fills the page. `looks` are those of the links, `notes` sentences about the robot."""
+        """Fills the page with the `looks` of the links and `notes`, sentences about the robot."""
         self._page = page
         scene, gui = page.server.scene, page.server.gui
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
         size = max(page.scale, float(np.linalg.norm(high - low)))
         self._camera = Camera(page.server, low, high, size)
-        gui.configure_theme(show_share_button=False)  # it would show the page to others
-        floor = (0.0, 0.0, min(0.0, float(low[2])))  # a base may be a waist
+        gui.configure_theme(show_share_button=False)  # it would publish the page
+        floor = (0.0, 0.0, min(0.0, float(low[2])))  # the base may be at a waist
         cell = 0.1 if size < _LARGE else 0.5
         scene.add_grid(
             "/floor", 4 * size, 4 * size, cell_size=cell, section_size=5 * cell, position=floor,
@@ -95,7 +95,7 @@ class Parts:
 
     @contextmanager
     def posed(self) -> Iterator[None]:
-        """Hides the handles, and looks at arm, motion and map from near, for a recording."""
+        """Hides the handles, and moves the camera near arm, motion and map, for a recording."""
         passed = self.playback.passed(self._page.arm.q)
         boxes = [*(self._links.bounds(q) for q in passed), *self._reach.bounds, *self._obstacles_nearby()]
         try:
@@ -108,7 +108,7 @@ class Parts:
                 part.show_handles(True)
 
     def _obstacles_nearby(self) -> Iterator[tuple[Array, Array]]:
-        """Yields least and greatest coordinates (3,) of obstacles that are no larger than the arm, as floors are."""
+        """Yields least and greatest coordinates (3,) of obstacles no larger than the arm, which excludes floors."""
         for obstacle in self._page.arm.obstacles:
             low, high = obstacle.triangles.min(axis=(0, 1)), obstacle.triangles.max(axis=(0, 1))
             if np.abs((low, high)).max() < self._page.scale:
@@ -126,7 +126,7 @@ class Parts:
                     each.refresh()
 
     def draw_path(self, points: Array) -> None:
-        """Draws a line through points (k, 3), in place of the last one."""
+        """Draws a line through points (k, 3), in place of the previous one."""
         segments = np.stack((points[:-1], points[1:]), axis=1)
         scene = self._page.server.scene
         scene.add_line_segments("/path", segments, rgb(BLACK), thickness=_REFERENCE, thickness_units="screen")

@@ -1,4 +1,4 @@
-"""Plans to the handles."""
+"""Planning to the handles."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from .page import Page
     from .playback import Playback
 
-ACCELERATION = 5.0  # rad/s^2, m/s^2: calm enough to be looked at
-_PATIENCE = Stop(max_time=2.0)  # s: the page waits
-_THERE = 1e-3  # m, and of rotations: the arm is at the handle
+ACCELERATION = 5.0  # rad/s^2, m/s^2: calm enough to watch
+_PATIENCE = Stop(max_time=2.0)  # s: the page waits for the plan
+_THERE = 1e-3  # m, and entries of rotations: tolerance between arm and handle
 
 
 class Planning:
-    """A button that plans a motion from where the arm is to the handles, clear of obstacles, and plays it."""
+    """A button that plans a motion from the present configuration to the handles, clear of obstacles, and plays it."""
 
     def __init__(self, page: Page, playback: Playback) -> None:
         """Adds the button."""
@@ -52,7 +52,7 @@ class Planning:
 
     @property
     def ends(self) -> tuple[NDArray[np.float64], Targets]:
-        """Where a plan begins, and what it is to reach: the one whose motion is shown, or the next."""
+        """Start and target of a plan: of the plan whose motion is shown, or of the next one."""
         if self._made is not None and self._playback.shows(self._made[0]):
             return self._made[1:]
         return self._page.arm.inside, self._page.arm.targets

@@ -1,4 +1,4 @@
-"""A motion that is played back: time bar, trace of the tip, joint velocities."""
+"""Playback of a motion: time bar, trace of the tip, joint velocities."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from .._core import Trajectory
     from .page import Page
 
-_SAMPLES = 400  # of the trace and the plot
-_STEP = 0.01  # s, of the time bar
-_TRACE = 3.0  # pixels
-_PASSED = 12  # configurations along a motion, to see where it leads
-_FRAME = 1.0 / 30.0  # s, of a recording
-_REST = 0.7  # s, at the end of a recording, before it begins again
-_ASPECT = 1.5  # of the plot
+_SAMPLES = 400  # samples of the trace and the plot
+_STEP = 0.01  # s: step of the time bar
+_TRACE = 3.0  # pixels: width of the trace
+_PASSED = 12  # configurations along a motion that set the view
+_FRAME = 1.0 / 30.0  # s: frame of a recording
+_REST = 0.7  # s: rest at the end of a recording, before it begins again
+_ASPECT = 1.5  # width over height of the plot
 
 
 class Playback:
-    """A trajectory and a time on it. It plays, over and over if wanted, until someone stops it or takes the handle."""
+    """A trajectory and a time on it. It plays, once or repeatedly, until someone stops it or takes the handle."""
 
     def __init__(self, page: Page) -> None:
         """Adds the controls, hidden until there is a motion."""
@@ -45,10 +45,10 @@ class Playback:
         page.on_input(self._button, lambda: self._play(not self._playing))
         self._time = 0.0
         self._left = (page.arm.q, page.arm.targets)
-        """What the arm was left with; if it has something else, someone has taken over."""
+        """Configuration and targets that playback left; other values mean that someone has taken over."""
 
     def show(self, motion: Trajectory, *, repeat: bool = True) -> None:
-        """Shows a trajectory in place of the last one, and plays it, over and over or once."""
+        """Shows a trajectory in place of the previous one, and plays it once or repeatedly."""
         set_value(self._repeat, repeat)
         for handle in self._drawn:
             handle.remove()
@@ -61,7 +61,7 @@ class Playback:
         self._play(True)
 
     def advance(self, elapsed: float) -> bool:
-        """Moves the arm on by a time (s); returns whether the motion goes on."""
+        """Advances the motion by a time (s); returns whether it goes on."""
         arm = self._page.arm
         if not self._playing or self._motion is None:
             return False
@@ -77,7 +77,7 @@ class Playback:
         return self._playing
 
     def shows(self, motion: Trajectory) -> bool:
-        """Whether the arm is where a motion has put it."""
+        """Whether the arm is still where this motion put it."""
         return self._motion is motion and self._page.arm.q is self._left[0]
 
     def passed(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -85,9 +85,9 @@ class Playback:
         return q[None] if self._motion is None else self._motion.at(np.linspace(0.0, self._motion.duration, _PASSED))[0]
 
     def frames(self) -> Iterator[float]:
-        """Puts the arm along the motion, if there is one, and yields for how long it stays there (s).
+        """Moves the arm along the motion, if there is one, and yields the duration of each frame (s).
 
-        It ends with a rest, and puts everything back.
+        It ends with a rest, and restores the previous state.
         """
         if self._motion is None:
             return
@@ -125,7 +125,7 @@ class Playback:
             self._left = (arm.q, arm.targets)
 
     def _trace(self, q: NDArray[np.float64]) -> viser.LineSegmentsHandle:
-        """Draws the ways of the tips."""
+        """Draws the paths of the tips."""
         points = self._page.arm.robot.fk(q).reshape(len(q), -1, 4, 4)[..., :3, 3]
         segments = np.stack((points[:-1], points[1:]), axis=2).reshape(-1, 2, 3)
         return self._page.server.scene.add_line_segments(

@@ -1,4 +1,4 @@
-"""Other postures for the same target, and how freely the tip moves."""
+"""Other postures for the same target, and the velocity ellipsoid of the tip."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
     from .page import Page
 
-_MOST = 32  # ghosts
-_ELLIPSOID = 0.15  # s: the ellipsoid is drawn as far as the tip comes in this time at unit joint speeds
-_FLAT = 1e-3  # thickness of the ellipsoid along a direction that is lost
+_MOST = 32  # largest number of ghosts
+_ELLIPSOID = 0.15  # s: scale of the ellipsoid, the travel of the tip in this time at unit joint speeds
+_FLAT = 1e-3  # thickness of the ellipsoid along a lost direction
 
 
 class Postures:
@@ -34,7 +34,7 @@ class Postures:
         self._text = gui.add_markdown("")
         self._solution = gui.add_slider("solution", min=0, max=1, step=1, initial_value=0, visible=False)
         hide = gui.add_button("Hide them")
-        one = len(page.arm.targets) == 1  # what follows is for one tip
+        one = len(page.arm.targets) == 1  # the controls below are for one tip
         follow = gui.add_button("Find the self-motion", visible=one, hint="postures that keep the tip at the target")
         self._along = gui.add_slider("self-motion", min=0, max=1, step=1, initial_value=0, visible=False)
         self._wanted = gui.add_checkbox("velocity ellipsoid of the tip", False, visible=one)
@@ -49,7 +49,7 @@ class Postures:
         page.on_input(self._wanted, lambda: None)
 
     def show_ghosts(self, q: NDArray[np.float64], text: str) -> None:
-        """Shows configurations (k, n) as ghosts, one of which a slider chooses."""
+        """Shows configurations (k, n) as ghosts, with a slider to choose one."""
         self._solutions = q
         self._links.show_ghosts(q[:_MOST])
         self._text.content = text
@@ -58,7 +58,7 @@ class Postures:
         set_value(self._solution, 0)
 
     def show_curve(self, q: NDArray[np.float64]) -> None:
-        """Has a slider choose among the configurations (k, n) of a curve."""
+        """Adds a slider over the configurations (k, n) of a curve."""
         self._curve = q
         self._along.visible = len(q) > 1
         self._along.max = max(len(q) - 1, 1)
@@ -96,7 +96,7 @@ class Postures:
             return
         arm = self._page.arm
         ellipsoid = arm.robot.velocity_ellipsoid(arm.q)
-        # The decomposition adds axes for the directions that are lost, in which the ellipsoid is flat.
+        # Adds axes for the lost directions, in which the ellipsoid is flat.
         axes, lengths, _ = np.linalg.svd(ellipsoid.axes[:, :3].T * ellipsoid.lengths)
         axes[:, 2] *= np.linalg.det(axes)
         x, y, z = np.maximum(_ELLIPSOID * np.append(lengths, np.zeros(3 - len(lengths))), _FLAT).tolist()

@@ -21,7 +21,7 @@ _MOST = 60  # numbers of a shape that are written out
 
 
 def program(arm: Arm, q: Array, targets: Targets, acceleration: float) -> str:
-    """Returns a program that makes robot, configuration, targets and obstacles, and plans from one to the other."""
+    """Returns a program that makes robot, configuration, targets and obstacles, and plans from start to targets."""
     arguments = ["robot", "start_q=q", "end=target", f"limits=bik.Limits(acceleration={acceleration:g})"]
     if arm.keeps_clear:
         arguments.insert(3, "obstacles=scene")
@@ -44,7 +44,7 @@ def program(arm: Arm, q: Array, targets: Targets, acceleration: float) -> str:
 
 
 def _robot(robot: Robot) -> list[str]:
-    """Returns the lines that make a robot, if it is a built-in one with capsules; otherwise a place for them."""
+    """Returns the lines that make a built-in robot with capsules; a placeholder for any other robot."""
     if robot.name in Robot.names():
         plain = Robot.named(robot.name)
         as_made = robot.dof == plain.dof and np.array_equal(
@@ -100,6 +100,6 @@ def _obstacle(shape: Obstacle) -> str | None:
 
 
 def _numbers(values: Any) -> str:
-    """Returns numbers as Python writes them, without digits that nobody set."""
+    """Formats numbers in Python syntax, without rounding noise."""
     array = np.asarray(values)
     return repr((array.astype(float).round(_DECIMALS) + 0.0 if array.dtype.kind == "f" else array).tolist())

@@ -1,4 +1,4 @@
-"""A map of reach: a slice of it, or all of it, with a legend."""
+"""A reachability map on the page: a slice or all of it, with a legend."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 _SLICES = ("x", "y", "z")  # the axis across the slice
 _ALL = "all"
-_DOT = 0.25  # of a voxel
-_OPACITY = 160  # of a slice, of 255
-_PIXELS = 12  # of a voxel, so that its edges are sharp
+_DOT = 0.25  # size of a dot, as a fraction of a voxel
+_OPACITY = 160  # opacity of a slice, of 255
+_PIXELS = 12  # pixels of a voxel, for sharp edges
 _LEGEND = (
     "<div style='padding:0 1em;font-size:0.85em'>orientations reached, of {orientations}"
     f"<div style='height:0.7em;background:linear-gradient(to right,{BLUE},{ORANGE})'></div>"
@@ -35,7 +35,7 @@ _LEGEND = (
 
 
 class Reach:
-    """The voxels that are reached, blue where few orientations are and orange where all are."""
+    """The reached voxels, blue for few orientations and orange for all."""
 
     def __init__(self, page: Page) -> None:
         """Adds the controls, hidden until there is a map."""
@@ -54,10 +54,10 @@ class Reach:
         page.on_input(hide, self._hide)
 
     def show(self, found: ReachabilityMap) -> None:
-        """Shows a map in place of the last one: the slice across y through the base.
+        """Shows a map in place of the previous one: the slice across y through the base.
 
         Raises:
-            InvalidInputError: it is a map of another robot.
+            InvalidInputError: the map is of another robot.
         """
         mapped, shown = found.robot.name, self._page.arm.robot.name
         if mapped != shown:
@@ -71,7 +71,7 @@ class Reach:
 
     @property
     def bounds(self) -> list[tuple[Array, Array]]:
-        """The least and greatest coordinates (3,) of the voxels that are shown, if any are."""
+        """Least and greatest coordinates (3,) of the voxels shown; empty without any."""
         found = self._map
         if found is None or self._drawn is None:
             return []
@@ -83,7 +83,7 @@ class Reach:
         return [(low, high)]
 
     def _cut(self) -> None:
-        """Puts the slice through the base, or through the middle of the map if the base is beside it."""
+        """Puts the slice through the base, or through the middle of a map that does not contain the base."""
         found = self._map
         assert found is not None, "the controls are hidden until there is a map"
         self._at.visible = self._across.value != _ALL
@@ -118,7 +118,7 @@ class Reach:
         middle[axis] = found.origin[axis] + found.voxel * (layer + 0.5)
         right, up = np.delete(np.eye(3), axis, axis=0)
         height, width = (found.voxel * n for n in share.shape)
-        # The frame of an image of viser is that of a camera: its y axis points down.
+        # Turns the image: viser gives it the frame of a camera, whose y axis points down.
         return self._page.server.scene.add_image(
             "/map", sharp, width, height, format="png", cast_shadow=False, receive_shadow=False, position=middle,
             wxyz=wxyz(np.column_stack((right, -up, np.cross(right, -up)))),
@@ -135,6 +135,6 @@ class Reach:
 
 
 def _colors(share: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Returns a colour (..., 3) for each share of orientations that are reached."""
+    """Returns a colour (..., 3) for each fraction of reached orientations."""
     low, high = (np.array(rgb(color)) for color in (BLUE, ORANGE))
     return np.asarray(low + share[..., None] * (high - low)).astype(np.uint8)

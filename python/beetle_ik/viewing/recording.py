@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _LONGEST = 600.0  # s: a longer recording is taken for one without an end
 _MOST = 100_000  # frames
 
-# The client would fetch a recording from any site, and a recording can carry code.
+# Restricts connections: the client would fetch a recording from any site, and a recording can carry code.
 _HEAD = """
 <!-- Contains the client of viser, https://viser.studio, Apache License 2.0. -->
 <meta http-equiv="Content-Security-Policy" content="connect-src 'self' data: blob:">
@@ -49,10 +49,10 @@ window.__VISER_EMBED_CONFIG__ = {darkMode: matchMedia("(prefers-color-scheme: da
 
 
 def recording_file(file: str | os.PathLike[str]) -> Path:
-    """Returns the argument `file` as a path that says which form a recording has.
+    """Returns the argument `file` as a path whose suffix gives the form of the recording.
 
     Raises:
-        InvalidInputError: it ends neither in ".html" nor in ".viser".
+        InvalidInputError: the name ends neither in ".html" nor in ".viser".
     """
     path = path_of(file)
     if path.suffix not in (".html", ".viser"):
@@ -63,7 +63,7 @@ def recording_file(file: str | os.PathLike[str]) -> Path:
 
 
 def write_recording(path: Path, name: str, recorded: bytes) -> None:
-    """Writes a recording as the suffix of `path` says; a page has the title `name`."""
+    """Writes a recording in the form given by the suffix of `path`; a page has the title `name`."""
     content = recorded if path.suffix == ".viser" else _page(name, recorded).encode()
     with whole_file(path) as stream:
         stream.write(content)
@@ -72,8 +72,8 @@ def write_recording(path: Path, name: str, recorded: bytes) -> None:
 def write_player(file: str | os.PathLike[str]) -> None:
     """Writes a page that plays the `.viser` recordings of its own site: `player.html?playbackPath=motion.viser`.
 
-    Many recordings can share it. `&darkMode` makes it dark. It must be served: browsers do not let a page read files
-    beside it. Needs the extra "view".
+    Many recordings can share it. `&darkMode` makes it dark. A web server must deliver it: browsers do not let a page
+    read files beside it. Needs the extra "view".
 
     Args:
         file: the page, ending in `.html`.
@@ -90,16 +90,16 @@ def write_player(file: str | os.PathLike[str]) -> None:
 
 
 def take(server: viser.ViserServer, parts: Parts, frames: Iterable[float], passed: Callable[[float], None]) -> bytes:
-    """Returns a recording of what a page shows while `frames` change it, each for the seconds that it yields.
+    """Returns a recording of the page while `frames` change it; each yields its duration in seconds.
 
-    `passed` moves the arm on by that time. Visitors see the end alone.
+    `passed` moves the arm on by this duration. Visitors see only the end.
     """
     with server.atomic(), parts.posed():
         parts.refresh()
         serializer = server.get_scene_serializer()
         try:
             _run(serializer, parts, frames, passed)
-        finally:  # without this call it would record for ever
+        finally:  # otherwise recording would never stop
             recorded = serializer.serialize()
     return recorded
 
@@ -120,7 +120,7 @@ def _run(serializer: Any, parts: Parts, frames: Iterable[float], passed: Callabl
 
 
 def _page(title: str, recorded: bytes | None = None) -> str:
-    """Returns viser's client as one page: with the recording inside, or to play those that its address names."""
+    """Returns viser's client as one page: with the recording inside, or as a player of the recording in its address."""
     viser = library("viser", "viser", "the viewer", extra="view")
     client = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
     start, head, rest = client.partition("<head>")

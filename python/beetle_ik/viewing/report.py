@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from .._core import Nearest
     from .page import Page
 
-_FAR = 1.0  # a nearest body farther away than this fraction of the arm is not pointed out
-_AT, _NEAR = 0.002, 0.05  # from a limit, as fractions of the range of a joint
+_FAR = 1.0  # fraction of the arm: nearest bodies farther away are not marked
+_AT, _NEAR = 0.002, 0.05  # distances from a limit, as fractions of the range of a joint
 _BAR = (
     "<span title='{told}' "
     "style='flex:1;height:5px;margin:6px 0;border-radius:2px;background:#D3D7DC;position:relative'>"
@@ -32,13 +32,13 @@ _WORDS = {
 
 
 class Report:
-    """Status, errors, clearance and the nearest two bodies; errors of the page; what the model lacks."""
+    """Status, errors, clearance and the nearest two bodies; errors of the page; gaps of the model."""
 
     def __init__(self, page: Page, notes: list[str]) -> None:
-        """Adds the text; `notes` stand below it."""
+        """Adds the text, with `notes` below it."""
         self._page = page
         self.problem = ""
-        """What went wrong with the last request, if anything did."""
+        """Error of the last request, if any."""
         self._text = page.server.gui.add_html("")
         self._notes = "".join(f"<p>{html.escape(note)}</p>" for note in notes)
         self._line = page.server.scene.add_line_segments(
@@ -76,7 +76,7 @@ class Report:
         return f"{word}: {_errors(arm.outcome.position_error, arm.outcome.rotation_error)} from the target"
 
     def _limits(self) -> str:
-        """Returns where each joint is between its limits, as a bar for each, and which ones are at them."""
+        """Returns a bar for each joint between its limits, and the names of joints at a limit."""
         robot, bars, at = self._page.arm.robot, [], []
         for name, q, low, high in zip(
             robot.joint_names, self._page.arm.q.tolist(), robot.lower.tolist(), robot.upper.tolist(), strict=True

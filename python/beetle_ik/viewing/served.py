@@ -1,4 +1,4 @@
-"""A server of viser that is used by its own page alone."""
+"""A server of viser for its own page alone."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ _POLICY = (
     "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:; "
     "connect-src 'self' ws://{host} wss://{host} data: blob:"
 )
-"""Which pages may show this one inside: notebooks. Where it may load from: viser's client would play a recording, or
-obey a server, of any site that its address names."""
+"""Pages that may embed this one: notebooks. Sources that it may load from: viser's client would otherwise play a
+recording of, or obey, any site in its address."""
 
 _replacing = threading.Lock()
 
 
 def serve(host: str, port: int, label: str, admission: Admission) -> viser.ViserServer:
-    """Returns a server of viser. Requests that `admission` refuses are answered by an error, bad messages are dropped.
+    """Returns a server of viser. Requests that `admission` refuses get an error, and invalid messages are dropped.
 
     Raises:
-        BeetleIkError: viser is not installed, or serves in another way than the versions that are known.
+        BeetleIkError: viser is not installed, or its version serves pages in an unknown way.
     """
     module = library("viser", "viser", "the viewer", extra="view")
     incoming = Incoming()
@@ -54,7 +54,7 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
     from websockets.asyncio.server import ServerConnection
 
     class Checked(ServerConnection):
-        """A connection that passes on what viser can use."""
+        """A connection that drops messages that viser cannot use."""
 
         dropped = 0
 
@@ -82,7 +82,7 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
             if cookie is not None:
                 response.headers["Set-Cookie"] = cookie
             response.headers["Referrer-Policy"] = "no-referrer"  # the address may have a token
-            place = request.headers.get("Host", "").rpartition("@")[2]  # admitted, but for what stands before an "@"
+            place = request.headers.get("Host", "").rpartition("@")[2]  # the admitted host, without a user before "@"
             response.headers["Content-Security-Policy"] = _POLICY.format(host=place)
         return response
 
@@ -92,7 +92,7 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
 
 @contextmanager
 def _replaced_serve(host: str, port: int, serve: Callable[..., Any]) -> Iterator[list[bool]]:
-    """Has viser call `serve(original, ...)` at this address, and serve others as ever. Yields whether it was called."""
+    """Makes viser call `serve(original, ...)` at this address alone; yields whether it was called."""
     infra: Any = import_module("viser.infra._infra")
     used: list[bool] = []
     websockets = infra.websockets

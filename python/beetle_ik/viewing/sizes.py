@@ -1,4 +1,4 @@
-"""The sizes of obstacles, changed by handles on their surfaces."""
+"""Sizes of obstacles, changed by handles on their surfaces."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SMALLEST = 0.002  # m: half a size, or a radius
 
 
 class Grip(NamedTuple):
-    """A point of a shape to drag: at a distance (m) along a direction (3,) from a point (3,) that stays."""
+    """A point of a shape to drag: at a distance (m) along a direction (3,) from a fixed point (3,)."""
 
     middle: Array
     along: Array
@@ -27,14 +27,14 @@ class Grip(NamedTuple):
 
     @property
     def point(self) -> Array:
-        """Where it is (3,)."""
+        """Position of the grip (3,)."""
         return self.middle + self.distance * self.along
 
 
 def grips(shape: Obstacle) -> list[Grip]:
-    """Returns where the size of a shape can be dragged; none for shapes that are made of points.
+    """Returns the grips of a shape, at which it is resized; none for shapes made of points.
 
-    That is at a corner or on a rim, away from the axes, along which the handle in the middle moves the shape.
+    Grips are at a corner or on a rim, away from the axes along which the handle in the middle moves the shape.
     """
     match shape:
         case shapes.Sphere():
@@ -60,13 +60,13 @@ def _at_corner(center: Array, rotation: Array, half: Array) -> list[Grip]:
 
 
 def _at_rim(center: Array, axis: Array, radius: float, half: float) -> list[Grip]:
-    """Returns grips at the rim of a cylinder: of its radius and of half its length."""
+    """Returns grips at the rim of a cylinder: for its radius and for half its length."""
     side = beside(axis)
     return [Grip(center + half * axis, side, radius), Grip(center + radius * side, axis, half)]
 
 
 def resized(shape: Obstacle, i: int, distance: float) -> Obstacle:
-    """Returns the shape with its grip `i` at a distance (m); its middle stays."""
+    """Returns the shape with its grip `i` at a distance (m) and the same middle."""
     distance, touch = max(distance, _SMALLEST), list(shape.touch)
     match shape:
         case shapes.Sphere():
@@ -95,6 +95,6 @@ def _replaced(values: Array, i: int, value: float) -> Array:
 
 
 def beside(axis: Array) -> Array:
-    """Returns a direction across an axis."""
+    """Returns a unit vector perpendicular to an axis."""
     side = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
     return np.asarray(side / np.linalg.norm(side))

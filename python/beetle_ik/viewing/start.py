@@ -1,4 +1,4 @@
-"""What a robot needs to be shown and steered, where its model lacks it: bodies, speeds and a configuration."""
+"""Defaults for robots whose models lack bodies, speeds or a configuration."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,15 +8,15 @@ from .._text import counted
 
 _THICKNESS = 0.04  # radius of capsules, as a fraction of the length of the arm
 _THINNEST = 0.005  # m
-_SPEED = 2.0  # rad/s, m/s: of joints without a velocity limit
+_SPEED = 2.0  # rad/s, m/s: speed of joints without a velocity limit
 _CANDIDATES = 200
 _CLEAR = 0.002  # m
-_FLOOR = 1e-9  # m: links below the base by more would stand in the floor of most robots
+_FLOOR = 1e-9  # m: links farther below the base would be in the floor of most robots
 _SINGULAR = 0.3  # manipulability below this fraction of the median counts as singular
 
 
 def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
-    """Returns the robot with bodies and velocity limits, and a sentence for each thing that was added or is missing."""
+    """Returns the robot with bodies and velocity limits, and a sentence for each addition or gap."""
     notes = []
     unread = counted(len(robot.unread_collision_shapes), "collision shape")
     if robot.unread_collision_shapes and robot.bodies and has_meshes:
@@ -27,7 +27,7 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
         radius = max(_THICKNESS * length(robot), _THINNEST)
         added = robot.with_capsules(radius=radius).capsules if len(robot.tips) == 1 else []
         places = "capsules along the links"
-        if not added:  # several tips, or links without length, as those of a gantry
+        if not added:  # several tips, or links without length as in gantries
             origin = np.zeros(3)
             places, added = "balls at the joints", [(link, origin, origin, radius) for link in robot.all_link_names]
         robot = robot.with_capsules([*robot.capsules, *added])
@@ -54,7 +54,7 @@ def middle(robot: Robot) -> NDArray[np.float64]:
 
 
 def configuration(robot: Robot, obstacles: list[Obstacle]) -> NDArray[np.float64]:
-    """Returns a configuration (n,) to begin at: the stance "ready", or a clear one near the middle, not singular."""
+    """Returns a start configuration (n,): the stance "ready", or a clear one near the middle, not singular."""
     if "ready" in robot.stances:
         return robot.stances["ready"]
     center = middle(robot)

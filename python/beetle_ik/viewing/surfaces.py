@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _TRANSLUCENT = 0.3
-_SAME = 7  # decimals of corners that are the same
+_SAME = 7  # decimals at which corners are compared
 _SMOOTH = (Capsule, Ellipsoid, Sphere)
 
 
 class Links:
-    """The links of a robot as frames of a scene, which carry what is seen of them.
+    """The links of a robot as frames of a scene, which carry their meshes.
 
-    Bodies of links that have a look are drawn only where they are asked for: they enclose what is seen.
+    Bodies of links with meshes are drawn only on request: they enclose the meshes.
     """
 
     def __init__(self, scene: viser.SceneApi, robot: Robot, looks: list[Look]) -> None:
-        """Adds the frames and what they carry; `place` moves them."""
+        """Adds the frames with meshes and bodies; `place` moves them."""
         self._scene, self._robot = scene, robot
         self._frames = {
             link: scene.add_frame(f"/robot/{node_name(link)}", show_axes=False) for link in robot.all_link_names
@@ -41,7 +41,7 @@ class Links:
         for i, look in enumerate(looks):
             scene.add_glb(f"{self._frames[look.link].name}/look_{i}", look.scene.export(file_type="glb"))
         seen = {look.link for look in looks}
-        bodies = [body for body in robot.bodies if getattr(body.shape, "radius", 1.0)]  # a rod without has no surface
+        bodies = [body for body in robot.bodies if getattr(body.shape, "radius", 1.0)]  # a rod has no surface
         self._naked = [body for body in bodies if body.link not in seen]
         for i, body in enumerate(self._naked):
             self._draw(f"body_{i}", body, LINKS[1])  # one colour: neighbours overlap at their joint
@@ -59,7 +59,7 @@ class Links:
         )
 
     def bounds(self, q: Array) -> tuple[Array, Array]:
-        """Returns the least and the greatest coordinates (3,) of links and what is seen of them at `q` (n,)."""
+        """Returns the least and the greatest coordinates (3,) of links and their meshes at `q` (n,)."""
         poses = dict(zip(self._frames, self._robot.all_link_poses(q), strict=True))
         points = [pose[:3, 3:].T for pose in poses.values()]
         for look in self._looks:
@@ -74,12 +74,12 @@ class Links:
         return bool(self._covers)
 
     def show_bodies(self, shown: bool) -> None:
-        """Shows or hides the bodies around what is seen."""
+        """Shows or hides the bodies around the meshes."""
         for handle in self._covers:
             handle.visible = shown
 
     def place(self, q: Array) -> None:
-        """Moves the links that `q` (n,) moves."""
+        """Moves the links whose poses change with `q` (n,)."""
         poses = self._robot.all_link_poses(q)
         moved = np.flatnonzero((poses != self._poses).any(axis=(1, 2)))
         frames = list(self._frames.values())
@@ -109,7 +109,7 @@ class Links:
 
 
 def _mesh(body: Body) -> tuple[Array, NDArray[np.int64], bool]:
-    """Returns vertices and faces of a body, and whether faces are flat: light falls smoothly on shared corners."""
+    """Returns vertices and faces of a body, and whether to shade it flat: light falls smoothly on shared corners."""
     vertices, faces = soup(body.shape.triangles)
     if not isinstance(body.shape, _SMOOTH):
         return vertices, faces, True
@@ -123,7 +123,7 @@ def node_name(name: str) -> str:
 
 
 def wxyz(poses: Array) -> Array:
-    """Returns the quaternions (..., 4) of poses (..., 4, 4), as viser takes them."""
+    """Converts poses (..., 4, 4) to quaternions (..., 4), as viser takes them."""
     from viser.transforms import SO3
 
     return np.asarray(SO3.from_matrix(poses[..., :3, :3]).wxyz, dtype=np.float64)

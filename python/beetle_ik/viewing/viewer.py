@@ -1,4 +1,4 @@
-"""The viewer as Python sees it."""
+"""The Python interface of the viewer."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 _NOTEBOOK_HEIGHT = 600  # pixels
-_LONGEST_TICK = 0.1  # s: after a rest, or on a busy machine, a motion goes on where it was
-_WAKE = 0.1  # s: how often a waiting thread looks for Ctrl-C, which Windows would not wake it for
+_LONGEST_TICK = 0.1  # s: longest time by which a motion advances, after a rest or on a busy machine
+_WAKE = 0.1  # s: interval of checks for Ctrl-C, which does not wake a waiting thread on Windows
 
 
 @worded_call
@@ -61,13 +61,13 @@ def view(
     port: int = 8080,
     block: bool = False,
 ) -> Viewer:
-    """Shows a robot in the browser, where one drags its tip, its joints and obstacles. Needs the extra "view".
+    """Shows a robot in the browser, where its tip, its joints and obstacles can be dragged. Needs the extra "view".
 
-    The arm follows the handle at its tip as `Tracker` does: within its limits and, with obstacles and links certified,
-    clear. One with several tips has a handle for each. The page has sliders for the joints, all solutions, the
-    self-motion, and plays motions back. Links look as `robot.visuals` says where files are found, otherwise like their
-    collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the viewer shows
-    inline.
+    The arm follows the handle at its tip like `Tracker`: within its limits, and certified clear of obstacles and of
+    itself. A robot with several tips has a handle for each. The page has sliders for the joints, shows all solutions
+    and the self-motion, and plays motions back. Links show the meshes of `robot.visuals` whose files are found,
+    otherwise their collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the
+    viewer appears inline.
 
     Args:
         robot: the robot.
@@ -75,8 +75,8 @@ def view(
             configuration near the middle of the limits.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, in the frame of the robot's base.
         path: a path to draw: one of `bik.paths`, positions (k, 3) (m) or poses (k, 4, 4).
-        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": whoever reaches it
-            and knows the token, which is part of the address.
+        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": everyone who reaches
+            it and knows the token, which is part of the address.
         port: the port; if it is in use, the next free one. 0: any.
         block: whether to wait until Ctrl-C, which closes the viewer.
 
@@ -96,12 +96,12 @@ def view(
 
 
 class Viewer:
-    """A page that shows a robot, made by `view`. What the page changes and what Python sets is the same state.
+    """A page that shows a robot, made by `view`. The page and Python change the same state.
 
-    It can be used from any thread, and as a context that closes it.
+    It can be used from any thread, and as a context manager that closes it.
 
     Attributes:
-        robot: the robot as it is shown: with bodies, and with velocity limits.
+        robot: the robot with the bodies and velocity limits that the viewer added.
         server: the server of viser, which takes further controls and shapes.
         url: the address of the page, with its token if other machines reach it.
     """
@@ -153,7 +153,7 @@ class Viewer:
 
     @property
     def q(self) -> Array:
-        """The configuration shown (n,) (rad, m). Setting it puts the arm there, to rest.
+        """The configuration shown (n,) (rad, m). Setting it puts the arm there at rest.
 
         The handle moves along, unless `follow` is "off".
 
@@ -170,9 +170,9 @@ class Viewer:
 
     @property
     def target(self) -> Any:
-        """The pose (4, 4) of the handle, which the arm follows. A position (3,) (m) keeps its orientation.
+        """The pose (4, 4) of the handle, which the arm follows. Setting a position (3,) (m) keeps the orientation.
 
-        Of a robot with several tips a dict of poses by their names; those that are not set stay.
+        For a robot with several tips it is a dict from tips to poses; tips left out when it is set keep their targets.
         """
         targets = self._arm.targets
         return dict(targets) if len(targets) > 1 else targets[self.robot.tips[0]]
@@ -184,7 +184,7 @@ class Viewer:
 
     @property
     def obstacles(self) -> Scene:
-        """The obstacles as they are now, also those that were added or moved on the page."""
+        """The obstacles, including those added or moved on the page."""
         return Scene(self._arm.obstacles)
 
     @obstacles.setter
@@ -194,10 +194,10 @@ class Viewer:
 
     @property
     def follow(self) -> Follow:
-        """How the arm follows the handle: "track", "solve" or "off".
+        """Mode of following the handle: "track", "solve" or "off".
 
-        "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm is moved by setting `q`,
-        and the handle stays where it is.
+        "track": as `Tracker` does. "solve": by `solve`, at once. "off": not at all; the arm moves when `q` is set, and
+        the handle stays in place.
         """
         return self._arm.follow
 
@@ -215,11 +215,11 @@ class Viewer:
 
     @property
     def moves(self) -> bool:
-        """Whether the arm is under way to its target, or a motion is played back."""
+        """Whether the arm is moving to its target, or a motion is played back."""
         return self._moves
 
     def show(self, result: Shown) -> None:
-        """Shows a result: plays a motion back, puts the arm at a solution, shows several as ghosts, a slice of a map.
+        """Shows a result: plays a motion, puts the arm at a solution, shows several as ghosts, or a slice of a map.
 
         A `Plan` brings its obstacles along, unless it has none. A map is blue where few orientations are reached, and
         orange where all are.
@@ -229,15 +229,16 @@ class Viewer:
                 `ReachabilityMap`.
 
         Raises:
-            InvalidInputError: something else, or the result of a robot with another number of joints.
+            InvalidInputError: another type, or the result of a robot with another number of joints.
         """
         self._change(lambda: self._parts.show(result))
 
     def to_python(self) -> str:
-        """Returns a program that makes what the page shows, as its button "Copy as Python" does.
+        """Returns a program that recreates the state of the page, like its button "Copy as Python".
 
-        It has the robot (a built-in one, otherwise a place for yours), the configuration, the target and the obstacles,
-        and plans from the one to the other. After a plan that was made on the page, it has the start of that.
+        It makes the robot (a built-in one, otherwise a placeholder for yours), the configuration, the target and the
+        obstacles, and plans from the configuration to the target. After a plan made on the page, it uses the start of
+        that plan.
         """
         with self._lock:
             return self._parts.program.text()
@@ -250,9 +251,9 @@ class Viewer:
 
         Args:
             file: the file, ending in `.html` or `.viser`.
-            frames: changes the viewer and yields for how long what it shows stays (s), any number of times. Time
-                passes in no other way: after each yield the arm has moved on by the time yielded. None: the motion
-                that was shown last, from start to end; without any, the scene as it is, which turns.
+            frames: changes the viewer and yields the time for which the state is shown (s), any number of times. Time
+                passes only there: after each yield the arm has moved on by that time. None: the motion shown last, from
+                start to end; without any, the scene as it is, which turns.
 
         Raises:
             InvalidInputError: another ending, or frames that are no seconds, or last longer than ten minutes.
@@ -273,9 +274,9 @@ class Viewer:
         write_recording(path, self.robot.name, recorded)
 
     def on_target(self, callback: Callable[[Any], object]) -> None:
-        """Has `callback(target)` called with each new `target`, in the thread of the viewer.
+        """Registers a `callback(target)` for each new `target`, which runs in the thread of the viewer.
 
-        While it runs, the arm waits; what it raises is logged and shown on the page.
+        The arm waits for it; its exceptions are logged and shown on the page.
         """
         if not callable(callback):
             raise InvalidInputError(f"callback must be a function of the target, got {callback!r:.60}")
@@ -290,7 +291,7 @@ class Viewer:
             self.close()
 
     def close(self) -> None:
-        """Ends the page and its threads. A closed viewer still knows its state; a second call does nothing."""
+        """Ends the page and its threads. A closed viewer keeps its state; a second call does nothing."""
         if not self._first_close.acquire(blocking=False):  # never released
             return
         self._closed.set()
@@ -305,17 +306,17 @@ class Viewer:
 
     @contextmanager
     def _changing(self) -> Iterator[None]:
-        """Has the block change the state alone, and shows the result."""
+        """Locks the state for the block, and shows the result."""
         if self._closed.is_set():
             raise BeetleIkError(f"the viewer of '{self.robot.name}' is closed: bik.view opens another one")
         with self._lock:
             yield
-            self._moves = True  # until the next tick knows better
+            self._moves = True  # corrected at the next tick
             self._parts.refresh()
         self._worker.ask("changed", lambda: None)
 
     def _pass(self, seconds: float) -> None:
-        """Moves the arm on, in a recording."""
+        """Moves the arm on by a time (s), in a recording."""
         self._moves = self._parts.pass_time(seconds)
 
     def _work(self, requests: Collection[Request]) -> bool:
@@ -339,14 +340,14 @@ class Viewer:
         return self._moves
 
     def _guarded(self, action: Callable[[], object]) -> object:
-        """Carries out an action; what it raises is shown on the page, and does not end the thread."""
+        """Carries out an action; its exceptions are shown on the page, and do not end the thread."""
         try:
             return action()
         except BeetleIkError as error:
             problem = str(error)
-        except Exception as error:  # of a callback
+        except Exception as error:  # raised by a callback
             if self._closed.is_set():
-                return None  # there is no page to show anything on
+                return None  # no page is left to show the error
             _log.exception("an error in the viewer of '%s'", self.robot.name)
             problem = f"{type(error).__name__}: {error}"
         self._parts.report.problem = problem

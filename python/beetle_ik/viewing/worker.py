@@ -10,10 +10,10 @@ _PATIENCE = 0.1  # s
 
 
 class Worker:
-    """A thread that works off requests, at most once a tick, and goes on ticking while there is motion.
+    """A thread that carries out requests, at most once a tick, and keeps ticking during a motion.
 
     Args:
-        work: carries out the requests that have come since the last tick, and returns whether anything still moves.
+        work: carries out the requests since the last tick, and returns whether anything still moves.
         dt: time between two ticks (s).
     """
 
@@ -31,16 +31,16 @@ class Worker:
         self._thread.start()
 
     def ask(self, source: object, request: Request) -> None:
-        """Has the thread carry out `request`, instead of one of the same source that still waits. Never blocks."""
+        """Queues `request` for the thread, in place of a waiting one of the same source. Never blocks."""
         with self._changed:
-            self._requests.pop(id(source), None)  # the order is that of the newest
+            self._requests.pop(id(source), None)  # keeps the order of the newest requests
             self._requests[id(source)] = (source, request)
             self._changed.notify()
 
     def close(self) -> None:
-        """Ends the thread, and waits a moment for it, unless it is the caller. Requests that still wait are dropped.
+        """Ends the thread, and waits a moment for it, unless it is the caller. Waiting requests are dropped.
 
-        A search that the thread is in the middle of goes on without anyone waiting for it, and its result is dropped.
+        A search under way in the thread goes on, and its result is dropped.
         """
         with self._changed:
             self._closed = True

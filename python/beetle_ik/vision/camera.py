@@ -17,7 +17,7 @@ class Camera:
     """A camera that looks perpendicularly at the x-y plane: x to the right, y up."""
 
     pixels_per_metre: float = 80.0
-    """Scale."""
+    """Scale of the image (pixels per metre)."""
     origin: tuple[float, float] = (128.0, 128.0)
     """Column and row of (0, 0, 0) (pixels)."""
     link_width: float = 0.2
@@ -54,7 +54,7 @@ def numbers(name: str, values: object) -> NDArray[np.float64]:
     """Returns finite numbers as an array.
 
     Raises:
-        InvalidInputError: anything else; names the argument.
+        InvalidInputError: another value; the message names the argument.
     """
     try:
         array = np.array(values, dtype=float)

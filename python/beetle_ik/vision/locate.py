@@ -27,14 +27,14 @@ _SMOOTHING = 2.0  # pixels, standard deviation
 _SMALLEST = 8  # pixels: least side of an image
 _FLAT = 1e-9  # least variation of the brightness
 _CONTRAST = 0.2  # least difference between arm and background, as a fraction of the range of brightness
-_POINTS = 300  # of the contour
+_POINTS = 300  # points of the contour
 _RELIABLE_RMS = 0.8  # pixels
 _RELIABLE_OVERLAP = 0.93
 _MARGIN = 6.0  # pixels between the guess and the initial active contour
 
 
 class Sight(StrEnum):
-    """How a search for an arm ended."""
+    """Status of a search for an arm."""
 
     FOUND = "found"
     UNRELIABLE = "unreliable"
@@ -75,7 +75,7 @@ class ArmLocation:
 
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """Outcome and advice, as a sentence."""
         seen = "" if np.isnan(self.rms) else f", {self.rms:.2f} pixels rms, overlap {self.overlap:.3f}"
         return f"{_ADVICE[self.status]}{seen}"
 
@@ -96,7 +96,7 @@ def locate_arm(
         robot: a planar arm.
         guess: (n,) (rad), start of the search; each joint up to about 0.1 rad off.
         camera: None: 80 pixels per metre, the base at pixel (128, 128), links 0.2 m wide.
-        method: how the contour is found: "threshold", or "snake", an active contour that starts around the guess.
+        method: method for the contour: "threshold", or "snake", an active contour that starts around the guess.
 
     Returns:
         An `ArmLocation`. An image without an arm, or a fit that does not match it, is a status, not an error.
@@ -174,14 +174,14 @@ def _arm_mask(grey: NDArray[np.float64]) -> tuple[NDArray[np.bool_] | None, floa
         return None, 0.0, grey
     level = float(threshold_otsu(smooth))
     bright = smooth > level
-    # The border of the image is background.
+    # Chooses the side: the border of the image is background.
     if np.mean(np.concatenate((bright[0], bright[-1], bright[:, 0], bright[:, -1]))) > 0.5:
         smooth, level, bright = -smooth, -level, ~bright
     apart = smooth[bright].mean() - smooth[~bright].mean()
     rest = smooth[~bright].std()
     pieces = label(bright)
     sizes = np.bincount(pieces.ravel())[1:]
-    # Noise alone breaks into many small objects with little contrast.
+    # Refuses noise, which breaks into many small objects with little contrast.
     if apart < _CONTRAST * np.ptp(grey) or rest > 0.5 * apart or sizes.max() < 0.5 * bright.sum():
         return None, level, smooth
     level = float(0.5 * (np.median(smooth[bright]) + np.median(smooth[~bright])))

@@ -1,11 +1,11 @@
-//! Random chains of all kinds of joints, described twice: to the library, and as plain 4x4 matrices.
+//! Random chains of all kinds of joints, described twice: for the library, and as plain 4x4 matrices.
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix4, Rotation3, Translation3, Unit, Vector3};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 
-/// One element of the slow twin.
+/// Element of the reference chain.
 #[derive(Debug, Clone)]
 pub enum Part {
     Fixed(Matrix4<f64>),
@@ -13,7 +13,7 @@ pub enum Part {
     Link,
 }
 
-/// A robot and the same chain as a list of matrices to multiply.
+/// Robot, and the same chain as a list of matrices to multiply.
 #[derive(Debug)]
 pub struct RandomChain {
     pub robot: Robot,
@@ -25,8 +25,8 @@ pub struct RandomChain {
 const KINDS: [JointKind; 3] = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
 
 impl RandomChain {
-    /// A chain of `joints` independent joints; about a third of them are followed by a mimic of an earlier one while
-    /// there are fewer than `moving` moving elements.
+    /// Chain of `joints` independent joints; about a third are followed by a mimic of an earlier one while there are fewer than
+    /// `moving` moving elements.
     pub fn new(seed: u64, joints: usize, moving: usize) -> Self {
         let rng = &mut rng::stream(seed, joints as u64);
         let mut builder = ChainBuilder::new(format!("chain{joints}"), "base");
@@ -50,12 +50,12 @@ impl RandomChain {
         Self { robot, parts, base: base.to_homogeneous(), tool: tool.to_homogeneous() }
     }
 
-    /// The tip by multiplication of 4x4 matrices from base to tool.
+    /// Tip pose by multiplication of 4x4 matrices from base to tool.
     pub fn fk(&self, q: &[f64]) -> Matrix4<f64> {
         self.link_poses(q).last().unwrap() * self.tool
     }
 
-    /// Every link by the same multiplication.
+    /// Pose of every link by the same multiplication.
     pub fn link_poses(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
         let mut reached = self.base;
         let mut links = vec![];
@@ -77,7 +77,7 @@ impl RandomChain {
     }
 }
 
-/// A constant transform, a motion about or along any axis, and a link.
+/// Appends a constant transform, a motion about or along any axis, and a link.
 fn append(
     builder: &mut ChainBuilder,
     parts: &mut Vec<Part>,

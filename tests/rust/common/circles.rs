@@ -1,4 +1,4 @@
-//! The circles of Cheng et al. (2020), and what holds of every track along them.
+//! Circles of Cheng et al. (2020), and checks that hold for every track along them.
 
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
@@ -12,11 +12,11 @@ use super::robot;
 pub const DT: f64 = 0.2;
 pub const DURATION: f64 = 30.0;
 
-/// Half a metre (5-link) and a decimetre (iiwa) off the path's first point.
+/// Starts half a metre (5-link) and a decimetre (iiwa) off the path's first point.
 pub const OFF5: [f64; 5] = [0.7197427192, -0.2900667941, -0.1974717864, -0.3088906663, 0.3763813181];
 pub const OFF7: [f64; 7] = [0.6449219327, 0.2036664288, 0.1969337234, -0.7713896072, 0.2027968992, 0.7179441060, 0.1];
 
-/// A robot on the paper's circle, within limit + 0.004 sin t (rad/s) on every joint.
+/// Robot on the paper's circle, within limit + 0.004 sin t (rad/s) on every joint.
 pub struct Task {
     pub robot: Robot,
     pub start: Vec<f64>,
@@ -73,7 +73,7 @@ impl Task {
         track(&self.robot, &self.reference(), Some(&self.start), options, &mut Unattended).unwrap()
     }
 
-    /// Tracks, and checks what holds whatever becomes of the track.
+    /// Tracks, and checks the invariants of every track.
     pub fn track(&self, rule: TickRule, band: f64, seed: u64) -> Record {
         let record = self.track_with(&self.options(rule, band, seed));
         self.check(&record, band);
@@ -101,7 +101,7 @@ impl Task {
     }
 }
 
-/// Steps that ended so.
+/// Number of steps with this status.
 pub fn count(record: &Record, status: Status) -> usize {
     record.step_status[1..].iter().filter(|step| **step == status).count()
 }

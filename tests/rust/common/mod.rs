@@ -1,4 +1,4 @@
-//! What several test files need: robots, targets, generated chains with a slow twin, error messages.
+//! Shared test helpers: robots, targets, generated chains with a reference twin, error messages.
 
 pub mod chains;
 pub mod circles;
@@ -10,12 +10,12 @@ use ikcore::robot::Robot;
 use ikcore::solver::Monitor;
 use ikcore::task::{Aims, Criterion, Target};
 
-/// A built-in robot.
+/// Built-in robot of this name.
 pub fn robot(name: &str) -> Robot {
     Robot::named(name).unwrap()
 }
 
-/// A monitor that says stop when asked for the n-th time, and from then on.
+/// Monitor that stops from its n-th poll on.
 pub struct StopAt(pub usize);
 
 impl Monitor for StopAt {
@@ -25,7 +25,7 @@ impl Monitor for StopAt {
     }
 }
 
-/// The text of the error that must have come.
+/// Message of an expected error.
 #[track_caller]
 pub fn message<T>(result: ikcore::Result<T>) -> String {
     match result {
@@ -34,22 +34,22 @@ pub fn message<T>(result: ikcore::Result<T>) -> String {
     }
 }
 
-/// The pose of the tip at `q`, as something to reach.
+/// Target at the tip pose of `q`.
 pub fn pose_at(robot: &Robot, q: &[f64]) -> Target {
     Target::from(&robot.fk(q).unwrap())
 }
 
-/// The position of the tip at `q`, as something to reach.
+/// Target at the tip position of `q`.
 pub fn position_at(robot: &Robot, q: &[f64]) -> Target {
     Target::Position(robot.tip_position(q))
 }
 
-/// The bits of these numbers: equal bits also tell 0 from -0 and compare NaN.
+/// Bits of these numbers: unlike values they tell 0 from -0 and compare NaN.
 pub fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// `count` random configurations of `robot`.
+/// List of `count` random configurations of `robot`.
 pub fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let flat = robot.random_configurations(count, &mut rng::stream(11, 0)).unwrap();
     flat.chunks_exact(robot.dof()).map(<[f64]>::to_vec).collect()

@@ -1,17 +1,17 @@
-//! Reads imports out of source text: a parser of paths, no more, and the graph of files that they make.
+//! Reader of imports in source text: a parser of paths, and the graph of files that they form.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A path of segments, such as `crate`, `math`, `Frame`.
+/// Path as segments, for example `crate`, `math`, `Frame`.
 type Segments = Vec<String>;
 
-/// The files of a crate by module path: `robot::model` for `robot/model.rs`, `robot` for `robot/mod.rs`.
+/// Files of a crate by module path: `robot::model` for `robot/model.rs`, `robot` for `robot/mod.rs`.
 pub struct Sources(BTreeMap<String, SourceFile>);
 
 pub struct SourceFile {
-    /// Below the crate's source folder.
+    /// Path below the crate's source folder.
     pub path: PathBuf,
     /// Text without comments and unit tests.
     pub code: String,
@@ -27,7 +27,7 @@ impl Sources {
         Self::of(files)
     }
 
-    /// The files of these paths and texts.
+    /// Files of these paths and texts.
     pub fn of(files: impl IntoIterator<Item = (PathBuf, String)>) -> Self {
         let file = |(path, text): (PathBuf, String)| {
             let module = path.with_extension("").to_string_lossy().replace('/', "::");
@@ -61,7 +61,7 @@ impl Sources {
         circles.into_iter().collect()
     }
 
-    /// The modules of other files that this one takes names from. Re-exports do not count.
+    /// Modules in other files that this one takes names from. Re-exports do not count.
     fn imports_of(&self, module: &str) -> BTreeSet<&str> {
         let code = without_re_exports(&self.0[module].code);
         let absolute = paths(&code).into_iter().map(|(_, path)| path);
@@ -80,7 +80,7 @@ impl Sources {
         self.0.keys().filter_map(below)
     }
 
-    /// The module whose file declares what `path` names in the file of `module`; re-exports are followed.
+    /// Module whose file declares the name that `path` has in the file of `module`; re-exports are followed.
     fn resolve(&self, module: &str, path: &[String]) -> Option<&str> {
         let mut place: Vec<&str> = module.split("::").filter(|segment| !segment.is_empty()).collect();
         let mut rest = path.iter().map(String::as_str).peekable();
@@ -112,7 +112,7 @@ impl Sources {
     }
 }
 
-/// All modules that can be reached from this one by imports.
+/// Modules that can be reached from this one by imports.
 fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>, from: &str) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::new();
     let mut open: Vec<&str> = imports[from].iter().copied().collect();
@@ -124,7 +124,7 @@ fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>, from: &str) -> BT
     reached
 }
 
-/// `text` without comments, and without the unit tests at its end. Lines keep their numbers.
+/// Removes the comments of `text`, and the unit tests at its end. Lines keep their numbers.
 pub fn code_of(text: &str) -> String {
     let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
     code.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
@@ -153,7 +153,7 @@ fn paths_from(code: &str, first: &str) -> Vec<Segments> {
     found
 }
 
-/// Where a path begins with the name `first`.
+/// Positions at which a path begins with the name `first`.
 fn occurrences(code: &str, first: &str) -> Vec<usize> {
     let begins = |start: &usize| {
         let before = code[..*start].chars().next_back().unwrap_or(' ');
@@ -162,7 +162,7 @@ fn occurrences(code: &str, first: &str) -> Vec<usize> {
     code.match_indices(&format!("{first}::")).map(|(start, _)| start).filter(begins).collect()
 }
 
-/// Reads a path, or a group of paths in braces, appends each to `found` behind `prefix`, and returns what follows.
+/// Reads a path, or a group of paths in braces, appends each to `found` behind `prefix`, and returns the rest of the text.
 fn read_tree<'a>(text: &'a str, prefix: &[String], found: &mut Vec<Segments>) -> &'a str {
     let text = text.trim_start();
     if let Some(group) = text.strip_prefix('{') {
@@ -200,7 +200,7 @@ fn without_re_exports(code: &str) -> String {
     code.split(';').filter(|statement| re_exported(statement).is_none()).collect::<Vec<_>>().join(";")
 }
 
-/// The paths of a statement `pub use ...` or `pub(...) use ...`.
+/// Paths of a statement `pub use ...` or `pub(...) use ...`.
 fn re_exported(statement: &str) -> Option<&str> {
     let rest = statement.trim_start().strip_prefix("pub")?;
     let rest = if rest.starts_with('(') { rest.split_once(')')?.1 } else { rest };

@@ -1,6 +1,6 @@
-//! The work of a batch: rows, and the threads that solve groups of rows.
+//! Work of a batch: rows, and the threads that solve groups of rows.
 //!
-//! Items share no mutable state: each draws from the stream of its row and writes to its own row. So the bits of an item
+//! Items share no mutable state: each draws from the stream of its row and writes to its own row. The bits of an item therefore
 //! depend neither on the number of threads nor on the other items.
 
 use rayon::ThreadPool;
@@ -16,7 +16,7 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::TargetRow;
 
-/// The data that all threads share.
+/// Data shared by all threads.
 pub(super) struct Job<'a> {
     context: SolveContext<'a>,
     targets: Targets<'a>,
@@ -30,7 +30,7 @@ pub(super) struct Job<'a> {
 /// Rows checked between two polls of the monitor: about 100 microseconds.
 const CHECKED_AT_ONCE: usize = 1024;
 
-/// Targets that a thread takes at once: enough that sharing them out costs nothing.
+/// Targets that a thread takes at once, enough to make the overhead of scheduling negligible.
 const GROUP: usize = 16;
 
 impl<'a> Job<'a> {
@@ -69,7 +69,7 @@ impl<'a> Job<'a> {
     fn check(&self, i: usize) -> Result<()> {
         self.targets.check(i)?;
         if i == 0 || matches!(self.targets, Targets::Tips(_)) {
-            // Whether the task takes targets of this kind, and those of several tips go together.
+            // Checks that the task supports this kind of target, and that targets of several tips agree.
             self.context.reduce(&mut self.targets.read(i))?;
         }
         self.own_start(i).map_or(Ok(()), |start| self.context.check_start(start))
@@ -85,7 +85,7 @@ impl<'a> Job<'a> {
         Ok((targets, self.own_start(i).or(self.common_start)))
     }
 
-    /// The start given for target `i` alone.
+    /// Start given for target `i` alone.
     fn own_start(&self, i: usize) -> Option<&'a [f64]> {
         self.starts.map(|starts| &starts[i * self.dof..(i + 1) * self.dof])
     }
@@ -99,11 +99,11 @@ impl<'a> Job<'a> {
         monitor: &mut dyn Monitor,
         mut done: impl FnMut(&mut dyn Monitor),
     ) {
-        // Solves may be too short to ask.
+        // Polls here too, since solves may be too short to poll.
         if !monitor.keep_going() {
             return;
         }
-        // Read once a target: each begins where the one before ended.
+        // One clock reading per target: each target starts when the previous one ends.
         let mut stopwatch = Stopwatch::start();
         for ((row, item), q) in items.iter_mut().enumerate().zip(qs.chunks_mut(self.dof)) {
             *item = match self.read(first + row) {

@@ -1,4 +1,4 @@
-//! Chunks of a map of what an arm reaches.
+//! Chunks of a reachability map.
 
 use rayon::prelude::*;
 
@@ -8,8 +8,8 @@ use crate::map::{MapChunk, MapGrid, MapLooks, MapOptions, MapRobots, rings_of};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 
-/// Computes the `chunks` of a map, one after another, each on all `threads` (`None`: one per core). A chunk has the same bits
-/// whatever the others are, and for any number of threads.
+/// Computes the `chunks` of a map, one after another, each on all `threads` (`None` means one per core). The bits of a chunk
+/// depend neither on the other chunks nor on the number of threads.
 ///
 /// The monitor is called only from the calling thread; its progress counts voxels.
 ///

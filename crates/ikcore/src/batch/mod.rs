@@ -1,8 +1,8 @@
-//! Many targets or motions at once, on all cores. The only module that uses threads.
+//! Batches of targets or motions on all cores. The only module that uses threads.
 //!
-//! `solve_batch`, `plan_batch` and `map_chunks` are the calls. A `job` reads rows, groups them and solves each group; `pool` holds the
-//! threads, `workers` runs them under the eyes of the caller's monitor, `monitors` stop them on request, `results` holds the
-//! solutions.
+//! `solve_batch`, `plan_batch` and `map_chunks` are the calls. A `job` reads rows, groups them and solves each group; `pool`
+//! holds the threads, `workers` runs them while the caller's monitor is polled, `monitors` stop them on request, `results`
+//! holds the solutions.
 
 mod batch_options;
 mod job;

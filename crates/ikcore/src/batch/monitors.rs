@@ -1,10 +1,10 @@
-//! The monitors of the items of a batch.
+//! Monitors of the items of a batch.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::solver::Monitor;
 
-/// The monitor of a worker thread, which only signals whether to stop.
+/// Monitor of a worker thread, which only signals whether to stop.
 pub(super) struct StopFlag<'a>(pub &'a AtomicBool);
 
 impl Monitor for StopFlag<'_> {
@@ -13,7 +13,7 @@ impl Monitor for StopFlag<'_> {
     }
 }
 
-/// The caller's monitor for a single item, whose own progress is not that of the batch.
+/// Caller's monitor without progress, for a single item of a batch.
 pub(super) struct Quiet<'a>(pub &'a mut dyn Monitor);
 
 impl Monitor for Quiet<'_> {

@@ -1,4 +1,4 @@
-//! Many motions from point to point.
+//! Batch planning of motions from point to point.
 
 use std::sync::Arc;
 
@@ -11,25 +11,25 @@ use crate::planning::{Endpoint, Plan, PointToPointOptions, check_point_to_point,
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 
-/// The arguments of one [`plan_point_to_point`].
+/// Arguments of one [`plan_point_to_point`].
 #[derive(Debug, Clone)]
 pub struct PlanProblem {
-    /// The start.
+    /// Start of the motion.
     pub start: Endpoint,
-    /// The possible ends.
+    /// Possible ends of the motion.
     pub ends: Vec<Endpoint>,
-    /// The options, which problems may share.
+    /// Options, which problems may share.
     pub options: Arc<PointToPointOptions>,
 }
 
-/// Plans all `problems`; item i is the result of [`plan_point_to_point`] for problem i, whatever the others are and however
-/// many threads there are (`None`: one per core).
+/// Plans all `problems`. Item i is the result of [`plan_point_to_point`] for problem i, independent of the other problems and
+/// of the number of threads (`None` means one per core).
 ///
-/// The monitor is called only from the calling thread. Problems that it leaves undone are [`Error::Interrupted`].
+/// The monitor is called only from the calling thread. Problems left undone after an interruption are [`Error::Interrupted`].
 ///
 /// # Errors
 /// [`Error::InProblem`] for wrong input of a problem, before any is planned; [`Error::OutOfRange`] or [`Error::NoThreads`] for
-/// the threads. What only a planner finds out, such as [`Error::Unreachable`], is the result of its problem alone.
+/// the threads. Errors of a planner, for example [`Error::Unreachable`], are the result of their problem only.
 pub fn plan_batch(
     robot: &Robot,
     problems: &[PlanProblem],
@@ -67,7 +67,7 @@ pub fn plan_batch(
     Ok(results)
 }
 
-/// How the planning of a problem ended.
+/// Status at the end of the planning of a problem.
 pub fn plan_status(result: &Result<Plan>) -> Status {
     match result {
         Ok(plan) => plan.status,

@@ -1,4 +1,4 @@
-//! The library's own pool of threads: rayon's global pool does not survive a fork.
+//! Thread pool of the library: rayon's global pool does not survive a fork.
 
 use std::sync::{Arc, Mutex};
 
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 /// Largest number of threads; more than any machine needs.
 const MAX_THREADS: usize = 1024;
 
-/// Number of threads to use.
+/// Resolves the number of threads.
 ///
 /// # Errors
 /// [`Error::OutOfRange`].
@@ -21,16 +21,16 @@ pub(super) fn thread_count(wanted: Option<usize>) -> Result<usize> {
     }
 }
 
-/// The pool of the last call, and the process that owns its threads: a forked child inherits the pool without its
-/// threads, and would wait for ever.
+/// Pool of the last call, and the process that owns its threads: a forked child inherits the pool without its threads, and
+/// would wait for ever.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// A pool of `threads` threads, kept for the next call.
+/// Returns a pool of `threads` threads, kept for the next call.
 ///
 /// # Errors
 /// [`Error::NoThreads`].
 pub(super) fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
-    // Without waiting: if this process was forked, another thread of the parent may have held the lock.
+    // Does not wait: if this process was forked, another thread of the parent may have held the lock.
     let Ok(mut kept) = POOL.try_lock() else { return new_pool(threads) };
     let process = std::process::id();
     if let Some((owner, pool)) = &*kept

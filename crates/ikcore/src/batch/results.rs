@@ -1,4 +1,4 @@
-//! The results of a batch.
+//! Results of a batch.
 
 use std::time::Duration;
 
@@ -9,16 +9,16 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
 
-/// The result of one target; its configuration is a row of [`Batch::q`].
+/// Result of one target; its configuration is a row of [`Batch::q`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BatchItem {
-    /// Why the search ended.
+    /// Reason for the end of the search.
     pub status: Status,
     /// Errors by forward kinematics; NaN if the item was not solved.
     pub error: TipError,
-    /// Why the target was not reached, in words; empty if unknown or reached.
+    /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
-    /// The nearest two bodies, if obstacles or the robot's own links were to be kept clear of.
+    /// Nearest two bodies, if obstacles or self-collision were checked.
     pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -39,12 +39,12 @@ impl From<Solution> for BatchItem {
 }
 
 impl BatchItem {
-    /// The smallest distance (m), as in [`Solution::clearance`].
+    /// Smallest distance (m), as in [`Solution::clearance`].
     pub fn clearance(&self) -> f64 {
         self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
     }
 
-    /// An item that was not solved.
+    /// Item that was not solved.
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
         let obstruction = String::new();
@@ -82,9 +82,9 @@ impl BatchItem {
 pub struct Batch {
     /// Degrees of freedom, n.
     pub dof: usize,
-    /// The best configurations found (m, n), row-major (rad, m); NaN for items that were not solved.
+    /// Best configurations found (m, n), row-major (rad, m); NaN for items that were not solved.
     pub q: Vec<f64>,
-    /// The result of each target (m,).
+    /// Result of each target (m,).
     pub items: Vec<BatchItem>,
     /// Total time.
     pub elapsed: Duration,
@@ -96,12 +96,12 @@ impl Batch {
         Self { dof, q: vec![f64::NAN; dof * len], items, elapsed: Duration::ZERO }
     }
 
-    /// The solution of item `i`; `None` past the end.
+    /// Solution of item `i`; `None` past the end.
     pub fn solution(&self, i: usize) -> Option<Solution> {
         self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
 
-    /// The items in `rows`, in this order; the time is the sum of their times.
+    /// Selects the items in `rows`, in this order; the time is the sum of their times.
     ///
     /// # Panics
     /// If a row is past the end.
@@ -112,7 +112,7 @@ impl Batch {
         Self { dof: self.dof, q, items, elapsed }
     }
 
-    /// The number of solved targets, and what to try for the others.
+    /// Returns a sentence with the number of solved targets, and advice for the others.
     pub fn message(&self) -> String {
         let mut counts = vec![0; Status::ALL.len()];
         self.items.iter().for_each(|item| counts[item.status as usize] += 1);
@@ -120,7 +120,8 @@ impl Batch {
     }
 }
 
-/// The number of solved targets, and what to try for the others, where `counts[status as usize]` targets ended with `status`.
+/// Returns a sentence with the number of solved targets, and advice for the others, where `counts[status as usize]` targets
+/// ended with `status`.
 pub fn message_of_counts(counts: &[usize]) -> String {
     let count = |status: Status| counts.get(status as usize).copied().unwrap_or_default();
     let (solved, total) = (count(Status::Solved), counts.iter().sum::<usize>());

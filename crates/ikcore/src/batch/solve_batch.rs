@@ -1,4 +1,4 @@
-//! Solves a batch, in the calling thread or on a pool.
+//! Batch solver, in the calling thread or on a pool.
 
 use super::batch_options::{BatchOptions, OnInvalid};
 use super::job::Job;
@@ -9,14 +9,14 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 
-/// Solves every target of `targets`; item i is the solution that [`solve`](crate::ik::solve) would find with stream
-/// `first_row + i` of the seed.
+/// Solves every target of `targets`. Item i is the solution of [`solve`](crate::ik::solve) with stream `first_row + i` of the
+/// seed.
 ///
 /// The monitor is called only from the calling thread.
 ///
 /// # Errors
-/// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start, unless
-/// those are skipped. A target that is not reached is a status, not an error.
+/// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start,
+/// unless invalid rows are skipped. A target that is not reached is a status, not an error.
 pub fn solve_batch(
     robot: &Robot,
     targets: Targets<'_>,

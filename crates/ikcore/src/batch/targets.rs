@@ -1,4 +1,4 @@
-//! The targets of a batch.
+//! Targets of a batch.
 
 use nalgebra::Matrix4;
 
@@ -6,14 +6,14 @@ use crate::error::{Error, Result};
 use crate::math::pose;
 use crate::task::{Target, TargetRow};
 
-/// The targets of a batch as arrays of m rows, not yet checked.
+/// Targets of a batch as arrays of m rows, not yet checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Targets<'a> {
     /// Positions (m); the orientation is free.
     Positions(&'a [[f64; 3]]),
     /// Poses: homogeneous 4x4 matrices, each row-major.
     Poses(&'a [[f64; 16]]),
-    /// Of several tips, those of each task, all as many.
+    /// Targets of several tips: one array per task, all of the same length.
     Tips(&'a [Targets<'a>]),
 }
 
@@ -27,7 +27,7 @@ impl Targets<'_> {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no targets.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -44,7 +44,7 @@ impl Targets<'_> {
         }
     }
 
-    /// Target `i` or, of several tips, those of each task, which were checked.
+    /// Targets of row `i`, already checked: one for each task.
     #[inline]
     pub fn read(&self, i: usize) -> TargetRow {
         match self {
@@ -56,7 +56,7 @@ impl Targets<'_> {
         }
     }
 
-    /// Checks that all tasks of several tips have as many targets.
+    /// Checks that all tasks of several tips have the same number of targets.
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -14,7 +14,7 @@ use crate::solver::Monitor;
 /// Time between two polls of the monitor while threads work.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// What the threads share with the calling thread.
+/// State shared by the worker threads and the calling thread.
 #[derive(Default)]
 pub(super) struct Shared {
     done: AtomicUsize,
@@ -22,33 +22,33 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// A monitor for one thread.
+    /// Monitor of one worker thread.
     pub(super) fn monitor(&self) -> StopFlag<'_> {
         StopFlag(&self.stopped)
     }
 
-    /// Runs `work`, whose checkpoints end it when the work is to stop.
+    /// Runs `work`, whose checkpoints end it on request.
     pub(super) fn interruptible<T>(&self, work: impl FnOnce() -> T) -> T {
         let stopped = Arc::clone(&self.stopped);
         interruptible(move || !stopped.load(Ordering::Relaxed), work)
     }
 
-    /// Counts an item as done.
+    /// Counts one finished item.
     pub(super) fn count(&self) {
         self.count_all(1);
     }
 
-    /// Counts several items as done.
+    /// Counts several finished items.
     pub(super) fn count_all(&self, items: usize) {
         self.done.fetch_add(items, Ordering::Relaxed);
     }
 }
 
-/// Runs `work` on `pool`. The calling thread reports to `monitor` how many of `total` items are done, and lets it stop the
-/// work.
+/// Runs `work` on `pool`, while the calling thread reports the number of finished items, out of `total`, to `monitor`, which
+/// may stop the work.
 pub(super) fn run_on(pool: &ThreadPool, total: usize, monitor: &mut dyn Monitor, work: impl FnOnce(&Shared) + Send) {
     let shared = Shared::default();
-    // Nothing is ever sent: the sender is dropped when the threads are done.
+    // Channel without messages: the sender is dropped when the threads are done.
     let (working, finished) = mpsc::channel::<()>();
     pool.in_place_scope(|scope| {
         let shared = &shared;

@@ -1,9 +1,9 @@
-//! An angle as its cosine and sine: what closed forms find, before any arctangent is taken.
+//! Angles represented by cosine and sine; closed forms work on these and take arctangents only at the end.
 
 use super::vector::{Vector, add_scaled, cross, dot, scaled, sub};
 use crate::math::Frame;
 
-/// A rotation about a known axis.
+/// Rotation angle about a known axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Angle {
     /// Cosine of the angle.
@@ -13,16 +13,16 @@ pub struct Angle {
 }
 
 impl Angle {
-    /// By zero.
+    /// Zero rotation.
     pub const NONE: Self = Self { cos: 1.0, sin: 0.0 };
 
-    /// By `angle` (rad).
+    /// Returns the rotation by `angle` (rad).
     pub fn by(angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self { cos, sin }
     }
 
-    /// Towards the point (x, y) of the plane; [`Self::NONE`] at the origin.
+    /// Returns the direction of the point (x, y); [`Self::NONE`] at the origin.
     #[inline(always)]
     pub fn towards(x: f64, y: f64) -> Self {
         let square = x * x + y * y;
@@ -34,44 +34,44 @@ impl Angle {
         }
     }
 
-    /// The angle (rad), in (-pi, pi].
+    /// Returns the angle (rad), in (-pi, pi].
     #[inline(always)]
     pub fn angle(self) -> f64 {
         self.sin.atan2(self.cos)
     }
 
-    /// The opposite rotation.
+    /// Returns the inverse rotation.
     #[inline(always)]
     pub fn back(self) -> Self {
         Self { cos: self.cos, sin: -self.sin }
     }
 
-    /// Half a turn more.
+    /// Adds half a turn.
     #[inline(always)]
     pub fn opposite(self) -> Self {
         Self { cos: -self.cos, sin: -self.sin }
     }
 
-    /// This rotation and another about the same axis.
+    /// Adds another rotation about the same axis.
     #[inline(always)]
     pub fn and(self, other: Self) -> Self {
         Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
     }
 
-    /// Turned by a sign: about the opposite axis where it is negative.
+    /// Multiplies the angle by `sign`, 1 or -1: a rotation about the reversed axis.
     #[inline(always)]
     pub fn signed(self, sign: f64) -> Self {
         Self { cos: self.cos, sin: sign * self.sin }
     }
 
-    /// `v` turned about the unit vector `axis` (Rodrigues).
+    /// Rotates `v` about the unit vector `axis` (Rodrigues' formula).
     #[inline(always)]
     pub fn about(self, axis: &Vector, v: &Vector) -> Vector {
         let turned = add_scaled(&scaled(v, self.cos), &cross(axis, v), self.sin);
         add_scaled(&turned, axis, (1.0 - self.cos) * dot(axis, v))
     }
 
-    /// The displacement that turns about the line through `point` along the unit vector `axis`.
+    /// Returns the rigid motion that rotates about the line through `point` along the unit vector `axis`.
     #[inline]
     pub fn about_line(self, axis: &Vector, point: &Vector) -> Frame {
         let [x, y, z] = &Frame::IDENTITY.axes;

@@ -1,27 +1,28 @@
-//! Limits of a joint as a test of cosine and sine, before any arctangent is taken.
+//! Joint limits tested on cosine and sine, before any arctangent is taken.
 
 use std::f64::consts::PI;
 
 use super::angle::Angle;
 
-/// Polishing moves a candidate by less (rad): double roots are kept up to there, see [`super::subproblem::CLAMP`].
+/// Largest change of an angle by polishing (rad); candidates at double roots are kept within it, see
+/// [`super::subproblem::CLAMP`].
 pub(crate) const MOVED_BY_POLISHING: f64 = 0.03;
 
-/// The angles from one limit to another and a little beyond, whole turns aside.
+/// Range of angles modulo 2 pi, slightly wider than the joint limits.
 #[derive(Debug, Clone, Copy)]
 pub struct AngleRange {
     middle: Angle,
-    /// Half its width (rad), at most pi.
+    /// Half the width (rad), at most pi.
     half: f64,
-    /// Least cosine of an angle's distance from the middle.
+    /// Smallest cosine of the angle to the middle.
     least: f64,
 }
 
 impl AngleRange {
-    /// All angles.
+    /// Full circle.
     pub const ANY: Self = Self { middle: Angle::NONE, half: PI, least: -2.0 };
 
-    /// Between limits (rad).
+    /// Returns the range of these limits (rad).
     pub fn of([lower, upper]: [f64; 2]) -> Self {
         let half = 0.5 * (upper - lower);
         if half < PI {
@@ -31,8 +32,8 @@ impl AngleRange {
         }
     }
 
-    /// The angles q and r with q + `sense` r = `sum` that are deepest inside this range and `other`, as fractions of the ranges: if they
-    /// are outside, so are all.
+    /// Returns the angles q and r with q + `sense` r = `sum` that lie deepest inside this range and `other`, relative to
+    /// their widths; if these lie outside, every such pair does.
     pub fn deepest_pair(&self, other: &Self, sum: Angle, sense: f64) -> [Angle; 2] {
         let excess = sum.and(self.middle.back()).and(other.middle.signed(sense).back()).angle();
         let halves = self.half + other.half;
@@ -41,14 +42,14 @@ impl AngleRange {
         [self.middle.and(of_this), other.middle.and(of_other)]
     }
 
-    /// False only for angles that no branch within the limits is near.
+    /// Returns false only if no branch within the limits lies near `angle`.
     #[inline(always)]
     pub fn may_hold(&self, angle: &Angle) -> bool {
         self.middle.cos * angle.cos + self.middle.sin * angle.sin >= self.least
     }
 }
 
-/// Whether each of these angles may be within its limits.
+/// Whether each angle may lie within its limits.
 #[inline(always)]
 pub fn may_hold(ranges: &[AngleRange], angles: &[Angle]) -> bool {
     ranges.iter().zip(angles).all(|(range, angle)| range.may_hold(angle))

@@ -1,4 +1,4 @@
-//! The closed form of a robot's chain: its axes, and joint values from the values of the axes.
+//! Closed form of a robot's chain: extracts the joint axes, solves, and converts axis values to joint values.
 
 use super::arm_branches::ArmBranches;
 use super::axis_chain::{AxisChain, JointAxis};
@@ -14,29 +14,29 @@ use crate::kinematics::chain::{Chain, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Why a chain has no closed form.
+/// Reason why a chain has no closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoClosedForm {
-    /// Closed forms are not for this number of joints.
+    /// No closed form exists for this number of joints.
     Joints(usize),
-    /// This joint drives several axes, or none.
+    /// A joint drives several axes, or none.
     Drives {
-        /// The joint.
+        /// Index of the joint.
         joint: usize,
-        /// How many axes it drives.
+        /// Number of axes that the joint drives.
         axes: usize,
     },
-    /// The tip moves in this number of directions, fewer than six and than there are joints.
+    /// The tip moves in this many directions: fewer than six, and fewer than the number of joints.
     Rank(usize),
-    /// No method fits these joints.
+    /// No method fits the geometry of these joints.
     Joined,
-    /// Joints slide, and no method fits.
+    /// The chain has prismatic joints, and no method fits.
     Sliding,
     /// The base floats.
     Floating,
 }
 
-/// The closed form of a chain of three to seven joints.
+/// Closed form of a chain of three to seven joints.
 #[derive(Debug, Clone)]
 pub(crate) struct ClosedFormArm {
     method: Method,
@@ -50,12 +50,12 @@ enum Method {
     Scara(Box<Planar<4>>),
     Five(Box<FiveJoints>),
     Six(Box<ClosedForm>),
-    /// With the limits of the arm itself.
+    /// Redundant arm, together with the limits of its joints.
     Seven(Box<(Redundant, FamilyLimits)>),
 }
 
 impl ClosedFormArm {
-    /// Decides the method for a chain with joints of these limits, whose tip moves in `rank` directions.
+    /// Selects the method for a chain with these joint limits whose tip moves in `rank` directions.
     pub fn new(chain: &Chain, [lower, upper]: [&[f64]; 2], rank: usize) -> Result<Self, NoClosedForm> {
         let joints = lower.len();
         if !(3..=MOST_JOINTS).contains(&joints) {
@@ -96,7 +96,7 @@ impl ClosedFormArm {
         Ok(Self { method, drives, is_sharp })
     }
 
-    /// The structure in words, and how many solutions it allows. `joint_name` names a joint by its number.
+    /// Describes the structure and the number of solutions in words. `joint_name` maps a joint index to its name.
     pub fn structure(&self, joint_name: impl Fn(usize) -> String) -> String {
         match &self.method {
             Method::Planar(_) => "planar; at most 2 solutions".into(),
@@ -112,7 +112,7 @@ impl ClosedFormArm {
         }
     }
 
-    /// Whether it takes no longer than a search: all but the general method for six joints.
+    /// Whether solving takes no longer than a numerical search: true of all methods but the general one for six joints.
     pub fn is_at_once(&self) -> bool {
         let general = match &self.method {
             Method::Planar(_) | Method::Scara(_) => false,
@@ -123,7 +123,7 @@ impl ClosedFormArm {
         !general
     }
 
-    /// Whether it can prove that a pose has no other solutions.
+    /// Whether the method can prove that a pose has no other solutions.
     pub fn proves(&self) -> bool {
         let method_proves = match &self.method {
             Method::Planar(_) | Method::Scara(_) | Method::Seven(_) => true,
@@ -133,12 +133,12 @@ impl ClosedFormArm {
         method_proves && self.is_sharp
     }
 
-    /// Whether an arm has more joints than a pose needs.
+    /// Whether the arm has more joints than a pose needs.
     pub fn is_redundant(&self) -> bool {
         matches!(self.method, Method::Seven(_))
     }
 
-    /// All configurations that bring the tip of the chain to `target`; None for redundant arms.
+    /// Returns all configurations that bring the tip of the chain to `target`; `None` for redundant arms.
     pub fn solve(&self, target: &Frame) -> Option<ArmBranches> {
         Some(match &self.method {
             Method::Planar(method) => ArmBranches::of(&method.solve(target), &self.drives),
@@ -149,8 +149,8 @@ impl ClosedFormArm {
         })
     }
 
-    /// Finds configurations that bring the tip of the chain to `target` unless forward kinematics says otherwise, at less cost than
-    /// [`Self::solve`] where that is possible; none for redundant arms.
+    /// Finds configurations that bring the tip of the chain to `target`, to be confirmed by forward kinematics; cheaper than
+    /// [`Self::solve`] where possible. Finds none for redundant arms.
     #[inline]
     pub fn likely(&self, target: &Frame, found: &mut ArmConfigurations) {
         match &self.method {
@@ -162,8 +162,8 @@ impl ClosedFormArm {
         }
     }
 
-    /// Finds configurations that bring the tip of the chain near `target`, off by what a structure that holds only nearly is off. Returns
-    /// false, and finds nothing, for other arms and for redundant ones.
+    /// Finds configurations that bring the tip near `target`, for an arm whose structure holds only approximately. Returns
+    /// false, and finds nothing, for exact and for redundant arms.
     #[inline]
     pub fn approximate(&self, target: &Frame, found: &mut ArmConfigurations) -> bool {
         match &self.method {
@@ -175,7 +175,7 @@ impl ClosedFormArm {
         }
     }
 
-    /// The configurations of a redundant arm that bring the tip of the chain to `target`; None for other arms.
+    /// Returns the configurations of a redundant arm that bring the tip of the chain to `target`; `None` for other arms.
     #[inline]
     pub fn family(&self, target: &Frame) -> Option<PoseFamily<'_>> {
         match &self.method {
@@ -194,7 +194,7 @@ fn drives_of(chain: &Chain) -> Drives {
     Drives::new(driven.map(|motion| (motion.joint, scale_of(motion))))
 }
 
-/// The axes of a chain at q = 0. Stages that no joint moves are part of the chain between.
+/// Returns the axes of a chain at q = 0. Stages that no joint moves become part of the fixed transforms.
 fn axes_of<const N: usize>(chain: &Chain) -> AxisChain<N> {
     let mut at = Frame::IDENTITY;
     let mut joints = [JointAxis::sliding([0.0, 0.0, 1.0]); N];

@@ -1,5 +1,5 @@
-//! Arms with a spherical shoulder and a spherical wrist (SRS): their distance decides the elbow, and the arm angle the rotation of
-//! the whole about the line between them.
+//! Arms with a spherical shoulder and a spherical wrist (SRS): the shoulder-wrist distance determines the elbow (subproblem
+//! 3), and the arm angle rotates the arm about the shoulder-wrist line.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
@@ -13,11 +13,11 @@ use crate::closed_form::wrist::{Pointing, Wrist};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Squared distance of shoulder and wrist, as a multiple of its rounding, below which a pose within the tolerances of a caller may have
-/// any line between them, and any arm angle.
+/// Squared shoulder-wrist distance, as a multiple of its rounding error, below which the direction of the shoulder-wrist
+/// line, and so the arm angle, is arbitrary within a caller's tolerances.
 const NO_LINE: f64 = 1e5;
 
-/// An SRS arm, prepared.
+/// Precomputed SRS arm.
 #[derive(Debug, Clone, Copy)]
 pub struct ArmAngle {
     shoulder: Vector,
@@ -26,45 +26,45 @@ pub struct ArmAngle {
     elbow: Vector,
     pub(super) first: Wrist,
     pub(super) last: Wrist,
-    /// The axes of the first and the last three joints.
+    /// Axes of the first and the last three joints.
     pub(super) axes: [[Vector; 3]; 2],
-    /// Axis 1: at arm angle zero the elbow's axis is across the plane of axis 1 and the line from shoulder to wrist.
+    /// Axis 1: at arm angle zero the elbow axis is perpendicular to the plane of axis 1 and the shoulder-wrist line.
     upright: Vector,
     floor: f64,
 }
 
-/// A pose of an SRS arm, prepared for any arm angle.
+/// Pose of an SRS arm, precomputed for any arm angle.
 #[derive(Debug, Clone, Copy)]
 pub struct ArmAnglePose {
-    /// z along the line from shoulder to wrist, y along the elbow's axis at arm angle zero.
+    /// Frame with z along the shoulder-wrist line and y along the elbow axis at arm angle zero.
     pub(super) frame: Frame,
-    /// Where the last three joints point, seen from there.
+    /// Direction of the last three joints, expressed in `frame`.
     pub(super) last: Pointing,
-    /// Only the first `count` count.
+    /// Solutions for joint 4; only the first `count` are valid.
     elbows: [ElbowTurn; 2],
     count: usize,
-    /// Joint 4 is free.
+    /// True if joint 4 is free.
     pub(super) free: bool,
-    /// Whether joint 4 may have other values.
+    /// Doubt about further values of joint 4.
     pub(super) doubt: Doubt,
 }
 
 impl ArmAnglePose {
-    /// The values of joint 4 that its limits may hold.
+    /// Returns the values of joint 4 that may lie within its limits.
     pub(super) fn elbows(&self, limits: &AngleRange) -> impl Iterator<Item = &ElbowTurn> {
         self.elbows[..self.count].iter().filter(|elbow| limits.may_hold(&elbow.q4))
     }
 }
 
-/// A value of joint 4.
+/// One solution for joint 4.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ElbowTurn {
     q4: Angle,
-    /// The rotation of the arm without that of its first three joints, seen from the line from shoulder to wrist.
+    /// Rotation of the arm without its first three joints, expressed in the frame of the shoulder-wrist line.
     pub(super) from_line: Frame,
-    /// Where the first three joints point, seen from there.
+    /// Direction of the first three joints, in the same frame.
     pub(super) first: Pointing,
-    /// From there to the last three joints.
+    /// Rotation from that frame to the last three joints.
     pub(super) to_wrist: Frame,
 }
 
@@ -78,7 +78,7 @@ impl ElbowTurn {
 }
 
 impl ArmAngle {
-    /// For chains whose first three and last three axes meet; `None` for others.
+    /// Returns the arm if its first three axes meet in a point, and its last three; `None` otherwise.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         if chain.joints.iter().any(|joint| joint.motion != AxisKind::Turns) {
             return None;
@@ -101,7 +101,7 @@ impl ArmAngle {
         })
     }
 
-    /// Prepares the pose with the displacement `goal` for any arm angle.
+    /// Prepares the pose with displacement `goal` for any arm angle.
     pub fn pose(&self, goal: &Frame) -> ArmAnglePose {
         let reached = sub(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
         let (from_elbow, to_shoulder) = (sub(&self.wrist, &self.elbow), sub(&self.shoulder, &self.elbow));
@@ -132,7 +132,7 @@ impl ArmAngle {
         pose
     }
 
-    /// All joint angles at an arm angle, as far as `ranges` may hold them.
+    /// Adds all joint angles at an arm angle that may lie within `ranges`.
     #[inline(always)]
     pub fn solve(&self, pose: &ArmAnglePose, arm_angle: Angle, ranges: &[AngleRange; 7], found: &mut Candidates) {
         let [a, b, c, of_elbow, d, e, f] = *ranges;
@@ -143,7 +143,7 @@ impl ArmAngle {
         found.doubt.add(pose.doubt);
         for ElbowTurn { q4, first, to_wrist, .. } in pose.elbows(&of_elbow) {
             let first = self.first.turns(&first.turned(&target), &[a, b, c]);
-            // R567 = R4' R123' R.
+            // Rotation of the wrist: R567 = R4' R123' R.
             let last = self.last.turns(&seen.turned(to_wrist), &[d, e, f]);
             found.singular |= first.aligned || last.aligned;
             found.doubt.add(first.doubt.max(last.doubt));
@@ -155,16 +155,16 @@ impl ArmAngle {
         }
     }
 
-    /// The direction of the elbow's axis at arm angle zero.
+    /// Returns the direction of the elbow axis at arm angle zero.
     fn across(&self, reached: &Vector) -> Vector {
         let across = cross(&self.upright, reached);
         if norm(&across) > 1e-9 * norm(reached) { across } else { perpendicular(&self.upright) }
     }
 
-    /// The frame with z along `line` and y near `across`.
+    /// Returns the frame with z along `line` and y near `across`.
     fn frame(&self, line: &Vector, across: &Vector) -> Frame {
         let size = norm(line);
-        // With the wrist in the shoulder, any direction will do.
+        // A wrist that coincides with the shoulder leaves the direction arbitrary.
         let z = if size > 0.0 { scaled(line, 1.0 / size) } else { self.upright };
         let y = add_scaled(across, &z, -dot(across, &z));
         let length = norm(&y);

@@ -1,8 +1,8 @@
-//! What the limits of the joints leave of the arm angles of an SRS arm.
+//! Arm angles of an SRS arm that the joint limits allow.
 //!
-//! As the arm angle turns, a vector that the first three joints carry along moves on a circle, and so does one before the last three.
-//! A joint is at a given angle where such a vector has a given component: at two arm angles at most (Shimizu, Kakuya, Yoon,
-//! Kitagaki and Kosuge 2008 give the same for arms with axes at right angles).
+//! As the arm angle turns, a vector carried by the first three joints describes a circle, and so does a vector before the
+//! last three. A joint has a given angle where such a vector has a given component: at two arm angles at most (Shimizu,
+//! Kakuya, Yoon, Kitagaki and Kosuge 2008 give the same for arms whose axes are at right angles).
 
 use std::f64::consts::TAU;
 
@@ -19,17 +19,17 @@ use crate::closed_form::wrist::Wrist;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Axes at a smaller angle than a thousandth of a radian are nearly aligned: the cosine of that.
+/// Cosine of 0.001 rad: axes at a smaller angle are nearly aligned.
 const ALIGNED_COSINE: f64 = 1.0 - 5e-7;
 
-/// Values of a parameter (rad, m).
+/// Parameter values (rad, m).
 pub type Values = SmallVec<[f64; 64]>;
 
 impl ArmAngle {
-    /// Whether the limits of joints 2, 4 and 6 (rad) exclude every arm angle. Each of joints 2 and 6 leaves some arcs; where those of
-    /// both have nothing in common, there is no configuration.
+    /// Whether the limits of joints 2, 4 and 6 (rad) exclude every arm angle. Joints 2 and 6 each leave some arcs; if the
+    /// arcs have no common arm angle, there is no configuration.
     pub fn is_excluded(&self, pose: &ArmAnglePose, limits: &[[f64; 2]; 7], of_elbow: &AngleRange) -> bool {
-        // Polishing may bring what is little outside inside.
+        // Margin for polishing, which may move a candidate from slightly outside to inside.
         let within = |wrist: &Wrist, [lower, upper]: [f64; 2], reached: &dyn Fn(Angle) -> Vector| {
             let (axis, cosine) = wrist.bending();
             let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
@@ -48,9 +48,10 @@ impl ArmAngle {
             })
     }
 
-    /// Arm angles (rad) of which one at least has a configuration within limits, if there is any: those at which a joint reaches a
-    /// limit, one between each two of them, and those at which shoulder or wrist are aligned. Not sure where an arm angle nearly aligns
-    /// them, and the other joints turn fast, or where joint 4 is nearly free.
+    /// Returns test values: if any arm angle (rad) has a configuration within limits, one of these has. They are the arm
+    /// angles at which a joint reaches a limit, one between each two neighbours, and those at which shoulder or wrist are
+    /// aligned. The test is not conclusive where an arm angle nearly aligns them, since the other joints turn fast there, or
+    /// where joint 4 is nearly free.
     pub fn decisive(
         &self,
         pose: &ArmAnglePose,
@@ -59,7 +60,7 @@ impl ArmAngle {
         of_elbow: &AngleRange,
     ) -> Decisive {
         let (mut at_limits, mut aligned) = (Values::new(), Values::new());
-        // Beside a stretched elbow its two values, and with them all others, are not known well.
+        // A stretched elbow leaves its two values, and so all other joints, poorly determined.
         let mut is_sure = pose.doubt == Doubt::None;
         for ElbowTurn { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
             let shoulder = |arm_angle: Angle, v: &Vector| {
@@ -83,16 +84,16 @@ impl ArmAngle {
     }
 }
 
-/// Values of a parameter that decide whether any has a configuration within limits.
+/// Parameter values that decide whether any configuration lies within limits.
 #[derive(Debug, Clone)]
 pub(crate) struct Decisive {
-    /// The values (rad, m).
+    /// Parameter values (rad, m).
     pub values: Values,
-    /// If none of them has one, neither has any other.
+    /// True if the absence of a configuration at all of these values proves that there is none.
     pub is_sure: bool,
 }
 
-/// Adds the arm angles at which the first and the last axis of three are nearly aligned; returns whether there are any.
+/// Adds the arm angles at which the first and the last of three axes are nearly aligned; returns whether there are any.
 fn add_aligned([a, _, c]: &[Vector; 3], turned: &dyn Fn(Angle, &Vector) -> Vector, found: &mut Values) -> bool {
     let wave = Wave::of(|arm_angle| dot(a, &turned(Angle::by(arm_angle), c)));
     let before = found.len();
@@ -100,11 +101,11 @@ fn add_aligned([a, _, c]: &[Vector; 3], turned: &dyn Fn(Angle, &Vector) -> Vecto
     found.len() > before
 }
 
-/// Adds the arm angles, in (-pi, pi], at which a joint of three is at a limit; `turned` is where these joints turn a vector at an arm
-/// angle.
+/// Adds the arm angles, in (-pi, pi], at which a joint of three is at a limit; `turned` returns a vector rotated by these
+/// joints at an arm angle.
 ///
-/// With their axes a, b, c and R = rot(a, q1) rot(b, q2) rot(c, q3): (rot(a, q1) b)'R c = b'c, a'R c = a'rot(b, q2) c and
-/// a'R rot(c, -q3) b = a'b.
+/// With axes a, b, c and R = rot(a, q1) rot(b, q2) rot(c, q3): (rot(a, q1) b)'R c = b'c, a'R c = a'rot(b, q2) c and a'R
+/// rot(c, -q3) b = a'b.
 fn add_at_limits(
     [a, b, c]: &[Vector; 3],
     limits: &[[f64; 2]],

@@ -1,27 +1,27 @@
-//! All branches of an arm for one pose.
+//! All solution branches of an arm for one pose.
 
 use crate::closed_form::branches::{BranchError, Branches, Doubt, MOST, MOST_JOINTS};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 
-/// Configurations of an arm for one pose, each at one of its whole turns, and verified by forward kinematics.
+/// Configurations of an arm for one pose, verified by forward kinematics; each is listed at one of its whole turns.
 #[derive(Debug, Clone)]
 pub(crate) struct ArmBranches {
     sets: [[f64; MOST_JOINTS]; MOST],
     count: usize,
     joints: usize,
     errors: [BranchError; MOST],
-    /// A configuration that was no solution was near one: the pose may be reached within wide tolerances.
+    /// True if a rejected configuration was near a solution: the pose may be reachable within wide tolerances.
     pub nearly: bool,
-    /// Whether others may be missing; for a redundant arm, others at this value of the parameter.
+    /// Doubt about missing branches; for a redundant arm, about further ones at this value of the parameter.
     pub doubt: Doubt,
-    /// One configuration at least stands for a family, in which a joint is free.
+    /// True if at least one configuration represents a family with a free joint.
     pub singular: bool,
-    /// Evaluations of the forward kinematics.
+    /// Number of forward kinematics evaluations.
     pub evaluations: usize,
 }
 
 impl ArmBranches {
-    /// From the values of the axes.
+    /// Converts axis values to joint values.
     #[inline]
     pub fn of<const N: usize>(branches: &Branches<N>, drives: &Drives) -> Self {
         let (count, joints) = (branches.len(), drives.len());
@@ -36,17 +36,17 @@ impl ArmBranches {
         Self { sets, count, joints, errors, nearly, doubt, singular, evaluations }
     }
 
-    /// How many there are.
+    /// Returns the number of configurations.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// The configurations (n,) (rad, m), and by how much they miss the pose.
+    /// Iterates over the configurations (n,) (rad, m) and their pose errors.
     pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchError)> {
         self.sets[..self.count].iter().map(|set| &set[..self.joints]).zip(self.errors)
     }
 
-    /// The configurations alone.
+    /// Returns the configurations without their errors.
     pub fn configurations(&self) -> ArmConfigurations {
         ArmConfigurations::of_sets(&self.sets[..self.count], self.joints)
     }

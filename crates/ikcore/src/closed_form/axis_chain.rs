@@ -1,42 +1,42 @@
-//! A chain as data: the axes of its joints in the zero configuration and the tip frame there (product of exponentials).
+//! Product-of-exponentials model of a chain: joint axes and tip frame in the zero configuration.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::vector::{Vector, add_scaled, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// How a joint moves.
+/// Type of joint motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisKind {
-    /// It turns about its axis (rad).
+    /// Rotation about the axis (rad).
     Turns,
-    /// It slides along its axis (m).
+    /// Translation along the axis (m).
     Slides,
 }
 
-/// A joint in the zero configuration, seen from the base.
+/// Joint axis in the zero configuration, in base coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointAxis {
     /// Unit vector along the axis.
     pub axis: Vector,
-    /// A point on the axis (m).
+    /// Point on the axis (m).
     pub point: Vector,
-    /// How it moves.
+    /// Revolute or prismatic.
     pub motion: AxisKind,
 }
 
 impl JointAxis {
-    /// A joint that turns about the line through `point` along `axis`.
+    /// Returns a revolute joint about the line through `point` along `axis`.
     pub fn turning(axis: Vector, point: Vector) -> Self {
         Self { axis, point, motion: AxisKind::Turns }
     }
 
-    /// A joint that slides along `axis`.
+    /// Returns a prismatic joint along `axis`.
     pub fn sliding(axis: Vector) -> Self {
         Self { axis, point: [0.0; 3], motion: AxisKind::Slides }
     }
 
-    /// The same joint seen from where `frame` moves it.
+    /// Returns the joint axis moved by the rigid motion `frame`.
     pub fn moved(&self, frame: &Frame) -> Self {
         Self {
             axis: frame.turn::<Baseline>(&self.axis),
@@ -45,12 +45,12 @@ impl JointAxis {
         }
     }
 
-    /// The displacement by `value` (rad or m).
+    /// Returns the displacement by `value` (rad or m).
     pub fn displacement(&self, value: f64) -> Frame {
         self.displacement_by(self.turn(value))
     }
 
-    /// `value` (rad or m) as candidates hold it: a slide in the sine.
+    /// Converts `value` (rad or m) to the form used in candidates: a prismatic displacement is stored in the sine.
     #[inline]
     pub fn turn(&self, value: f64) -> Angle {
         match self.motion {
@@ -59,7 +59,7 @@ impl JointAxis {
         }
     }
 
-    /// The displacement by a [`Self::turn`].
+    /// Returns the displacement by a [`Self::turn`].
     #[inline]
     pub fn displacement_by(&self, turn: Angle) -> Frame {
         match self.motion {
@@ -68,23 +68,23 @@ impl JointAxis {
         }
     }
 
-    /// The point of the axis nearest to `other`.
+    /// Returns the point of the axis nearest to `other`.
     pub fn nearest_to(&self, other: &Vector) -> Vector {
         add_scaled(&self.point, &self.axis, dot(&self.axis, &sub(other, &self.point)))
     }
 }
 
-/// N joints from base to tip.
+/// Chain of N joints from base to tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisChain<const N: usize> {
-    /// The joints, base first.
+    /// Joints, base first.
     pub joints: [JointAxis; N],
-    /// The tip in the zero configuration.
+    /// Tip frame in the zero configuration.
     pub tip: Frame,
 }
 
 impl<const N: usize> AxisChain<N> {
-    /// The tip at joint values `q`.
+    /// Returns the tip frame at joint values `q`.
     pub fn tip_at(&self, q: &[f64; N]) -> Frame {
         let displacement = self
             .joints
@@ -94,7 +94,7 @@ impl<const N: usize> AxisChain<N> {
         displacement.then::<Baseline>(&self.tip)
     }
 
-    /// A length of the size of the arm (m): the sum of the distances between neighbouring axes that turn, along the chain.
+    /// Returns a characteristic length of the arm (m): the sum of the distances between neighbouring revolute axes.
     pub fn size(&self) -> f64 {
         let mut turning = self.joints.iter().filter(|joint| joint.motion == AxisKind::Turns);
         let Some(first) = turning.next() else { return 1.0 };
@@ -108,8 +108,8 @@ impl<const N: usize> AxisChain<N> {
         if sum > 0.0 { sum } else { 1.0 }
     }
 
-    /// The loop opened after the first `count` joints: those joints follow the last one, carried there by the inverse of
-    /// `displacement`, and the product of all displacements stays the same.
+    /// Opens the loop after the first `count` joints: these are moved behind the last joint by the inverse of `displacement`,
+    /// so that the product of all displacements stays the same.
     pub fn rotated(joints: &[JointAxis; N], displacement: &Frame, count: usize) -> [JointAxis; N] {
         let back = displacement.inverse();
         std::array::from_fn(|k| match k + count {
@@ -121,7 +121,7 @@ impl<const N: usize> AxisChain<N> {
 
 #[cfg(test)]
 impl<const N: usize> AxisChain<N> {
-    /// An arm from rows (a, alpha, d, theta) of a standard Denavit-Hartenberg table.
+    /// Builds an arm from rows (a, alpha, d, theta) of a standard Denavit-Hartenberg table.
     pub fn of_rows(rows: &[[f64; 4]; N]) -> Self {
         let mut at = Frame::IDENTITY;
         let joints = rows.map(|[a, alpha, d, theta]| {

@@ -1,33 +1,33 @@
-//! What a closed form hands over: candidates as cosines and sines side by side, then verified branches as joint values.
+//! Results of a closed form: candidates as cosines and sines, then verified branches as joint values.
 
 use crate::closed_form::angle::Angle;
 
-/// Most branches of one pose: sixteen for six joints (Raghavan and Roth 1990).
+/// Largest number of branches of one pose: sixteen for six joints (Raghavan and Roth 1990).
 pub const MOST: usize = 16;
 
-/// Most joints that a closed form has.
+/// Largest number of joints that a closed form handles.
 pub const MOST_JOINTS: usize = 7;
 
-/// How sure it is that a pose has no branches beside those found, and neither have poses within the tolerances of a caller.
+/// Doubt about whether a pose, or any pose within a caller's tolerances, has further branches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Doubt {
-    /// For certain.
+    /// No further branches exist.
     #[default]
     None,
-    /// Branches nearly coincide, or nearly make a family: forward kinematics beside them decides.
+    /// Branches nearly coincide or nearly form a family; forward kinematics near them decides.
     Beside,
-    /// Others may exist anywhere.
+    /// Further branches may exist anywhere.
     Open,
 }
 
 impl Doubt {
-    /// Adds another doubt.
+    /// Keeps the larger of two doubts.
     #[inline(always)]
     pub fn add(&mut self, other: Self) {
         *self = (*self).max(other);
     }
 
-    /// Notes that roots have led to no branch, though perhaps only just: if they are in doubt, they may only have been inexact.
+    /// Records that roots led to no branch: roots in doubt may have been too inexact.
     #[inline(always)]
     pub fn add_dead_end(&mut self) {
         if *self == Self::Beside {
@@ -36,34 +36,34 @@ impl Doubt {
     }
 }
 
-/// Unverified branches of an arm of up to seven joints, each number for all of them side by side.
+/// Unverified branches of an arm of up to seven joints, stored by columns: each joint holds the values of all candidates.
 #[derive(Debug, Clone, Copy)]
 pub struct Candidates {
-    /// Cosines; of a joint that slides, 1.
+    /// Cosines; 1 for a prismatic joint.
     pub cos: [[f64; MOST]; MOST_JOINTS],
-    /// Sines; of a joint that slides, the displacement (m).
+    /// Sines; the displacement (m) for a prismatic joint.
     pub sin: [[f64; MOST]; MOST_JOINTS],
-    /// How many there are.
+    /// Number of candidates.
     pub count: usize,
-    /// One candidate at least stands for a family, in which a joint is free.
+    /// True if at least one candidate represents a family with a free joint.
     pub singular: bool,
-    /// Whether there may be others.
+    /// Doubt about further candidates.
     pub doubt: Doubt,
-    /// Beside the six joints that a method solves.
+    /// Value of a seventh joint, added to each solution for six.
     given: Option<Given>,
 }
 
-/// The turn of a joint beside six.
+/// Given joint of a seven-joint arm, and its angle.
 #[derive(Debug, Clone, Copy)]
 pub enum Given {
-    /// Of the first of seven joints.
+    /// First of seven joints.
     First(Angle),
-    /// Of the last.
+    /// Last of seven joints.
     Last(Angle),
 }
 
 impl Candidates {
-    /// None yet.
+    /// Creates an empty set.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
@@ -76,7 +76,7 @@ impl Candidates {
         }
     }
 
-    /// Removes the first `count`.
+    /// Removes the first `count` candidates.
     pub fn remove_first(&mut self, count: usize) {
         for row in self.cos.iter_mut().chain(&mut self.sin) {
             row.copy_within(count..self.count, 0);
@@ -84,12 +84,12 @@ impl Candidates {
         self.count -= count;
     }
 
-    /// Sets the turn of the first or the last joint beside the six of those that follow.
+    /// Fixes the first or the last joint for the six-joint candidates added from now on.
     pub fn give(&mut self, given: Given) {
         self.given = Some(given);
     }
 
-    /// Adds one of six joints, beside the given one if there is one; ignored when full.
+    /// Adds a candidate of six joints, and of the given joint if there is one; ignored when full.
     #[inline(always)]
     pub fn push_six(&mut self, turns: &[Angle; 6]) {
         let [a, b, c, d, e, f] = *turns;
@@ -100,7 +100,7 @@ impl Candidates {
         }
     }
 
-    /// Adds one of all joints; ignored when full.
+    /// Adds a candidate of all joints; ignored when full.
     #[inline(always)]
     pub fn push<const N: usize>(&mut self, turns: &[Angle; N]) {
         if self.count < MOST {
@@ -124,33 +124,33 @@ impl Default for Candidates {
     }
 }
 
-/// By how much a configuration misses its pose, by forward kinematics.
+/// Pose error of a configuration, by forward kinematics.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct BranchError {
-    /// Distance (m).
+    /// Position error (m).
     pub position: f64,
-    /// Angle (rad).
+    /// Rotation error (rad).
     pub rotation: f64,
 }
 
-/// All branches found for one pose, each verified by forward kinematics.
+/// Branches found for one pose, each verified by forward kinematics.
 #[derive(Debug, Clone, Copy)]
 pub struct Branches<const N: usize> {
     sets: [[f64; N]; MOST],
     errors: [BranchError; MOST],
     count: usize,
-    /// A candidate was near the pose, but no branch: the tolerances of a caller may be wide enough for it.
+    /// True if a rejected candidate was near the pose: a caller's tolerances may be wide enough for it.
     pub nearly: bool,
-    /// Evaluations of the forward kinematics that verification took.
+    /// Number of forward kinematics evaluations used by verification.
     pub evaluations: usize,
-    /// Whether there may be others.
+    /// Doubt about further branches.
     pub doubt: Doubt,
-    /// One branch at least stands for a family, in which a joint is free: aligned wrist or shoulder.
+    /// True if at least one branch represents a family with a free joint: aligned wrist or shoulder.
     pub singular: bool,
 }
 
 impl<const N: usize> Branches<N> {
-    /// No branch, and nothing proven.
+    /// Returns an empty set that proves nothing.
     #[inline(always)]
     pub fn none() -> Self {
         Self {
@@ -164,7 +164,7 @@ impl<const N: usize> Branches<N> {
         }
     }
 
-    /// Adds one; ignored when full.
+    /// Adds a branch; ignored when full.
     #[inline(always)]
     pub(crate) fn push(&mut self, set: [f64; N], error: BranchError) {
         if self.count < MOST {
@@ -174,7 +174,7 @@ impl<const N: usize> Branches<N> {
         }
     }
 
-    /// The error of each.
+    /// Returns the pose error of each branch.
     #[inline(always)]
     pub(crate) fn errors(&self) -> &[BranchError] {
         &self.errors[..self.count]

@@ -1,39 +1,39 @@
-//! Configurations of an arm, made from the values of its axes.
+//! Arm configurations computed from axis values.
 
 use smallvec::SmallVec;
 
 use crate::closed_form::branches::{MOST, MOST_JOINTS};
 
-/// Values of the axes, those of an axis for all configurations side by side.
+/// Axis values by columns: each axis holds its values in all configurations.
 pub type AxisColumns = [[f64; MOST]; MOST_JOINTS];
 
-/// Which joint drives each axis, and its factor on q.
+/// Map from each axis to the joint that drives it, and its factor on q.
 #[derive(Debug, Clone)]
 pub struct Drives {
     axes: SmallVec<[(usize, f64); MOST_JOINTS]>,
-    /// Joint k drives axis k by its own value.
+    /// True if joint k drives axis k with factor 1.
     is_plain: bool,
 }
 
 impl Drives {
-    /// From the joint and the factor of each axis.
+    /// Builds the map from the joint and the factor of each axis.
     pub fn new(of_axes: impl Iterator<Item = (usize, f64)>) -> Self {
         let axes: SmallVec<_> = of_axes.collect();
         let is_plain = axes.iter().enumerate().all(|(axis, drive)| *drive == (axis, 1.0));
         Self { axes, is_plain }
     }
 
-    /// The joint that drives `axis`.
+    /// Returns the joint that drives `axis`.
     pub fn joint(&self, axis: usize) -> usize {
         self.axes[axis].0
     }
 
-    /// How many axes there are.
+    /// Returns the number of axes.
     pub fn len(&self) -> usize {
         self.axes.len()
     }
 
-    /// Replaces the values of the axes by those of the joints.
+    /// Replaces axis values by joint values.
     #[inline]
     pub fn joints_of(&self, values: &mut [f64; MOST_JOINTS]) {
         if !self.is_plain {
@@ -44,7 +44,7 @@ impl Drives {
         }
     }
 
-    /// The limits of seven axes where the joints have the limits `lower` and `upper` (n,).
+    /// Returns the limits of seven axes, given joint limits `lower` and `upper` (n,).
     pub fn of_axes(&self, lower: &[f64], upper: &[f64]) -> [[f64; 2]; MOST_JOINTS] {
         std::array::from_fn(|axis| {
             let (joint, scale) = self.axes[axis];
@@ -54,23 +54,23 @@ impl Drives {
     }
 }
 
-/// Configurations of an arm, each at one of its whole turns. The values of a joint lie side by side.
+/// Configurations of an arm, stored by joint; each is listed at one of its whole turns.
 #[derive(Debug, Clone)]
 pub(crate) struct ArmConfigurations {
     columns: AxisColumns,
     count: usize,
     joints: usize,
-    /// No solution is missing, and none stands for a family; false says nothing.
+    /// True if no solution is missing and none represents a family; false proves nothing.
     pub is_all: bool,
 }
 
 impl ArmConfigurations {
-    /// None.
+    /// Creates an empty set.
     pub fn none() -> Self {
         Self { columns: AxisColumns::default(), count: 0, joints: 0, is_all: false }
     }
 
-    /// Replaces all by those whose values of the axes `write` leaves in the first `count` places of each column.
+    /// Replaces all configurations by `count` new ones, whose axis values `write` stores in the first places of each column.
     #[inline]
     pub fn replace(&mut self, drives: &Drives, count: usize, write: impl FnOnce(&mut AxisColumns)) {
         (self.count, self.joints, self.is_all) = (count, drives.axes.len(), false);
@@ -83,7 +83,7 @@ impl ArmConfigurations {
         }
     }
 
-    /// From the values of `joints` joints, one configuration after the other.
+    /// Converts row-wise values of `joints` joints.
     pub fn of_sets(sets: &[[f64; MOST_JOINTS]], joints: usize) -> Self {
         let mut all = Self { columns: AxisColumns::default(), count: sets.len(), joints, is_all: false };
         for (place, set) in sets.iter().enumerate() {
@@ -92,22 +92,22 @@ impl ArmConfigurations {
         all
     }
 
-    /// How many there are.
+    /// Returns the number of configurations.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// Whether there are no configurations.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// The values of each joint (rad, m), writable.
+    /// Returns the values of each joint (rad, m), mutable.
     pub fn columns_mut(&mut self) -> &mut [[f64; MOST]] {
         &mut self.columns[..self.joints]
     }
 
-    /// The values of each joint (rad, m): the first [`Self::len`] count.
+    /// Returns the values of each joint (rad, m); the first [`Self::len`] are valid.
     pub fn columns(&self) -> &[[f64; MOST]] {
         &self.columns[..self.joints]
     }

@@ -1,8 +1,7 @@
-//! The distance between shoulder and wrist, which determines joint 4 of an arm with seven joints: the values of the parameter that
-//! the limits of joint 4 leave.
+//! Shoulder-wrist distance, which determines joint 4 of a seven-joint arm: bounds the parameter by the limits of joint 4.
 //!
-//! Where the first three axes meet, the wrist is a point on axes 5 and 6, which turns about axis 7; where the last three do, the
-//! shoulder is a point on axes 2 and 3, which turns about axis 1.
+//! If the first three axes meet, the wrist is a point on axes 5 and 6 that turns about axis 7; if the last three meet, the
+//! shoulder is a point on axes 2 and 3 that turns about axis 1.
 
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::orbit::Orbit;
@@ -12,21 +11,21 @@ use crate::closed_form::vector::{Vector, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Shoulder and wrist, prepared.
+/// Precomputed shoulder and wrist.
 #[derive(Debug, Clone, Copy)]
 pub struct ElbowDistance {
     shoulder: Vector,
     wrist: Vector,
-    /// Their squared distance, by joint 4.
+    /// Squared shoulder-wrist distance as a function of joint 4.
     by_joint_4: Wave,
-    /// The circle of the wrist as joint 7 is turned back, or of the shoulder as joint 1 turns.
+    /// Circle of the wrist as joint 7 turns backwards, or of the shoulder as joint 1 turns.
     circle: Orbit,
-    /// The parameter is joint 1, not joint 7.
+    /// True if the parameter is joint 1 instead of joint 7.
     by_first: bool,
 }
 
 impl ElbowDistance {
-    /// For joint 7 or the arm angle as parameter; `None` unless the first three axes meet, and axes 5 and 6.
+    /// Prepares joint 7 or the arm angle as parameter; `None` unless the first three axes meet, and axes 5 and 6.
     pub fn by_last(chain: &AxisChain<7>) -> Option<Self> {
         let size = chain.size();
         let shoulder = three_meet(&chain.joints[..3], size, EXACT)?;
@@ -36,7 +35,7 @@ impl ElbowDistance {
         Self::of(chain, [shoulder, wrist], circle, false)
     }
 
-    /// For joint 1 as parameter; `None` unless the last three axes meet, and axes 2 and 3.
+    /// Prepares joint 1 as parameter; `None` unless the last three axes meet, and axes 2 and 3.
     pub fn by_first(chain: &AxisChain<7>) -> Option<Self> {
         let size = chain.size();
         let wrist = three_meet(&chain.joints[4..], size, EXACT)?;
@@ -53,18 +52,18 @@ impl ElbowDistance {
         turns.then(|| Self { shoulder, wrist, by_joint_4: Wave::of(square), circle, by_first })
     }
 
-    /// Smallest and largest squared distance within the limits of joint 4 (rad).
+    /// Returns the smallest and the largest squared distance within the limits of joint 4 (rad).
     pub fn range(&self, limits: [f64; 2]) -> [f64; 2] {
         self.by_joint_4.range(limits)
     }
 
-    /// All arm angles of a spherical wrist, or none.
+    /// Returns all arm angles of a spherical wrist, or none.
     pub fn arm_angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
         let square = squared_distance(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
         Wave::new(square, 0.0, 0.0).arcs_between(range, self.slack())
     }
 
-    /// The values of joint 7, or of joint 1, at which the squared distance is within `range`.
+    /// Returns the values of joint 7, or of joint 1, at which the squared distance lies within `range`.
     pub fn angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
         let Orbit { centre, cosine, sine } = &self.circle;
         let other = if self.by_first {
@@ -77,7 +76,8 @@ impl ElbowDistance {
         wave.arcs_between(range, self.slack())
     }
 
-    /// Change of the squared distance by poses within the tolerances of a caller, where shoulder and wrist are near each other.
+    /// Returns the change of the squared distance by poses within a caller's tolerances, for shoulder and wrist near each
+    /// other.
     fn slack(&self) -> f64 {
         let [(_, longest), _] = self.by_joint_4.extremes();
         1e-7 * longest

@@ -1,4 +1,4 @@
-//! Enclosures of what moves: vectors in balls, numbers between bounds, angles on arcs.
+//! Enclosures of moving quantities: vectors in balls, numbers in intervals, angles on arcs.
 
 use std::f64::consts::PI;
 
@@ -7,58 +7,58 @@ use crate::closed_form::orbit::Orbit;
 use crate::closed_form::vector::{Vector, cross, dot};
 use crate::math::turns::without_turns;
 
-/// A vector that is within `radius` of `middle`.
+/// Ball that encloses a vector.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball {
-    /// Where it is at most so far from.
+    /// Centre.
     pub middle: Vector,
-    /// How far.
+    /// Radius.
     pub radius: f64,
 }
 
 impl Ball {
-    /// Turned about the unit vector `axis` by `turn`, or by up to `half` (rad) more or less.
+    /// Rotates the ball about the unit vector `axis` by `turn`, uncertain by `half` (rad).
     pub fn turned(&self, axis: &Vector, turn: Angle, half: f64) -> Self {
         Self { middle: turn.about(axis, &self.middle), radius: self.radius + half * distance(axis, &self.middle) }
     }
 
-    /// Its smallest distance from the line along the unit vector `axis`.
+    /// Returns the smallest distance of the ball from the line along the unit vector `axis`.
     pub fn least_distance(&self, axis: &Vector) -> f64 {
         (distance(axis, &self.middle) - self.radius).max(0.0)
     }
 
-    /// By how much its direction about `axis` may differ from that of its middle (rad).
+    /// Returns the largest angle about `axis` between a vector in the ball and its centre (rad).
     pub fn swerve(&self, axis: &Vector) -> f64 {
         let distance = distance(axis, &self.middle);
-        // The tangent of the angle whose sine is radius / distance: larger, and no arcsine.
+        // Tangent of the angle whose sine is radius / distance: an upper bound that needs no arcsine.
         if self.radius < distance { self.radius / (distance * distance - self.radius * self.radius).sqrt() } else { PI }
     }
 }
 
-/// The distance of `v` from the line along the unit vector `axis`.
+/// Returns the distance of `v` from the line along the unit vector `axis`.
 pub fn distance(axis: &Vector, v: &Vector) -> f64 {
     let across = cross(axis, v);
     dot(&across, &across).sqrt()
 }
 
-/// base + east cos q + north sin q.
+/// Sinusoid base + east cos q + north sin q.
 #[derive(Debug, Clone, Copy)]
 pub struct Swing {
-    /// The middle value.
+    /// Mean value.
     pub base: f64,
-    /// What is added at q = 0.
+    /// Coefficient of cos q.
     pub east: f64,
-    /// What is added a quarter of a turn on.
+    /// Coefficient of sin q.
     pub north: f64,
 }
 
 impl Swing {
-    /// The component along `axis` of a point on a circle.
+    /// Returns the component along `axis` of a point on a circle.
     pub fn along(axis: &Vector, circle: &Orbit) -> Self {
         Self { base: dot(axis, &circle.centre), east: dot(axis, &circle.cosine), north: dot(axis, &circle.sine) }
     }
 
-    /// The squared distance of a point on a circle from `other`.
+    /// Returns the squared distance of a point on a circle from `other`.
     pub fn squared_distance(circle: &Orbit, other: &Vector) -> Self {
         let way = std::array::from_fn(|k| 2.0 * (circle.centre[k] - other[k]));
         let constant = 0.25 * dot(&way, &way) + dot(&circle.sine, &circle.sine);
@@ -69,7 +69,7 @@ impl Swing {
         (self.east * self.east + self.north * self.north).sqrt()
     }
 
-    /// Bounds on the values within `half` (rad) of an angle, and `slack` beyond.
+    /// Bounds the values within `half` (rad) of an angle, widened by `slack`.
     pub fn near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
         let value = self.base + self.east * turn.cos + self.north * turn.sin;
         let slope = (self.north * turn.cos - self.east * turn.sin).abs();
@@ -77,12 +77,12 @@ impl Swing {
         [value - spread, value + spread]
     }
 
-    /// The arcs on which the value is within `range`, or may be where its amplitude is by a factor of 1 - `doubt` to 1 + `doubt`
-    /// another one; on either side of the peak. None where there are none.
+    /// Returns the arcs on which the value lies within `range`, one on each side of the peak, if the amplitude is uncertain
+    /// by the relative error `doubt`; `None` if there are no such arcs.
     pub fn arcs(&self, range: [f64; 2], doubt: f64) -> Option<[Arc; 2]> {
         let [low, high] = range.map(|value| value - self.base);
         let (least, most) = ((1.0 - doubt) * self.size(), (1.0 + doubt) * self.size());
-        // Cosines of the distance from the peak; infinite, or NaN, where nothing is known.
+        // Cosines of the angle from the peak; infinite or NaN if nothing is known.
         let from = if doubt < 1.0 { low / if low > 0.0 { most } else { least } } else { -1.0 };
         let to = if doubt < 1.0 { high / if high > 0.0 { least } else { most } } else { 1.0 };
         if from > 1.0 || to < -1.0 {
@@ -95,38 +95,38 @@ impl Swing {
     }
 }
 
-/// The angles within `half` of `middle` (rad).
+/// Arc of angles within `half` of `middle` (rad).
 #[derive(Debug, Clone, Copy)]
 pub struct Arc {
-    /// The middle one.
+    /// Middle angle (rad).
     pub middle: f64,
-    /// Half the length.
+    /// Half the length (rad).
     pub half: f64,
 }
 
 impl Arc {
-    /// Between two angles.
+    /// Returns the arc between two angles.
     pub fn between([first, last]: [f64; 2]) -> Self {
         Self { middle: 0.5 * (first + last), half: 0.5 * (last - first) }
     }
 
-    /// The same, longer at both ends.
+    /// Extends the arc at both ends.
     pub fn wider(self, by: f64) -> Self {
         Self { half: self.half + by, ..self }
     }
 
-    /// Whether it is the whole circle.
+    /// Whether the arc is the full circle.
     pub fn is_all(&self) -> bool {
         !(self.half < PI)
     }
 
-    /// Both halves.
+    /// Splits the arc at its middle.
     pub fn halves(&self) -> [Self; 2] {
         let half = 0.5 * self.half;
         [self.middle - half, self.middle + half].map(|middle| Self { middle, half })
     }
 
-    /// The part on an arc of `limits`, whole turns aside; all of it where that may be two parts.
+    /// Intersects the arc with `limits` modulo 2 pi; returns all of it where the intersection may have two parts.
     pub fn within(self, limits: &Self) -> Option<Self> {
         if !(self.half + limits.half < PI) {
             return Some(self);
@@ -138,7 +138,7 @@ impl Arc {
         (first <= last).then_some(Self { middle: limits.middle + middle, half })
     }
 
-    /// The middle angle.
+    /// Returns the middle angle.
     pub fn turn(&self) -> Angle {
         Angle::by(self.middle)
     }

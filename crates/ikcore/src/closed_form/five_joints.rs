@@ -1,7 +1,7 @@
-//! Five revolute joints: the poses that they reach, and all branches of those.
+//! Arms of five revolute joints: all branches for the poses that they reach.
 //!
-//! A virtual sixth joint is added behind the last or before the first, so that a method for six joints fits. The branches that leave
-//! it at zero are those of the arm; a pose without one is out of reach.
+//! A virtual sixth joint is added after the last joint or before the first, so that a method for six joints applies. Branches
+//! that leave the virtual joint at zero are solutions; a pose without such a branch is out of reach.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
@@ -12,21 +12,21 @@ use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 
-/// Where the virtual joint is farther than this from zero (rad), or the tip from the pose without it (m, rad), the pose is out of reach;
-/// nearer, Newton's method decides.
+/// Largest angle of the virtual joint (rad), and pose error without it (m, rad), from which Newton's method is tried; beyond
+/// it the pose is out of reach.
 const NEAR_ZERO: f64 = 1e-4;
 
-/// The method for a chain of five revolute joints.
+/// Closed form of five revolute joints.
 #[derive(Debug, Clone)]
 pub struct FiveJoints {
     six: ClosedForm,
-    /// The virtual joint is the first.
+    /// True if the virtual joint is the first.
     before: bool,
     verifier: Verifier<5>,
 }
 
 impl FiveJoints {
-    /// Adds the joint that leaves the best structure; `None` where a joint slides.
+    /// Adds the virtual joint that gives the best structure; `None` if a joint is prismatic.
     pub fn new(chain: &AxisChain<5>) -> Option<Self> {
         if chain.joints.iter().any(|joint| joint.motion == AxisKind::Slides) {
             return None;
@@ -52,16 +52,16 @@ impl FiveJoints {
             Structure::General => 1,
             _ => 2,
         });
-        // Axes that coincide with the virtual one, say, defeat the method.
+        // Degenerate chains, for example with an axis that coincides with the virtual one, defeat the method.
         forms.into_iter().find(|form| form.finds_samples(chain))
     }
 
-    /// The structure with the virtual joint.
+    /// Returns the structure including the virtual joint.
     pub fn structure(&self) -> Structure {
         self.six.structure()
     }
 
-    /// Whether the method finds configurations spread evenly again.
+    /// Whether the method reproduces a set of evenly spread configurations.
     fn finds_samples(&self, chain: &AxisChain<5>) -> bool {
         samples().all(|[q @ .., _]| {
             let near = |set: &[f64; 5]| set.iter().zip(&q).all(|(a, b)| (Angle::by(a - b).cos - 1.0).abs() < 1e-6);
@@ -69,7 +69,7 @@ impl FiveJoints {
         })
     }
 
-    /// All joint angles, in (-pi, pi], that bring the tip to `target`; none where five joints cannot reach it.
+    /// Returns all joint angles, in (-pi, pi], that bring the tip to `target`; none if five joints cannot reach it.
     pub fn solve(&self, target: &Frame) -> Branches<5> {
         let six = self.six.solve(target);
         let mut found = Branches::none();
@@ -79,7 +79,7 @@ impl FiveJoints {
             if added.abs() < NEAR_ZERO {
                 self.verifier.add_near(target, set, &mut found);
             } else {
-                // Where the wrist is straight, the joint on its other side may turn instead of the virtual one.
+                // A straight wrist lets the joint on its other side turn instead of the virtual one.
                 let partner = if self.before { 1 } else { 3 };
                 for turn in [added, -added] {
                     let mut set = set;
@@ -90,8 +90,8 @@ impl FiveJoints {
                 }
             }
         }
-        // Of a family of six joints one stands for all, and beside a double root the virtual joint is not known well: others than those
-        // found may leave it at zero.
+        // Further solutions may exist in two cases: a family of six-joint solutions has only one representative, and near a
+        // double root the virtual joint is poorly determined.
         let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty() && found.len() >= six.len();
         (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Open }, six.singular);
         found.evaluations += six.evaluations;
@@ -100,7 +100,8 @@ impl FiveJoints {
     }
 }
 
-/// A joint through the point where two neighbouring axes meet, across both: the three form a spherical wrist.
+/// Returns a joint through the intersection of two neighbouring axes, perpendicular to both: the three form a spherical
+/// wrist.
 fn across(inner: &JointAxis, outer: &JointAxis, size: f64) -> Option<JointAxis> {
     match Pair::of(inner, outer, size, EXACT) {
         Pair::Meet(at) => Some(JointAxis::turning(unit(&cross(&inner.axis, &outer.axis)), at)),
@@ -108,7 +109,7 @@ fn across(inner: &JointAxis, outer: &JointAxis, size: f64) -> Option<JointAxis> 
     }
 }
 
-/// A joint that meets an axis at a slant, a little along it.
+/// Returns a joint that meets the axis at a slant, a little further along it.
 fn aside(joint: &JointAxis, size: f64) -> JointAxis {
     let slanted: Vector = add(&scaled(&joint.axis, 0.3), &perpendicular(&joint.axis));
     JointAxis::turning(unit(&slanted), add(&joint.point, &scaled(&joint.axis, 0.4 * size)))
@@ -152,7 +153,7 @@ mod tests {
             assert_eq!(method.structure() == Structure::General, rows == GENERAL);
             for draw in 0..if rows == GENERAL { 40 } else { 200 } {
                 let mut q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-PI, PI));
-                // Straight wrists with the virtual joint, or nearly.
+                // Straight or nearly straight wrists, with the virtual joint.
                 if rows != GENERAL && draw % 4 == 0 {
                     q[4] = [Q, -Q, Q + 1e-9, Q - 1e-6][draw / 4 % 4];
                 }

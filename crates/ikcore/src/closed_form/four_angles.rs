@@ -1,10 +1,10 @@
-//! Four angles side by side, as cosines and sines. Each lane performs the operations of [`Angle`] in the same order.
+//! Four angles in SIMD lanes, as cosines and sines. Each lane performs the operations of [`Angle`] in the same order.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::orbit::Orbit;
 use crate::math::real::Real;
 
-/// A rotation about a known axis, one per lane.
+/// Rotation angle about a known axis, one per lane.
 #[derive(Debug, Clone, Copy)]
 pub struct FourAngles<R> {
     /// Cosines.
@@ -14,7 +14,7 @@ pub struct FourAngles<R> {
 }
 
 impl<R: Real> FourAngles<R> {
-    /// Towards the points (x, y) of the plane; [`Angle::NONE`] at the origin.
+    /// Returns the directions of the points (x, y); [`Angle::NONE`] at the origin.
     #[inline(always)]
     pub fn towards(x: R, y: R) -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -23,31 +23,31 @@ impl<R: Real> FourAngles<R> {
         Self { cos: zero.choose_below(square, x * inverse, one), sin: zero.choose_below(square, y * inverse, zero) }
     }
 
-    /// The opposite rotations.
+    /// Returns the inverse rotations.
     #[inline(always)]
     pub fn back(self) -> Self {
         Self { cos: self.cos, sin: -self.sin }
     }
 
-    /// These rotations and others about the same axis.
+    /// Adds other rotations about the same axis.
     #[inline(always)]
     pub fn and(self, other: Self) -> Self {
         Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
     }
 
-    /// Turned by a sign: about the opposite axis where it is negative.
+    /// Multiplies the angles by `sign`, 1 or -1: rotations about the reversed axis.
     #[inline(always)]
     pub fn signed(self, sign: f64) -> Self {
         Self { cos: self.cos, sin: R::splat(sign) * self.sin }
     }
 
-    /// The vectors (x, y, z) turned about z.
+    /// Rotates the vectors (x, y, z) about z.
     #[inline(always)]
     pub fn about_z(self, [x, y, z]: [R; 3]) -> [R; 3] {
         [self.cos * x - self.sin * y, self.sin * x + self.cos * y, z]
     }
 
-    /// The points of a circle.
+    /// Returns the points of a circle at these angles.
     #[inline(always)]
     pub fn on(self, circle: &Orbit) -> [R; 3] {
         let Orbit { centre, cosine, sine } = circle;
@@ -55,20 +55,20 @@ impl<R: Real> FourAngles<R> {
         [entry(0), entry(1), entry(2)]
     }
 
-    /// The angle in lane `lane`.
+    /// Returns the angle in lane `lane`.
     #[inline(always)]
     pub fn lane(self, lane: usize) -> Angle {
         Angle { cos: self.cos.lane(lane), sin: self.sin.lane(lane) }
     }
 
-    /// The same with another angle in lane `lane`.
+    /// Replaces the angle in lane `lane`.
     #[inline(always)]
     pub fn with_lane(self, lane: usize, angle: Angle) -> Self {
         Self { cos: self.cos.with_lane(lane, angle.cos), sin: self.sin.with_lane(lane, angle.sin) }
     }
 }
 
-/// a'b of four vectors each.
+/// Returns the dot products of four vector pairs.
 #[inline(always)]
 pub fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

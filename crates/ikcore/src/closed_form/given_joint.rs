@@ -1,4 +1,4 @@
-//! Seven joints of which the first or the last is given: the other six see the target from where it puts them.
+//! Seven joints with the first or the last given: the other six solve the remaining pose.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -8,17 +8,18 @@ use crate::closed_form::six::{ClosedForm, Structure};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// A given joint, and the closed form of the other six.
+/// Given joint and the closed form of the other six.
 #[derive(Debug, Clone)]
 pub struct GivenJoint {
-    /// 0 or 6.
+    /// Index of the given joint: 0 or 6.
     axis: usize,
     joint: JointAxis,
     others: ClosedForm,
 }
 
 impl GivenJoint {
-    /// Gives the joint that leaves six with the better method, of equal ones the last; `None` where joints slide and no method fits.
+    /// Chooses the given joint that leaves six joints with the better method, the last in a tie; `None` if joints are
+    /// prismatic and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         let (last, first) = (Self::at(6, chain), Self::at(0, chain));
         match (last.rank(), first.rank()) {
@@ -30,13 +31,13 @@ impl GivenJoint {
 
     fn at(axis: usize, chain: &AxisChain<7>) -> Self {
         let joints = std::array::from_fn(|k| chain.joints[if k < axis { k } else { k + 1 }]);
-        // The tip is the displacement of the others. A few solutions lost beside folds matter less than the time where only samples
-        // are asked for.
+        // Identity tip, since the tip frame is part of the displacement. Speed matters more than a few solutions lost near folds:
+        // only samples of the parameter are solved.
         let others = ClosedForm::structured(&AxisChain { joints, tip: Frame::IDENTITY });
         Self { axis, joint: chain.joints[axis], others }
     }
 
-    /// How good the method of the others is, best first.
+    /// Ranks the method of the other six joints, best first.
     fn rank(&self) -> Option<u8> {
         match self.others.structure() {
             Structure::ThreeMeet { nearly: false, .. } => Some(0),
@@ -48,22 +49,23 @@ impl GivenJoint {
         }
     }
 
-    /// Which joint is given: 0 or 6.
+    /// Returns the index of the given joint: 0 or 6.
     pub fn axis(&self) -> usize {
         self.axis
     }
 
-    /// The structure of the others.
+    /// Returns the structure of the other six joints.
     pub fn structure(&self) -> Structure {
         self.others.structure()
     }
 
-    /// Whether [`Self::add_candidates`] finds all configurations but for rounding.
+    /// Whether [`Self::add_candidates`] finds all configurations up to rounding.
     pub fn has_exact_candidates(&self) -> bool {
         self.others.has_exact_candidates()
     }
 
-    /// All joint values, angles in (-pi, pi], whose displacements make `goal` with the joint at `value` (rad, m).
+    /// Returns all joint values, angles in (-pi, pi], whose displacements make `goal` with the given joint at `value` (rad,
+    /// m).
     pub fn solve(&self, goal: &Frame, value: f64) -> Branches<7> {
         let left = self.left(goal, self.joint.turn(value));
         let six = self.others.solve_displacement(&left, &left);
@@ -79,7 +81,8 @@ impl GivenJoint {
         seven
     }
 
-    /// Adds all joint values that may make `goal` with the joint at `value` (rad, m), as far as `ranges` may hold them.
+    /// Adds candidates whose displacements make `goal` with the given joint at `value` (rad, m), as far as `ranges` may hold
+    /// them.
     pub fn add_candidates(&self, goal: &Frame, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
         let turn = self.joint.turn(value);
         let [a, b, c, d, e, f, g] = *ranges;
@@ -91,7 +94,7 @@ impl GivenJoint {
         self.others.add_candidates(&self.left(goal, turn), &ranges, found);
     }
 
-    /// What is left for the others: E2 ... E7 = E1^-1 goal, or E1 ... E6 = goal E7^-1.
+    /// Returns the displacement left for the other six joints: E2 ... E7 = E1^-1 goal, or E1 ... E6 = goal E7^-1.
     #[inline]
     fn left(&self, goal: &Frame, turn: Angle) -> Frame {
         let back = self.joint.displacement_by(turn.back());

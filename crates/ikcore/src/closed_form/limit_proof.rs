@@ -1,8 +1,9 @@
-//! Proof that limits exclude every value of the first or the last joint of an arm with seven joints, by branch and bound.
+//! Proof by branch and bound that joint limits exclude every value of the parameter of a seven-joint arm, its first or last
+//! joint.
 //!
-//! Of the other six joints A, B and C carry a point to where the pose has it, and the axes of D, E and F meet there. On an interval of
-//! the parameter each joint stays on arcs: what decides its angle moves no farther than known levers turned by known angles. Where
-//! every branch has a joint whose arc is outside its limits the interval has no solution; elsewhere it is halved.
+//! The other six joints are A to F: A, B and C carry a point to its position in the pose, and the axes of D, E and F meet
+//! there. On an interval of the parameter each joint stays on arcs, bounded by known lever arms and rotation angles. If every
+//! branch has a joint whose arc lies outside its limits, the interval has no solution; otherwise it is halved.
 
 use std::f64::consts::PI;
 
@@ -16,69 +17,71 @@ use crate::closed_form::vector::{Vector, across, add, cross, dot, norm, scaled, 
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// A pose off by as much (m, rad) is excluded too: more than the tolerances of a caller, and than rounding.
+/// Pose error (m, rad) that the proof covers: larger than the tolerances of a caller, and than rounding.
 const OFF: f64 = 2e-5;
 
-/// A joint outside its limits by less (rad) may be inside.
+/// Slack beyond the joint limits (rad) that counts as inside.
 const SLACK: f64 = 1e-4;
 
-/// Beyond the ends of its arcs the parameter (rad) is looked at as far as a pose off by [`OFF`] moves them: at a fold the others turn fast.
+/// Extension of the parameter arcs at both ends (rad): the shift of the ends by a pose error of [`OFF`]. Near a fold the
+/// other joints turn fast.
 const FOLD: f64 = 1e-3;
 
-/// Longest interval of the parameter (rad) that is looked at.
+/// Longest interval of the parameter (rad) that is examined whole.
 const LONGEST: f64 = 0.4;
 
-/// Half an interval of the parameter (rad) that is too short to be halved.
+/// Half the length (rad) of the shortest interval that is still halved.
 const SHORTEST: f64 = 0.002;
 
-/// Most intervals that are halved.
+/// Largest number of intervals.
 const MOST_INTERVALS: usize = 300;
 
-/// Descents from a value lead to configurations at values as near as this (rad).
+/// Convergence radius of descents from a parameter value (rad).
 const APART: f64 = 0.02;
 
-/// An arm, prepared. Joints are in the order parameter, A, B, C, D, E, F.
+/// Precomputed arm. Joints are in the order parameter, A, B, C, D, E, F.
 #[derive(Debug, Clone, Copy)]
 pub struct LimitProof {
     axes: [Vector; 7],
-    /// A point on the axis of the parameter.
+    /// Point on the axis of the parameter.
     parameter: Vector,
-    /// Where the axes of A and B meet.
+    /// Intersection of the axes of A and B.
     root: Vector,
-    /// Where the axes of D, E and F meet.
+    /// Intersection of the axes of D, E and F.
     centre: Vector,
-    /// From the root to a point on the axis of C, and from there to the centre.
+    /// Vectors from the root to a point on the axis of C, and on to the centre.
     links: [Vector; 2],
-    /// Squared distance from root to centre, by C.
+    /// Squared distance from root to centre, as a function of C.
     distance: Swing,
-    /// Cosine of the angle between the axes of D and F, by E.
+    /// Cosine of the angle between the axes of D and F, as a function of E.
     bend: Swing,
-    /// Unit vectors across the axes of D and F.
+    /// Unit vectors perpendicular to the axes of D and F.
     across: [[Vector; 2]; 2],
-    /// The parameter is the last joint: the chain is taken from tip to base.
+    /// True if the parameter is the last joint: the chain is taken from tip to base.
     reversed: bool,
-    /// A pose off by [`OFF`] puts the centre off by as much (m).
+    /// Displacement of the centre (m) by a pose error of [`OFF`].
     off: f64,
 }
 
-/// A pose and limits: what moves as the parameter does.
+/// Quantities that move with the parameter, for one pose and its limits.
 struct Moving<'a> {
     arm: &'a LimitProof,
     limits: [Arc; 7],
-    /// From the root to the centre.
+    /// Vector from the root to the centre.
     centre: Orbit,
-    /// Its squared length, and its component along the axis of A.
+    /// Squared length of that vector, and its component along the axis of A.
     distance: Swing,
     height: Swing,
-    /// The axis of F.
+    /// Axis of F.
     end: Orbit,
-    /// Where the pose has the axis of F and what is across it.
+    /// Axis of F in the pose, and unit vectors perpendicular to it.
     end_axis: Vector,
     end_across: [Vector; 2],
 }
 
 impl LimitProof {
-    /// For the first joint as parameter, or the last; None unless three axes meet at the other end, and two next to the parameter's.
+    /// Prepares the proof for the first joint as parameter, or the last; `None` unless three axes meet at the other end, and
+    /// the two axes next to the parameter's.
     pub fn new(chain: &AxisChain<7>, by_first: bool) -> Option<Self> {
         let size = chain.size();
         let joints: [_; 7] = std::array::from_fn(|k| {
@@ -105,9 +108,9 @@ impl LimitProof {
         })
     }
 
-    /// Values of the parameter on `arcs` near which a configuration may be within limits, the first `most` of them; none if there is
-    /// none for certain. Offers the middle of each interval that may hold one to `visit`, and ends where that returns true: it is the
-    /// last value then.
+    /// Returns the first `most` values of the parameter on `arcs` near which a configuration may lie within limits; an empty
+    /// list proves that there is none. Offers the midpoint of each open interval to `visit`, and stops where `visit` returns
+    /// true: that value is then the last.
     pub fn open_values(
         &self,
         goal: &Frame,
@@ -129,18 +132,18 @@ impl LimitProof {
     }
 }
 
-/// What branch and bound has found.
+/// State of the branch and bound.
 struct Open<'v> {
     values: Values,
-    /// Values wanted, and intervals that may still be looked at.
+    /// Number of values wanted, and of intervals that may still be examined.
     most: usize,
     left: usize,
-    /// Whether this value is the one that was looked for.
+    /// Returns true to stop at this value.
     visit: &'v mut dyn FnMut(f64) -> bool,
 }
 
 impl Open<'_> {
-    /// Whether there are enough values, or a configuration in `part` would be near one of them.
+    /// Whether there are enough values, or `part` lies within reach of one.
     fn covers(&self, part: &Arc) -> bool {
         let near = |value: &f64| (part.middle - value).abs() + part.half < APART;
         self.values.len() >= self.most || self.values.last().is_some_and(near)
@@ -151,7 +154,7 @@ impl<'a> Moving<'a> {
     fn new(arm: &'a LimitProof, goal: &Frame, limits: &[[f64; 2]; 7]) -> Self {
         let goal = if arm.reversed { goal.inverse() } else { *goal };
         let limits = std::array::from_fn(|k| Arc::between(limits[if arm.reversed { 6 - k } else { k }]).wider(SLACK));
-        // The others see the pose turn back.
+        // Turning the parameter joint forward turns the pose backward for the other joints.
         let back = scaled(&arm.axes[0], -1.0);
         let centre = Orbit::of(&back, &sub(&goal.place::<Baseline>(&arm.centre), &arm.parameter));
         let centre = centre.moved(&sub(&arm.parameter, &arm.root));
@@ -168,8 +171,8 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// Adds values in `part` near which a configuration may be within limits. Where too many intervals are looked at, all that is left
-    /// may hold one.
+    /// Adds values in `part` near which a configuration may lie within limits. Once the budget of intervals is spent, all
+    /// remaining ones count as open.
     fn add_open(&self, part: &Arc, open: &mut Open<'_>) {
         if open.covers(part) {
             return;
@@ -189,7 +192,7 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// Whether a branch may be within limits with the parameter in `part`.
+    /// Whether a branch may lie within limits with the parameter in `part`.
     fn may_hold(&self, part: &Arc) -> bool {
         let (turn, off) = (part.turn(), self.arm.off);
         let reached = Ball { middle: self.centre.at(turn), radius: part.half * norm(&self.centre.sine) + off };
@@ -200,8 +203,8 @@ impl<'a> Moving<'a> {
         })
     }
 
-    /// Arcs of A, B and C within limits, given that of C: rotA rotB u = `reached`, where u leads from the root to the centre before A
-    /// and B turn.
+    /// Returns the arcs of A, B and C within limits, given the arc of C: rotA rotB u = `reached`, where u leads from the root
+    /// to the centre before A and B turn.
     fn arms(&self, part: &Arc, reached: &Ball, elbow: &Arc) -> [Option<[Arc; 3]>; 2] {
         let LimitProof { axes: [_, a, b, c, ..], links: [upper, fore], off, .. } = self.arm;
         let u = Ball { middle: add(upper, &elbow.turn().about(c, fore)), radius: elbow.half * distance(c, fore) };
@@ -212,13 +215,13 @@ impl<'a> Moving<'a> {
         let height = self.height.near(part.turn(), part.half, off + slant.abs() * u.radius);
         let doubt = u.radius / lever;
         let Some(arcs) = height_by_b.arcs(height, if doubt < 1.0 { doubt } else { 1.0 }) else { return [None; 2] };
-        // b'(u x du/dq4) where du/dq4 = c x rotC fore: zero where u lies in a plane with b across c.
+        // Derivative b'(u x du/dq4) with du/dq4 = c x rotC fore; zero if b and u are perpendicular to c.
         let by_elbow = norm(fore) * (dot(b, c).abs() * (norm(&u.middle) + u.radius) + dot(c, &u.middle).abs());
         let swerve = u.swerve(b).min(elbow.half * by_elbow / u.least_distance(b).powi(2));
         arcs.map(|arc| {
             let second = arc.wider(swerve).within(&self.limits[2])?;
             let turned = u.turned(b, second.turn(), second.half);
-            // a'(v x dv/dqB) where dv/dqB = b x v.
+            // Derivative a'(v x dv/dqB) with dv/dqB = b x v.
             let by_b =
                 slant.abs() * dot(&u.middle, &u.middle) + (dot(a, &turned.middle).abs() + turned.radius) * along.abs();
             let nearest = turned.least_distance(a);
@@ -230,7 +233,7 @@ impl<'a> Moving<'a> {
         })
     }
 
-    /// Whether D, E and F may be within limits with the others on these arcs.
+    /// Whether D, E and F may lie within limits with the other joints on these arcs.
     fn wrist_may_hold(&self, part: &Arc, arm: &[Arc; 3]) -> bool {
         let LimitProof { axes: [_, a, b, c, d, e, f], bend, .. } = self.arm;
         let mut end = Ball { middle: self.end.at(part.turn()), radius: part.half * norm(&self.end.sine) + OFF };
@@ -240,7 +243,7 @@ impl<'a> Moving<'a> {
         let cosine = dot(d, &end.middle);
         let spread = end.radius * (distance(d, &end.middle) + 0.5 * end.radius);
         let cosines = [cosine - spread, cosine + spread];
-        // How far the direction of the bent axis about the other turns with E: not at all in a wrist with right angles.
+        // Bound on the rotation of the bent axis about the other one as E turns: zero in a wrist with right angles.
         let squared_sine = 1.0 - cosines[0].abs().max(cosines[1].abs()).powi(2);
         let skew = dot(d, e).abs() + dot(e, f).abs();
         let swerve = |bend: &Arc| if squared_sine > 0.0 { bend.half * skew / squared_sine } else { PI };
@@ -250,14 +253,14 @@ impl<'a> Moving<'a> {
         })
     }
 
-    /// Whether D may be within limits: it turns the bent axis of F to `end`.
+    /// Whether D, which turns the bent axis of F to `end`, may lie within limits.
     fn fourth_may_hold(&self, bend: &Arc, end: &Ball, swerve: f64) -> bool {
         let LimitProof { axes: [_, _, _, _, d, e, f], across: [across, _], .. } = self.arm;
         let middle = azimuth(across, &end.middle) - azimuth(across, &bend.turn().about(e, f));
         Arc { middle, half: swerve + end.swerve(d) }.within(&self.limits[4]).is_some()
     }
 
-    /// Whether F may be within limits: it turns the axis of D, seen from the end of the chain, to the bent one.
+    /// Whether F may lie within limits: it turns the axis of D, expressed in the tip frame, to the bent one.
     fn last_may_hold(&self, part: &Arc, arm: &[Arc; 3], bend: &Arc, swerve: f64) -> bool {
         if self.limits[6].is_all() {
             return true;
@@ -272,7 +275,7 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// The direction of `v` about an axis, given two unit vectors across it.
+/// Returns the azimuth of `v` about an axis, given two unit vectors perpendicular to it.
 fn azimuth([x, y]: &[Vector; 2], v: &Vector) -> f64 {
     dot(y, v).atan2(dot(x, v))
 }
@@ -288,7 +291,7 @@ mod tests {
         [(PANDA, false), (XARM7, false), (GEN3, true), (iiwa14_of_urdf(), true)]
     }
 
-    /// The arm with its tip where the pose is what the joints do, and the proof for it.
+    /// Returns the arm with its tip frame set to the identity, and its proof.
     fn prepared((rows, by_first): ([[f64; 4]; 7], bool)) -> (AxisChain<7>, LimitProof) {
         let chain = AxisChain { tip: Frame::IDENTITY, ..AxisChain::of_rows(&rows) };
         (chain, LimitProof::new(&chain, by_first).expect("its axes meet"))

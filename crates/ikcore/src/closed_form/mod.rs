@@ -1,12 +1,14 @@
-//! Inverse kinematics in closed form: all configurations of an arm of three to seven joints for a pose, and whether they are surely
-//! all.
+//! Closed-form inverse kinematics: all configurations of an arm of three to seven joints for a pose, and whether that list is
+//! provably complete.
 //!
-//! Read `six` first: it decides the structure of a chain of six joints (`structure`) and its method (`spherical_wrist`,
-//! `sliding_arm`, `three_parallel`, `general`) once, and solves poses. Seven joints (`redundant`) become six by giving one of them
-//! (`given_joint`), or are solved for a given arm angle (`arm_angle`); `pose_family` asks them for many values at once, and
-//! what limits leave of the values is known from `parameter_arcs`, `arm_angle_limits` and `limit_proof`. Five (`five_joints`) become six by adding one; `planar` serves planar arms and SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of
-//! trigonometric polynomials (`trigonometric`), and yield candidates as cosines and sines; `verify` keeps those that forward
-//! kinematics confirms. `arm` takes the axes from a robot's chain and converts joint values.
+//! Start with `six`: it determines the structure of a six-joint chain (`structure`) and its method (`spherical_wrist`,
+//! `sliding_arm`, `three_parallel`, `general`) once, and solves poses. Arms of seven joints (`redundant`) reduce to six by
+//! fixing one joint (`given_joint`), or are solved for a given arm angle (`arm_angle`); `pose_family` solves for many
+//! parameter values at once, and `parameter_arcs`, `arm_angle_limits` and `limit_proof` bound the values that the limits
+//! allow. Arms of five joints (`five_joints`) become six by adding a virtual joint; `planar` covers planar arms and SCARAs.
+//! The methods reduce to canonical subproblems (`subproblem`) and to zeros of trigonometric polynomials (`trigonometric`),
+//! and yield candidates as cosines and sines; `verify` keeps those confirmed by forward kinematics. `arm` extracts the axes
+//! from a robot's chain and converts axis values to joint values.
 //!
 //! Sources: Pieper (1968); Raghavan and Roth (1990); Manocha and Canny (1994); Elias and Wen, "IK-Geo" (arXiv 2211.05737).
 

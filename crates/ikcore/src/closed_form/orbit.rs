@@ -1,38 +1,38 @@
-//! The circle that a point describes about an axis, prepared for many angles.
+//! Circle described by a point that turns about an axis, precomputed for many angles.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::vector::{Vector, add, cross, dot, scaled, sub};
 
-/// centre + cosine cos q + sine sin q.
+/// Circle centre + cosine cos q + sine sin q.
 #[derive(Debug, Clone, Copy)]
 pub struct Orbit {
-    /// The centre.
+    /// Centre of the circle.
     pub centre: Vector,
-    /// The lever at q = 0.
+    /// Radius vector at q = 0.
     pub cosine: Vector,
-    /// The lever a quarter of a turn on.
+    /// Radius vector at q = pi/2.
     pub sine: Vector,
 }
 
 impl Orbit {
-    /// Of `v`, turned about the unit vector `axis`.
+    /// Returns the circle of `v` as it turns about the unit vector `axis`.
     pub fn of(axis: &Vector, v: &Vector) -> Self {
         let centre = scaled(axis, dot(axis, v));
         Self { centre, cosine: sub(v, &centre), sine: cross(axis, v) }
     }
 
-    /// The same with coordinates along these unit vectors.
+    /// Expresses the circle in coordinates along three unit vectors.
     pub fn seen(&self, along: &[Vector; 3]) -> Self {
         let Self { centre, cosine, sine } = self;
         Self { centre: seen(along, centre), cosine: seen(along, cosine), sine: seen(along, sine) }
     }
 
-    /// The same elsewhere.
+    /// Translates the circle.
     pub fn moved(&self, by: &Vector) -> Self {
         Self { centre: add(&self.centre, by), ..*self }
     }
 
-    /// The point at an angle.
+    /// Returns the point at an angle.
     #[inline(always)]
     pub fn at(&self, turn: Angle) -> Vector {
         let Self { centre, cosine, sine } = self;
@@ -40,13 +40,13 @@ impl Orbit {
     }
 }
 
-/// The coordinates of `v` along three unit vectors.
+/// Returns the coordinates of `v` along three unit vectors.
 #[inline(always)]
 pub fn seen(along: &[Vector; 3], v: &Vector) -> Vector {
     [dot(&along[0], v), dot(&along[1], v), dot(&along[2], v)]
 }
 
-/// `v` turned about z.
+/// Rotates `v` about z.
 #[inline(always)]
 pub fn about_z(turn: Angle, v: &Vector) -> Vector {
     let [x, y, z] = *v;

@@ -1,15 +1,15 @@
-//! Arcs of an angle on which a quantity that swings with it stays within bounds.
+//! Arcs of an angle on which a sinusoid stays within bounds.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::closed_form::subproblem::CLAMP;
 use crate::math::turns::without_turns;
 
-/// An arc that ends by less before a limit (rad) may reach it: near a peak of its wave, a change of the pose within the tolerances of a
-/// caller moves its end by as much.
+/// Gap between the end of an arc and a limit (rad) that still counts as touching: near a peak of the wave, a pose change
+/// within a caller's tolerances moves the end by as much.
 const SLACK: f64 = 5e-3;
 
-/// base + swing cos(q - peak).
+/// Sinusoid base + swing cos(q - peak).
 #[derive(Debug, Clone, Copy)]
 pub struct Wave {
     base: f64,
@@ -18,12 +18,12 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// base + a cos q + b sin q.
+    /// Returns base + a cos q + b sin q.
     pub fn new(base: f64, a: f64, b: f64) -> Self {
         Self { base, swing: (a * a + b * b).sqrt(), peak: b.atan2(a) }
     }
 
-    /// Fits a function of one angle that has no higher harmonics, by four samples.
+    /// Fits a function of one angle without higher harmonics, by four samples.
     pub fn of(value: impl Fn(f64) -> f64) -> Self {
         let (east, north, west, south) = (value(0.0), value(0.5 * PI), value(PI), value(-0.5 * PI));
         Self::new(0.25 * (east + north + west + south), 0.5 * (east - west), 0.5 * (north - south))
@@ -33,17 +33,17 @@ impl Wave {
         self.base + self.swing * (q - self.peak).cos()
     }
 
-    /// The angles of its peak and its trough, and the values there.
+    /// Returns the angle and the value of the peak, and of the trough.
     pub fn extremes(&self) -> [(f64, f64); 2] {
         [(self.peak, self.base + self.swing), (self.peak + PI, self.base - self.swing)]
     }
 
-    /// Smallest and largest value between two angles.
+    /// Returns the smallest and the largest value between two angles.
     pub fn range(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
         if upper - lower >= TAU {
             return [self.base - self.swing, self.base + self.swing];
         }
-        // Whether angle + k turns lies between.
+        // Whether some angle + 2 pi k lies in between.
         let passes = |angle: f64| angle + TAU * ((lower - angle) / TAU).ceil() <= upper;
         let ends = [self.at(lower), self.at(upper)];
         let least = if passes(self.peak + PI) { self.base - self.swing } else { ends[0].min(ends[1]) };
@@ -51,7 +51,8 @@ impl Wave {
         [least, most]
     }
 
-    /// The angles at which the wave has a value, in (-pi, pi]: two, or its peak or trough where it misses the value by little.
+    /// Returns the angles, in (-pi, pi], at which the wave has a value: two, or its peak or trough if the wave misses the
+    /// value narrowly.
     pub fn angles_at(&self, value: f64) -> impl Iterator<Item = f64> {
         let Self { base, swing, peak } = *self;
         let slack = CLAMP * (base.abs() + swing);
@@ -60,8 +61,8 @@ impl Wave {
         [peak - off, peak + off].into_iter().filter(move |_| is_met).map(without_turns)
     }
 
-    /// The arcs on which the wave lies between two bounds. Bounds missed by little, or by `slack`, give an arc without length: whether the
-    /// parameter there has a configuration is to be tried.
+    /// Returns the arcs on which the wave lies between two bounds. Bounds missed narrowly, or by `slack`, give an arc of zero
+    /// length, which a solve at that value confirms or rejects.
     pub fn arcs_between(&self, [least, most]: [f64; 2], slack: f64) -> ParameterArcs {
         let Self { base, swing, peak } = *self;
         let slack = slack + CLAMP * (base.abs() + swing);
@@ -71,7 +72,7 @@ impl Wave {
         if swing <= slack {
             return ParameterArcs::CIRCLE;
         }
-        // cos(q - peak) between two bounds: an arc on each side of the peak, joined where a bound is not met.
+        // Two arcs, one on each side of the peak; they join where a bound is not met.
         let angle = |bound: f64| ((bound - base) / swing).clamp(-1.0, 1.0).acos();
         let (near, far) = (angle(most), angle(least));
         let mut arcs = ParameterArcs::NONE;
@@ -88,7 +89,7 @@ impl Wave {
     }
 }
 
-/// At most six arcs of a parameter (rad, m), each from its start to a larger or equal end.
+/// At most six arcs of a parameter (rad, m), as pairs of start and end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterArcs {
     arcs: [[f64; 2]; 6],
@@ -96,13 +97,13 @@ pub struct ParameterArcs {
 }
 
 impl ParameterArcs {
-    /// No value.
+    /// Empty set.
     pub const NONE: Self = Self { arcs: [[0.0; 2]; 6], count: 0 };
 
-    /// All angles from -pi to pi.
+    /// Full circle from -pi to pi.
     pub const CIRCLE: Self = Self { arcs: [[-PI, PI], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]], count: 1 };
 
-    /// One arc.
+    /// Returns a single arc.
     pub fn one(arc: [f64; 2]) -> Self {
         let mut arcs = Self::NONE;
         arcs.push(arc);
@@ -116,13 +117,14 @@ impl ParameterArcs {
         }
     }
 
-    /// Adds an arc, its start brought into [-pi, pi). One shrunk to a point may end before it starts by rounding.
+    /// Adds an arc with its start wrapped into [-pi, pi). Rounding may leave an arc of zero length with its end before its
+    /// start.
     fn push_wrapped(&mut self, start: f64, end: f64) {
         let turns = ((start + PI) / TAU).floor() * TAU;
         self.push([start - turns, end.max(start) - turns]);
     }
 
-    /// The parts of arcs of an angle that lie within limits, whole turns aside.
+    /// Intersects arcs of an angle with limits, modulo 2 pi.
     pub fn within(&self, [lower, upper]: [f64; 2]) -> Self {
         if upper - lower >= TAU {
             return *self;
@@ -139,7 +141,7 @@ impl ParameterArcs {
         within
     }
 
-    /// Whether an angle is in both, whole turns aside.
+    /// Whether the two sets have an angle in common, modulo 2 pi.
     pub fn meet(&self, others: &Self) -> bool {
         let both = |[a, b]: &[f64; 2], [c, d]: &[f64; 2]| {
             [-TAU, 0.0, TAU].iter().any(|turn| c + turn <= b + SLACK && a - SLACK <= d + turn)
@@ -147,7 +149,7 @@ impl ParameterArcs {
         self.iter().any(|arc| others.iter().any(|other| both(arc, other)))
     }
 
-    /// Values at equal distances along the arcs, `count` of them or a few more: each arc has one at least.
+    /// Returns values at equal distances along the arcs: `count` or a few more, and at least one on each arc.
     pub fn spread(&self, count: usize) -> impl Iterator<Item = f64> {
         let step = self.length() / count as f64;
         self.iter().flat_map(move |[start, end]| {
@@ -157,7 +159,7 @@ impl ParameterArcs {
         })
     }
 
-    /// `count` values, each far from those before: the middles of the arcs, then van der Corput's sequence along them.
+    /// Returns `count` well-separated values: the midpoints of the arcs, then van der Corput's sequence along the arcs.
     pub fn scattered(&self, count: usize) -> impl Iterator<Item = f64> {
         let length = self.length();
         let middles = self.iter().map(|[start, end]| 0.5 * (start + end));
@@ -169,7 +171,7 @@ impl ParameterArcs {
         middles.chain(further.map(along))
     }
 
-    /// The value at a distance along the arcs.
+    /// Returns the value at a distance along the arcs.
     fn at(&self, mut distance: f64) -> f64 {
         let mut value = 0.0;
         for [start, end] in self.iter() {
@@ -182,7 +184,7 @@ impl ParameterArcs {
         value
     }
 
-    /// Their lengths added up.
+    /// Returns the total length of the arcs.
     pub fn length(&self) -> f64 {
         self.iter().map(|[start, end]| end - start).sum()
     }

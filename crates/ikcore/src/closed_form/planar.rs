@@ -1,4 +1,5 @@
-//! Three parallel revolute joints, with or without a joint that slides along them: planar arms and SCARA.
+//! Three parallel revolute joints, optionally with a prismatic joint along their axes: planar arms and SCARA
+//! (subproblems 1 and 3).
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
@@ -10,14 +11,15 @@ use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// The method for such a chain: N = 3, or 4 with the sliding joint, wherever that is.
+/// Closed form of such a chain: N = 3, or 4 with the prismatic joint at any position.
 #[derive(Debug, Clone, Copy)]
 pub struct Planar<const N: usize> {
     chain: AxisChain<N>,
-    /// Which joints turn, in order, and which slides.
+    /// Indices of the revolute joints, in order, and of the prismatic joint.
     turning: [usize; 3],
     sliding: Option<usize>,
-    /// 1 or -1: whether the second and third joint turn as the first does, and whether the slide goes along it.
+    /// Signs, 1 or -1: rotation of the second and the third joint relative to the first, and direction of the prismatic
+    /// joint.
     senses: [f64; 2],
     along: f64,
     mark: Vector,
@@ -27,7 +29,7 @@ pub struct Planar<const N: usize> {
 }
 
 impl<const N: usize> Planar<N> {
-    /// `None` where the chain is no such arm.
+    /// Returns `None` if the chain is not of this kind.
     pub fn new(chain: &AxisChain<N>) -> Option<Self> {
         let mut turning = [0; 3];
         let mut sliding = None;
@@ -59,7 +61,7 @@ impl<const N: usize> Planar<N> {
         Some(Self { chain: *chain, turning, sliding, senses, along, mark, back: chain.tip.inverse(), floor, verifier })
     }
 
-    /// All joint values that bring the tip to `target`; none where it is out of reach, out of the plane or tilted.
+    /// Returns all joint values that bring the tip to `target`; none if the target is out of reach, off the plane or tilted.
     pub fn solve(&self, target: &Frame) -> Branches<N> {
         let goal = target.then::<Baseline>(&self.back);
         let [first, second, third] = self.turning.map(|k| self.chain.joints[k]);
@@ -67,7 +69,7 @@ impl<const N: usize> Planar<N> {
         let sum = onto_point(axis, &self.mark, &goal.turn::<Baseline>(&self.mark));
         let moved = sub(&goal.place::<Baseline>(&third.point), &third.point);
         let slide = self.along * dot(axis, &moved);
-        // In the plane across the axes.
+        // Projection onto the plane perpendicular to the axes.
         let flat = |v: &Vector| cross(axis, v);
         let links = [flat(&sub(&second.point, &first.point)), flat(&sub(&third.point, &second.point))];
         let reached = flat(&sub(&goal.place::<Baseline>(&third.point), &first.point));

@@ -1,4 +1,4 @@
-//! All configurations of a redundant arm for one pose, as a function of one parameter.
+//! Configurations of a redundant arm for one pose, as a function of the self-motion parameter.
 
 use crate::closed_form::arm_angle_limits::{Decisive, Values};
 use crate::closed_form::arm_branches::ArmBranches;
@@ -9,54 +9,54 @@ use crate::closed_form::redundant::{AxisLimits, Parameter, Redundant, RedundantP
 use crate::closed_form::verify::{LANES, values_of_seven};
 use crate::math::Frame;
 
-/// A redundant arm and a pose.
+/// Redundant arm with a pose.
 #[derive(Debug, Clone)]
 pub(crate) struct PoseFamily<'a> {
     redundant: &'a Redundant,
     drives: &'a Drives,
-    /// The limits of the arm itself.
+    /// Joint limits of the arm.
     own: &'a FamilyLimits,
     pose: RedundantPose,
 }
 
-/// Limits of the joints of a redundant arm, prepared for any pose.
+/// Joint limits of a redundant arm, precomputed for any pose.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FamilyLimits(AxisLimits);
 
 impl FamilyLimits {
-    /// The limits `lower` and `upper` (n,) (rad, m).
+    /// Prepares the limits `lower` and `upper` (n,) (rad, m).
     pub fn new(redundant: &Redundant, drives: &Drives, [lower, upper]: [&[f64]; 2]) -> Self {
         Self(redundant.limits(drives.of_axes(lower, upper)))
     }
 }
 
 impl<'a> PoseFamily<'a> {
-    /// The arm with the tip of its chain at `target`.
+    /// Returns the family of configurations with the tip of the chain at `target`.
     #[inline]
     pub fn new(redundant: &'a Redundant, drives: &'a Drives, own: &'a FamilyLimits, target: &Frame) -> Self {
         Self { redundant, drives, own, pose: redundant.pose(target) }
     }
 
-    /// The limits `lower` and `upper` (n,) (rad, m).
+    /// Prepares the limits `lower` and `upper` (n,) (rad, m).
     pub fn limits(&self, lower: &[f64], upper: &[f64]) -> FamilyLimits {
         let is_own = self.own.0.axes == self.drives.of_axes(lower, upper);
         if is_own { *self.own } else { FamilyLimits::new(self.redundant, self.drives, [lower, upper]) }
     }
 
-    /// The values of the parameter (rad, m) outside which no configuration is within limits. What they leave is to be searched: not
-    /// every value has a configuration within them.
+    /// Returns arcs of the parameter (rad, m) that contain every configuration within limits. Arcs may also hold values
+    /// without such a configuration, so they must be searched.
     pub fn arcs(&self, limits: &FamilyLimits) -> ParameterArcs {
         self.redundant.arcs(&self.pose, &limits.0)
     }
 
-    /// Whether no configuration is within limits for certain, although [`Self::arcs`] leaves `arcs`. False says nothing.
+    /// Whether the limits provably exclude every configuration, although [`Self::arcs`] leaves `arcs`. False proves nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
         self.redundant.is_excluded(&self.pose, &limits.0, arcs)
     }
 
-    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, the first `most` of them: none if there
-    /// is none for certain; None where these cannot be known. Values that cannot be excluded yet are offered to `visit`, which ends
-    /// this by returning true.
+    /// Returns the first `most` parameter values (rad) on `arcs` near which a configuration may lie within limits; an empty
+    /// list proves that there is none, and `None` means that the method does not apply. Values not yet excluded are offered
+    /// to `visit`, which returns true to stop.
     pub fn open_values(
         &self,
         limits: &FamilyLimits,
@@ -67,7 +67,8 @@ impl<'a> PoseFamily<'a> {
         self.redundant.open_values(&self.pose, &limits.0, arcs, most, &mut visit)
     }
 
-    /// Values of the parameter (rad, m) that decide whether any has a configuration within limits; None where these are not known.
+    /// Returns parameter values (rad, m) that decide whether any configuration lies within limits; `None` if no such set is
+    /// known.
     pub fn decisive(&self, limits: &FamilyLimits) -> Option<Decisive> {
         self.redundant.decisive(&self.pose, &limits.0)
     }
@@ -77,18 +78,19 @@ impl<'a> PoseFamily<'a> {
         self.redundant.parameter() == Parameter::ArmAngle
     }
 
-    /// Whether [`Self::arcs`] end where the branches end, and no branch is lost there. Elsewhere solutions may hide beside folds.
+    /// Whether [`Self::arcs`] end exactly where the branches end, so that no branch is lost there. Otherwise solutions may
+    /// hide near folds.
     pub fn is_sure_of_arcs(&self) -> bool {
         self.redundant.is_sure_of_arcs()
     }
 
-    /// All configurations with the parameter at `value`.
+    /// Returns all configurations with the parameter at `value`.
     pub fn branches_at(&self, value: f64) -> ArmBranches {
         ArmBranches::of(&self.redundant.solve(&self.pose, value), self.drives)
     }
 
-    /// Finds configurations with the parameter at `value` that bring the tip to the pose unless forward kinematics says otherwise, at less
-    /// cost than [`Self::branches_at`]. All that are within the limits are among them.
+    /// Finds configurations with the parameter at `value` that bring the tip to the pose, to be confirmed by forward
+    /// kinematics; cheaper than [`Self::branches_at`]. The result includes every configuration within the limits.
     #[inline]
     pub fn likely_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
         if self.redundant.has_exact_candidates() {
@@ -98,13 +100,13 @@ impl<'a> PoseFamily<'a> {
         }
     }
 
-    /// Whether the structure of the arm holds only nearly: [`Self::candidates_at`] yields configurations near those that bring the tip to
-    /// the pose.
+    /// Whether the structure of the arm holds only approximately, so that [`Self::candidates_at`] yields configurations near
+    /// the solutions.
     pub fn is_approximate(&self) -> bool {
         self.redundant.has_approximate_candidates()
     }
 
-    /// The candidates of the closed form within the limits, with the parameter at `value`; none for the general method.
+    /// Finds the candidates of the closed form within the limits, with the parameter at `value`; none for the general method.
     #[inline]
     pub fn candidates_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
@@ -113,8 +115,8 @@ impl<'a> PoseFamily<'a> {
         found.replace(self.drives, candidates.count, |columns| values_of_seven(verifier, &candidates, columns));
     }
 
-    /// Calls `visit` with configurations at each of `values`, several values together, until it returns false. All that are within
-    /// the limits are among them.
+    /// Calls `visit` with the configurations at each of `values`, several values at a time, until it returns false. The
+    /// configurations include every one within the limits.
     pub fn visit_within(
         &self,
         limits: &FamilyLimits,
@@ -128,7 +130,7 @@ impl<'a> PoseFamily<'a> {
         let mut candidates = Candidates::new();
         for value in values {
             self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
-            // There is room for those of one value more.
+            // Flush while there is still room for the candidates of one more value.
             if candidates.count > LANES && !visit(&self.first_verified(&mut candidates)) {
                 return;
             }
@@ -136,7 +138,7 @@ impl<'a> PoseFamily<'a> {
         while candidates.count > 0 && visit(&self.first_verified(&mut candidates)) {}
     }
 
-    /// Removes as many candidates as are verified together.
+    /// Removes and verifies the first candidates, one per lane.
     fn first_verified(&self, candidates: &mut Candidates) -> ArmBranches {
         let all = candidates.count;
         candidates.count = all.min(LANES);

@@ -1,4 +1,4 @@
-//! Three revolute joints that carry a point to a given point: the arm of a robot with a spherical wrist (Pieper 1968).
+//! Three revolute joints that carry a point to a given point: the arm before a spherical wrist (Pieper 1968).
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -11,29 +11,29 @@ use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, s
 use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::structure::Pair;
 
-/// Common normal of two axes times the sine of their angle, as a multiple of its rounding, below which they nearly meet or are nearly
-/// parallel.
+/// Length of the common normal of two axes times the sine of their angle, as a multiple of its rounding error, below which
+/// the axes nearly meet or are nearly parallel.
 pub const NEARLY_JOINED: f64 = 1e8;
 
 /// Angles of three joints.
 pub type Three = [Angle; 3];
 
-/// At most four sets of three angles.
+/// At most four solutions of three angles.
 #[derive(Debug, Clone, Copy)]
 pub struct Arms {
     sets: [Three; 4],
     count: usize,
-    /// A joint is free in one of the sets at least.
+    /// True if at least one solution has a free joint.
     pub free: bool,
-    /// Whether there may be others.
+    /// Doubt about further solutions.
     pub doubt: Doubt,
 }
 
 impl Arms {
-    /// No set.
+    /// Empty set.
     pub const NONE: Self = Self { sets: [[Angle::NONE; 3]; 4], count: 0, free: false, doubt: Doubt::None };
 
-    /// Adds a set; ignored when full.
+    /// Adds a solution; ignored when full.
     #[inline(always)]
     pub fn push(&mut self, set: Three) {
         if self.count < 4 {
@@ -42,7 +42,7 @@ impl Arms {
         }
     }
 
-    /// Takes over what is not sure of the angles of one joint.
+    /// Merges the doubt about the angles of one joint.
     #[inline(always)]
     pub fn add_doubt(&mut self, turns: &Turns<2>) {
         self.free |= turns.free;
@@ -52,7 +52,7 @@ impl Arms {
         self.doubt.add(turns.doubt);
     }
 
-    /// The order of joints from the other end.
+    /// Reverses the order of the joints.
     #[inline(always)]
     pub fn reverse(&mut self) {
         self.sets[..self.count].iter_mut().for_each(|set| set.reverse());
@@ -68,16 +68,16 @@ impl std::ops::Deref for Arms {
     }
 }
 
-/// Three axes and how two neighbours among them lie.
+/// Three axes, classified by how two neighbours lie.
 #[derive(Debug, Clone, Copy)]
 pub struct ThreeAxes {
     axes: [Vector; 3],
-    /// Points on the axes; those of axes that meet are one.
+    /// Points on the axes; axes that meet share their point.
     points: [Vector; 3],
     case: Case,
-    /// Solved from the far end: the inverse motion carries the goal to the point.
+    /// True if solved from the far end: the inverse motion carries the goal to the point.
     mirrored: bool,
-    /// Below this a lever counts as zero (m).
+    /// Length (m) below which a lever arm counts as zero.
     floor: f64,
 }
 
@@ -89,7 +89,7 @@ enum Case {
 }
 
 impl ThreeAxes {
-    /// Decides the method from how the neighbours lie; `size` is a length of the size of the arm (m).
+    /// Selects the method by how neighbouring axes lie; `size` is a characteristic length of the arm (m).
     pub fn new(joints: &[JointAxis; 3], first: Pair, last: Pair, size: f64) -> Self {
         let (case, mirrored) = match (first, last) {
             (_, Pair::Parallel) => (Case::FirstTwoParallel, true),
@@ -112,12 +112,12 @@ impl ThreeAxes {
         Self { axes, points, case, mirrored, floor: 1e-11 * size }
     }
 
-    /// All angles that carry `point` to `goal`; those that `ranges` cannot hold may be missing.
+    /// Returns all angles that carry `point` to `goal`; solutions outside `ranges` may be left out.
     #[inline(always)]
     pub fn reach(&self, point: &Vector, goal: &Vector, ranges: &[AngleRange; 3]) -> Arms {
         let (point, goal, of_q3) = if self.mirrored { (goal, point, &ranges[0]) } else { (point, goal, &ranges[2]) };
         let [p1, p2, p3] = &self.points;
-        // rot1 (b + rot2 (c + rot3 w)) = a.
+        // Equation to solve: rot1 (b + rot2 (c + rot3 w)) = a.
         let (a, b, c, w) = (sub(goal, p1), sub(p2, p1), sub(p3, p2), sub(point, p3));
         let mut arms = match self.case {
             Case::FirstTwoParallel => self.parallel(&a, &b, &c, &w, of_q3),
@@ -130,7 +130,8 @@ impl ThreeAxes {
         arms
     }
 
-    /// Axis 1 parallel to axis 2: the height along them gives q3, the distance q2.
+    /// Solves parallel axes 1 and 2: the height along the axes gives q3 (subproblem 4), the distance q2 (subproblem 3), and
+    /// subproblem 1 gives q1.
     #[inline(always)]
     fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
         let [h1, h2, h3] = &self.axes;
@@ -140,7 +141,7 @@ impl ThreeAxes {
         arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
-            // In the plane across the axes, where the heights cannot disturb the distance.
+            // Projection onto the plane perpendicular to the axes, where heights cannot disturb the distance.
             let (flat_a, flat_b, flat_u) = (cross(h1, a), cross(h1, b), cross(h1, &u));
             let lever = norm(b);
             let q2 = distance_to_point(h2, &flat_u, &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), self.floor * lever);
@@ -153,7 +154,8 @@ impl ThreeAxes {
         arms
     }
 
-    /// Axes 1 and 2 meet (b = 0): the distance from there gives q3, subproblem 2 the others.
+    /// Solves intersecting axes 1 and 2 (b = 0): the distance from their intersection gives q3 (subproblem 3), subproblem 2
+    /// the other angles.
     #[inline(always)]
     fn meeting(&self, a: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
         let [h1, h2, h3] = &self.axes;
@@ -162,7 +164,7 @@ impl ThreeAxes {
         arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
-            // rot2 u = rot1' a.
+            // Remaining equation: rot2 u = rot1' a.
             let (q2, back) = two_axes(h2, &u, h1, a, self.floor);
             arms.add_doubt(&q2);
             for (q2, back) in q2.iter().zip(&back) {
@@ -172,19 +174,20 @@ impl ThreeAxes {
         arms
     }
 
-    /// Axes 1 and 2 skew (subproblem 5): distance and height are linear in rot2 u, whose length then is a quadratic form in q3.
+    /// Solves skew axes 1 and 2 (subproblem 5): distance and height are linear in rot2 u, so that its length is a quadratic
+    /// form in q3.
     fn general(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
         let (e1, e2) = (perpendicular(h2), cross(h2, &perpendicular(h2)));
-        // u = c + rot3 w, as constant + cosine cos q3 + sine sin q3.
+        // Vector u = c + rot3 w, as constant + cosine cos q3 + sine sin q3.
         let along = scaled(h3, dot(h3, w));
         let (constant, cosine, sine) = (add(c, &along), sub(w, &along), cross(h3, w));
         let component = |n: &Vector| -> Linear { [dot(n, &constant), dot(n, &cosine), dot(n, &sine)] };
         let z = component(h2);
-        // |u|^2 is linear too: |c|^2 + |w|^2 + 2 c'rot3 w.
+        // Square of u, also linear: |u|^2 = |c|^2 + |w|^2 + 2 c'rot3 w.
         let square: Linear = [dot(c, c) + dot(w, w) + 2.0 * dot(c, &along), 2.0 * dot(c, &cosine), 2.0 * dot(c, &sine)];
-        // b'rot2 u = (|a|^2 - |b|^2 - |u|^2)/2 and h1'rot2 u = h1'(a - b), both without their parts along h2.
+        // Two equations, b'rot2 u = (|a|^2 - |b|^2 - |u|^2)/2 and h1'rot2 u = h1'(a - b), without their parts along h2.
         let (bz, hz) = (dot(b, h2), dot(h1, h2));
         let k1: Linear = std::array::from_fn(|k| {
             let one = if k == 0 { 0.5 * (dot(a, a) - dot(b, b)) } else { 0.0 };
@@ -202,7 +205,7 @@ impl ThreeAxes {
         form.add_product(1.0, &z, &z);
         form.add_linear(&square.map(|s| -s));
         let zeros = form.zeros();
-        // Axes that nearly meet, or are nearly parallel, leave rounding much room.
+        // Axes that nearly meet, or are nearly parallel, amplify rounding.
         arms.doubt = if determinant.abs() > NEARLY_JOINED * self.floor { zeros.doubt } else { Doubt::Open };
         for q3 in zeros.iter() {
             let at = |p: &Linear| p[0] + p[1] * q3.cos + p[2] * q3.sin;

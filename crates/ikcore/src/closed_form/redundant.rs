@@ -1,8 +1,8 @@
-//! Seven joints and a pose: the one parameter of the self-motion, and all branches for a value of it.
+//! Seven joints and a pose: all branches for a value of the self-motion parameter.
 //!
-//! The parameter is the first or the last joint, whichever leaves six joints with the better method, or the arm angle where the
-//! first and the last three axes meet (shoulder and wrist of an SRS arm): the angle of the elbow's axis about the line from shoulder
-//! to wrist.
+//! The parameter is the arm angle if the first and the last three axes meet (shoulder and wrist of an SRS arm): the angle of
+//! the elbow axis about the shoulder-wrist line. Otherwise it is the first or the last joint, whichever leaves six joints
+//! with the better method.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -19,23 +19,23 @@ use crate::closed_form::verify::{Verifier, verified_seven};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
 
-/// What is given besides the pose.
+/// Self-motion parameter of a redundant arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parameter {
-    /// The value of this axis (rad, m), counted from 0.
+    /// Value of this axis (rad, m), counted from 0.
     Axis(usize),
-    /// The angle of the elbow's axis about the line from shoulder to wrist (rad).
+    /// Angle of the elbow axis about the shoulder-wrist line (rad).
     ArmAngle,
 }
 
-/// The method for a chain of seven joints.
+/// Closed form of seven joints.
 #[derive(Debug, Clone)]
 pub struct Redundant {
     chain: AxisChain<7>,
     back: Frame,
     method: Method,
     distance: Option<ElbowDistance>,
-    /// For a joint as parameter.
+    /// Proof of infeasibility, used if the parameter is a joint.
     proof: Option<Box<LimitProof>>,
     verifier: Verifier<7>,
 }
@@ -46,26 +46,26 @@ enum Method {
     ArmAngle(Box<ArmAngle>),
 }
 
-/// A pose, prepared for any value of the parameter.
+/// Pose, precomputed for any value of the parameter.
 #[derive(Debug, Clone, Copy)]
 pub struct RedundantPose {
-    /// What the joints together must do: the product of their displacements.
+    /// Displacement that all joints together must produce.
     goal: Frame,
     by_arm_angle: Option<ArmAnglePose>,
 }
 
-/// Limits of the axes (rad, m), prepared for any pose.
+/// Limits of the axes (rad, m), precomputed for any pose.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisLimits {
-    /// From lower to upper.
+    /// Lower and upper limits.
     pub axes: [[f64; 2]; 7],
     ranges: [AngleRange; 7],
-    /// Squared distances between shoulder and wrist within the limits of joint 4.
+    /// Smallest and largest squared shoulder-wrist distance within the limits of joint 4.
     distances: [f64; 2],
 }
 
 impl Redundant {
-    /// Chooses the parameter; `None` where joints slide and no method fits.
+    /// Chooses the parameter; `None` if joints are prismatic and no method fits.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         let (method, distance, proof) = match ArmAngle::new(chain) {
             Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain), None),
@@ -81,7 +81,7 @@ impl Redundant {
         Some(Self { chain: *chain, back: chain.tip.inverse(), method, distance, proof, verifier })
     }
 
-    /// What the value in [`Self::solve`] means.
+    /// Returns the parameter that [`Self::solve`] takes.
     pub fn parameter(&self) -> Parameter {
         match &self.method {
             Method::Given(given) => Parameter::Axis(given.axis()),
@@ -89,7 +89,7 @@ impl Redundant {
         }
     }
 
-    /// The structure of the six joints that are left with the parameter given; `None` for the arm angle.
+    /// Returns the structure of the six joints left when the parameter is fixed; `None` for the arm angle.
     pub fn structure(&self) -> Option<Structure> {
         match &self.method {
             Method::Given(given) => Some(given.structure()),
@@ -97,7 +97,7 @@ impl Redundant {
         }
     }
 
-    /// Whether [`Self::add_candidates`] finds all configurations but for rounding.
+    /// Whether [`Self::add_candidates`] finds all configurations up to rounding.
     pub fn has_exact_candidates(&self) -> bool {
         match &self.method {
             Method::Given(given) => given.has_exact_candidates(),
@@ -105,17 +105,18 @@ impl Redundant {
         }
     }
 
-    /// Whether [`Self::add_candidates`] finds configurations off by what a structure that holds only nearly is off.
+    /// Whether [`Self::add_candidates`] finds only approximate configurations, because the structure holds only
+    /// approximately.
     pub fn has_approximate_candidates(&self) -> bool {
         self.structure().is_some_and(Structure::is_nearly)
     }
 
-    /// Whether [`Self::arcs`] end where the branches end, and no branch is lost there.
+    /// Whether [`Self::arcs`] end exactly where the branches end, so that no branch is lost there.
     pub fn is_sure_of_arcs(&self) -> bool {
         self.distance.is_some() && self.has_exact_candidates()
     }
 
-    /// The pose that brings the tip to `target`.
+    /// Prepares the pose that has the tip at `target`.
     pub fn pose(&self, target: &Frame) -> RedundantPose {
         let goal = target.then::<Baseline>(&self.back);
         let by_arm_angle = match &self.method {
@@ -135,7 +136,7 @@ impl Redundant {
         AxisLimits { axes, ranges, distances }
     }
 
-    /// All joint values, angles in (-pi, pi], that reach a pose with the parameter at `value` (rad, m).
+    /// Returns all joint values, angles in (-pi, pi], that reach a pose with the parameter at `value` (rad, m).
     pub fn solve(&self, pose: &RedundantPose, value: f64) -> Branches<7> {
         match &self.method {
             Method::Given(given) => given.solve(&pose.goal, value),
@@ -147,7 +148,7 @@ impl Redundant {
         }
     }
 
-    /// Adds all joint values that may reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
+    /// Adds candidates that reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
     fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
         match (&self.method, &pose.by_arm_angle) {
             (Method::Given(given), _) => given.add_candidates(&pose.goal, value, ranges, found),
@@ -158,22 +159,22 @@ impl Redundant {
         }
     }
 
-    /// The same for limits.
+    /// Adds candidates that reach a pose with the parameter at `value` (rad, m), as far as `limits` may hold them.
     pub fn add_candidates_within(&self, pose: &RedundantPose, value: f64, limits: &AxisLimits, found: &mut Candidates) {
         self.add_candidates(pose, value, &limits.ranges, found);
     }
 
-    /// The candidates that reach a pose.
+    /// Verifies candidates by forward kinematics.
     pub fn verified(&self, pose: &RedundantPose, candidates: &Candidates) -> Branches<7> {
         verified_seven(&self.verifier, &pose.goal, candidates)
     }
 
-    /// What turns the candidates into joint values.
+    /// Returns the verifier, which converts candidates to joint values.
     pub fn verifier(&self) -> &Verifier<7> {
         &self.verifier
     }
 
-    /// Whether limits exclude every value of the parameter for certain, although [`Self::arcs`] leaves `arcs`.
+    /// Whether the limits provably exclude every value of the parameter, although [`Self::arcs`] leaves `arcs`.
     pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
         match (&self.method, &pose.by_arm_angle) {
             (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
@@ -181,8 +182,8 @@ impl Redundant {
         }
     }
 
-    /// Values of the parameter (rad) on `arcs` near which a configuration may be within limits, as in [`LimitProof::open_values`]; None
-    /// where these cannot be known.
+    /// Returns parameter values (rad) on `arcs` near which a configuration may lie within limits, as in
+    /// [`LimitProof::open_values`]; `None` if that proof does not apply.
     pub fn open_values(
         &self,
         pose: &RedundantPose,
@@ -195,7 +196,7 @@ impl Redundant {
         Some(proof.open_values(&pose.goal, arcs, &limits.axes, most, visit))
     }
 
-    /// Values of the parameter that decide whether any has a configuration within limits; None where these are not known.
+    /// Returns parameter values that decide whether any configuration lies within limits; `None` if no such set is known.
     pub fn decisive(&self, pose: &RedundantPose, limits: &AxisLimits) -> Option<Decisive> {
         match (&self.method, &pose.by_arm_angle) {
             (Method::ArmAngle(method), Some(by_angle)) => {
@@ -205,9 +206,9 @@ impl Redundant {
         }
     }
 
-    /// The values of the parameter outside which joint 4 or the parameter's own joint cannot be within limits.
+    /// Returns arcs of the parameter outside which joint 4 or the parameter's own joint violates its limits.
     ///
-    /// Exact, so that an arc shrunk to a point, with joint 4 at its limit, is not lost between samples.
+    /// The ends are exact, so that an arc of zero length, with joint 4 at its limit, is not lost between samples.
     pub fn arcs(&self, pose: &RedundantPose, limits: &AxisLimits) -> ParameterArcs {
         let AxisLimits { axes, distances, .. } = limits;
         match (self.parameter(), &self.distance) {
@@ -247,7 +248,7 @@ mod tests {
     use crate::closed_form::vector::{norm, sub};
     use crate::math::vector::between;
 
-    /// Largest difference of angles, whole turns aside.
+    /// Returns the largest angle difference modulo 2 pi.
     fn apart(a: &[f64; 7], b: &[f64; 7]) -> f64 {
         a.iter().zip(b).map(|(a, b)| ((a - b + PI).rem_euclid(TAU) - PI).abs()).fold(0.0, f64::max)
     }

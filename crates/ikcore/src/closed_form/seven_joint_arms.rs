@@ -1,4 +1,4 @@
-//! Arms with seven joints for the tests: rows (a, alpha, d, theta) of standard Denavit-Hartenberg tables.
+//! Test arms with seven joints: rows (a, alpha, d, theta) of standard Denavit-Hartenberg tables.
 
 use std::f64::consts::{FRAC_PI_2 as Q, PI};
 
@@ -59,7 +59,7 @@ pub const BAXTER: [[f64; 4]; 7] = [
     [0.0, 0.0, 0.229525, 0.0],
 ];
 
-/// The public URDF: axes 1 and 2, and 3 and 4, miss each other by 0.436 mm.
+/// Returns the arm of the public URDF, in which axes 1 and 2, and 3 and 4, miss each other by 0.436 mm.
 pub fn iiwa14_of_urdf() -> [[f64; 4]; 7] {
     let mut rows = IIWA14;
     (rows[0][0], rows[2][0]) = (-0.00043624, 0.00043624);

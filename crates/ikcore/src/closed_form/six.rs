@@ -1,4 +1,4 @@
-//! Six revolute joints: which method fits, decided once, and all branches for a pose.
+//! Six joints: selects the method once, and returns all branches for a pose.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -16,36 +16,37 @@ use crate::closed_form::verify::{Verifier, values_of_six, verified};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
 
-/// The structure of a chain of six revolute joints.
+/// Structure of a six-joint chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Structure {
     /// Axes `first` to `first` + 2, counted from 1, meet in one point.
     ThreeMeet {
-        /// The first of them.
+        /// First of the three axes.
         first: usize,
-        /// Only nearly.
+        /// True if the axes meet only approximately.
         nearly: bool,
     },
     /// Axes `first` to `first` + 2, counted from 1, are parallel.
     ThreeParallel {
-        /// The first of them.
+        /// First of the three axes.
         first: usize,
-        /// Only nearly.
+        /// True if the axes are parallel only approximately.
         nearly: bool,
     },
-    /// Neither: up to sixteen solutions.
+    /// General geometry: up to sixteen solutions.
     General,
-    /// Joints slide, and no method fits.
+    /// Some joints are prismatic, and no method fits.
     Unsolved,
 }
 
 impl Structure {
-    /// Whether its method proves that a pose has no other solutions: where zeros of a polynomial are counted, rounding may hide some.
+    /// Whether the method proves that a pose has no other solutions. The general method does not: it counts zeros of a
+    /// polynomial, and rounding may hide some.
     pub fn proves(self) -> bool {
         matches!(self, Self::ThreeMeet { nearly: false, .. } | Self::ThreeParallel { nearly: false, .. })
     }
 
-    /// Whether it holds only nearly: its method gives starts.
+    /// Whether the structure holds only approximately, so that its method gives starting points.
     pub fn is_nearly(self) -> bool {
         matches!(self, Self::ThreeMeet { nearly: true, .. } | Self::ThreeParallel { nearly: true, .. })
     }
@@ -70,7 +71,7 @@ impl fmt::Display for Structure {
     }
 }
 
-/// The method for a chain of six revolute joints.
+/// Closed form of a six-joint chain.
 #[derive(Debug, Clone)]
 pub struct ClosedForm {
     chain: AxisChain<6>,
@@ -79,7 +80,8 @@ pub struct ClosedForm {
     verifier: Verifier<6>,
     back: Frame,
     size: f64,
-    /// The general method beside one that holds only nearly: beside folds of the elbow, that one loses solutions.
+    /// General method, used in addition where the structure holds only approximately: that structure loses solutions near
+    /// folds of the elbow.
     further: Option<Box<[General; 2]>>,
 }
 
@@ -88,18 +90,18 @@ pub struct ClosedForm {
 enum Method {
     Spherical(SphericalWrist),
     Parallel(ThreeParallel),
-    /// The loop is opened elsewhere for every pose, and the structure found there.
+    /// Opens the loop after joint `at` for every pose, and looks for the structure there.
     Opened {
         at: usize,
         tolerance: f64,
     },
-    /// Both ways, the better one first.
+    /// Both directions of the general method, the better one first.
     General(Box<[General; 2]>),
     None,
 }
 
 impl ClosedForm {
-    /// Decides the method from the numbers of the chain.
+    /// Selects the method from the geometry of the chain.
     pub fn new(chain: &AxisChain<6>) -> Self {
         let mut form = Self::structured(chain);
         if form.structure.is_nearly() && chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns) {
@@ -109,7 +111,7 @@ impl ClosedForm {
         form
     }
 
-    /// The same, and where a structure holds only nearly, nothing beyond what that yields: quicker.
+    /// Selects the method by structure alone: faster, but incomplete where the structure holds only approximately.
     pub fn structured(chain: &AxisChain<6>) -> Self {
         let size = chain.size();
         let (structure, method) = decide(&chain.joints, size);
@@ -118,7 +120,7 @@ impl ClosedForm {
         let back = chain.tip.inverse();
         let mut form = Self { chain: *chain, structure, method, verifier, back, size, further: None };
         if !matches!(structure, Structure::General | Structure::Unsolved) && !form.finds_samples() {
-            // Axes that coincide, say, defeat the method of a structure: it is checked before it is trusted.
+            // Degenerate chains, for example with coincident axes, defeat the method of a structure: test it first.
             let turning = chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns);
             (form.structure, form.method) =
                 if turning { general(&chain.joints, size) } else { (Structure::Unsolved, Method::None) };
@@ -130,7 +132,7 @@ impl ClosedForm {
         form
     }
 
-    /// Whether the method finds configurations spread evenly again.
+    /// Whether the method reproduces a set of evenly spread configurations.
     fn finds_samples(&self) -> bool {
         samples().all(|q| {
             let found = self.solve(&self.chain.tip_at(&q));
@@ -139,7 +141,7 @@ impl ClosedForm {
         })
     }
 
-    /// The better way of the general method first.
+    /// Sorts the two directions of the general method, the better one first.
     fn ordered(&self, mut ways: Box<[General; 2]>) -> Box<[General; 2]> {
         let [first, second] = [0, 1].map(|way| self.trouble(&ways[way]));
         if second < first {
@@ -148,7 +150,7 @@ impl ClosedForm {
         ways
     }
 
-    /// How often one way of the general method leaves something open.
+    /// Counts the sample poses for which one direction of the general method is inconclusive.
     fn trouble(&self, way: &General) -> usize {
         let mut trouble = 0;
         for q in samples() {
@@ -163,18 +165,18 @@ impl ClosedForm {
         trouble
     }
 
-    /// What the method rests on.
+    /// Returns the structure that the method relies on.
     pub fn structure(&self) -> Structure {
         self.structure
     }
 
-    /// All joint angles, in (-pi, pi], that bring the tip to `target`.
+    /// Returns all joint angles, in (-pi, pi], that bring the tip to `target`.
     #[inline]
     pub fn solve(&self, target: &Frame) -> Branches<6> {
         self.solve_displacement(&target.then::<Baseline>(&self.back), target)
     }
 
-    /// The same for a known displacement of the tip from where it is at zero to `target`.
+    /// Returns all joint angles for a known displacement `goal` of the tip from the zero configuration to `target`.
     #[inline]
     pub fn solve_displacement(&self, goal: &Frame, target: &Frame) -> Branches<6> {
         if let Method::General(ways) = &self.method {
@@ -192,8 +194,8 @@ impl ClosedForm {
         }
     }
 
-    /// Adds all joint angles that may displace the tip by `goal`, as far as `ranges` may hold them. Not for the general method, which
-    /// knows of none before it has verified them.
+    /// Adds candidates that displace the tip by `goal`, as far as `ranges` may hold them. Adds none for the general method,
+    /// whose candidates exist only verified.
     #[inline]
     pub fn add_candidates(&self, goal: &Frame, ranges: &[AngleRange; 6], candidates: &mut Candidates) {
         match &self.method {
@@ -204,8 +206,8 @@ impl ClosedForm {
         }
     }
 
-    /// Finds joint values that bring the tip to `target` unless forward kinematics says otherwise, or where the structure holds only
-    /// nearly, that bring it near; none for the general method.
+    /// Finds joint values that bring the tip to `target`, to be confirmed by forward kinematics, or near it if the structure
+    /// holds only approximately; none for the general method.
     #[inline]
     pub fn likely(&self, target: &Frame, drives: &Drives, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
@@ -214,16 +216,17 @@ impl ClosedForm {
         found.is_all = self.has_exact_candidates() && candidates.doubt == Doubt::None && !candidates.singular;
     }
 
-    /// Whether candidates are solutions but for rounding.
+    /// Whether candidates are solutions up to rounding.
     pub fn has_exact_candidates(&self) -> bool {
         !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
     }
 
-    /// One way, and the other too where the first may miss something: where zeros nearly coincide, their count is no proof either.
+    /// Solves in one direction, and in the other too if the first may have missed a solution. A count with nearly coincident
+    /// zeros is no proof.
     fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
         for way in ways {
             let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
-            // No more branches than zeros: as many of both leave none to be found.
+            // Zeros bound the number of branches: equal counts mean that none is missing.
             let is_all = account.sound && found.len() >= account.zeros;
             found.doubt = if is_all { Doubt::Beside } else { Doubt::Open };
             if is_all {
@@ -234,7 +237,7 @@ impl ClosedForm {
         found
     }
 
-    /// What Newton's method finds beyond the zeros.
+    /// Searches by Newton's method for branches that the zeros missed.
     #[cold]
     fn search_further(&self, ways: &[General; 2], goal: &Frame, target: &Frame, found: &mut Branches<6>) {
         for way in ways {
@@ -242,11 +245,11 @@ impl ClosedForm {
         }
     }
 
-    /// The structure lies elsewhere in the loop that chain and pose close: opens it after `at` joints.
+    /// Solves a structure found elsewhere in the loop that chain and pose close: opens the loop after `at` joints.
     fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates) {
         let joints = AxisChain::rotated(&self.chain.joints, goal, at);
         let mut turned = Candidates::new();
-        // By the pose, axes that are no neighbours in the arm may come to meet or to be parallel, or nearly so.
+        // Axes that are not neighbours in the arm may meet or be parallel at this pose, exactly or nearly.
         if !are_sharp(&joints, self.size) {
             turned.doubt = Doubt::Open;
         }
@@ -300,7 +303,7 @@ fn decide(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
             let method = match first {
                 4 => Method::Spherical(SphericalWrist::new(joints, &centre, size, tolerance)),
                 1 => Method::Spherical(SphericalWrist::shoulder(joints, &centre, size, tolerance)),
-                // Opened after the three, they are the last.
+                // Loop opened after the three axes, which makes them the last.
                 _ => Method::Opened { at: (first + 2) % 6, tolerance },
             };
             return (Structure::ThreeMeet { first, nearly }, method);
@@ -311,7 +314,7 @@ fn decide(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
             }
             let method = match first {
                 2 => Method::Parallel(ThreeParallel::new(joints, size, tolerance)),
-                // Opened one joint before the three, they are the second to fourth.
+                // Loop opened one joint before the three axes, which makes them the second to fourth.
                 _ => Method::Opened { at: (first + 4) % 6, tolerance },
             };
             return (Structure::ThreeParallel { first, nearly }, method);
@@ -328,13 +331,13 @@ fn general_ways(joints: &[JointAxis; 6], size: f64) -> Box<[General; 2]> {
     Box::new([General::new(joints, size), General::reversed(joints, size)])
 }
 
-/// A few configurations spread evenly: multiples of irrational numbers, as turns.
+/// Returns a few evenly spread configurations: multiples of irrational numbers, as turns.
 pub fn samples() -> impl Iterator<Item = [f64; 6]> {
     let roots = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0_f64].map(f64::sqrt);
     (1..=8).map(move |sample| roots.map(|root| TAU * (f64::from(sample) * root).fract() - PI))
 }
 
-/// Only spherical wrists on arms that slide have a method.
+/// Selects the method for arms with prismatic joints, which need a spherical wrist.
 fn decide_sliding(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
     let wrist = &joints[3..];
     if wrist.iter().all(|joint| joint.motion == AxisKind::Turns) {

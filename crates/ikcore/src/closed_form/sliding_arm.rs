@@ -1,4 +1,4 @@
-//! Arms with a spherical wrist of which one of the first three joints slides, or all do: Stanford arm, cylindrical arms, gantries.
+//! Spherical-wrist arms with one or three prismatic joints among the first three: Stanford arm, cylindrical arms, gantries.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisKind, JointAxis};
@@ -8,29 +8,29 @@ use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{CLAMP, NEARLY_DOUBLE, distance_to_point, onto_point, two_axes};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
 
-/// Three joints, prepared.
+/// Precomputed first three joints.
 #[derive(Debug, Clone, Copy)]
 pub struct SlidingArm {
     axes: [Vector; 3],
     points: [Vector; 3],
     case: Case,
-    /// The slide is the first joint: solved from the far end.
+    /// True if the prismatic joint is the first: solved from the far end.
     mirrored: bool,
     floor: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Case {
-    /// Two joints that turn about axes that meet, then a slide.
+    /// Two revolute joints with intersecting axes, then a prismatic joint.
     MeetThenSlide,
-    /// Two joints that turn about parallel axes, then a slide not across them.
+    /// Two revolute joints with parallel axes, then a prismatic joint not perpendicular to them.
     ParallelThenSlide,
-    /// Three slides that span the space.
+    /// Three prismatic joints that span space.
     ThreeSlides,
 }
 
 impl SlidingArm {
-    /// `None` where no method fits; `size` is a length of the size of the arm (m).
+    /// Returns `None` if no method fits; `size` is a characteristic length of the arm (m).
     pub fn new(joints: &[JointAxis; 3], size: f64, tolerance: f64) -> Option<Self> {
         let floor = 1e-11 * size;
         let mut axes = joints.map(|joint| joint.axis);
@@ -61,11 +61,11 @@ impl SlidingArm {
         Some(Self { axes, points, case, mirrored, floor })
     }
 
-    /// All joint values that carry `point` to `goal`. The value of a slide is in the sine of its turn.
+    /// Returns all joint values that carry `point` to `goal`. A prismatic displacement is stored in the sine.
     pub fn reach(&self, point: &Vector, goal: &Vector) -> Arms {
         let (point, goal) = if self.mirrored { (goal, point) } else { (point, goal) };
         let [p1, p2, _] = &self.points;
-        // rot1 (b + rot2 (u + d h3)) = a.
+        // Equation to solve: rot1 (b + rot2 (u + d h3)) = a.
         let (a, b, u) = (sub(goal, p1), sub(p2, p1), sub(point, p2));
         let mut arms = match self.case {
             Case::MeetThenSlide => self.meeting(&a, &u),
@@ -78,11 +78,11 @@ impl SlidingArm {
         arms
     }
 
-    /// The distance from where the axes meet gives the slide.
+    /// Solves intersecting axes: the distance from their intersection gives the prismatic displacement, subproblem 2 the angles.
     fn meeting(&self, a: &Vector, u: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
-        // d^2 + 2 d u'h3 + |u|^2 = |a|^2, by what is across the slide.
+        // Quadratic equation d^2 + 2 d u'h3 + |u|^2 = |a|^2, in terms of the component perpendicular to the slide.
         let across = cross(h3, u);
         let (middle, distance) = (-dot(u, h3), dot(a, a));
         let radicand = distance - dot(&across, &across);
@@ -104,7 +104,7 @@ impl SlidingArm {
         arms
     }
 
-    /// The height along the axes gives the slide, the distance the second joint.
+    /// Solves parallel axes: the height along them gives the prismatic displacement, subproblems 3 and 1 the angles.
     fn parallel(&self, a: &Vector, b: &Vector, u: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
@@ -121,7 +121,7 @@ impl SlidingArm {
         arms
     }
 
-    /// Cramer's rule.
+    /// Solves three prismatic joints by Cramer's rule.
     fn slides(&self, way: &Vector) -> Arms {
         let [h1, h2, h3] = &self.axes;
         let mut arms = Arms::NONE;
@@ -132,7 +132,7 @@ impl SlidingArm {
     }
 }
 
-/// A displacement of a slide, in a set of turns.
+/// Returns a prismatic displacement in the form of candidates.
 fn slid(value: f64) -> Angle {
     Angle { cos: 1.0, sin: value }
 }

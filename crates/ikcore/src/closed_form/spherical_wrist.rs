@@ -1,5 +1,5 @@
-//! Six revolute joints of which the last three meet: the wrist centre gives the first three angles, the rotation left the
-//! others. At most eight solutions (Pieper 1968).
+//! Six joints, the last three of which form a spherical wrist: the wrist centre gives the first three joints, the remaining
+//! rotation the last three. At most eight solutions (Pieper 1968).
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
@@ -13,14 +13,14 @@ use crate::closed_form::wrist::{Pointing, Wrist};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// The first three joints.
+/// First three joints.
 #[derive(Debug, Clone, Copy)]
 enum Arm {
     Turning(ThreeAxes),
     Sliding(SlidingArm),
 }
 
-/// An arm with a spherical wrist, prepared.
+/// Precomputed arm with a spherical wrist.
 #[derive(Debug, Clone, Copy)]
 pub struct SphericalWrist {
     arm: Arm,
@@ -28,12 +28,12 @@ pub struct SphericalWrist {
     axes: [Vector; 3],
     slides: [bool; 3],
     centre: Vector,
-    /// The chain was taken from tip to base: its first three axes meet.
+    /// True if the chain is taken from tip to base: its first three axes meet.
     reversed: bool,
 }
 
 impl SphericalWrist {
-    /// For joints whose last three axes meet at `centre`; `size` is a length of the size of the arm (m).
+    /// Prepares an arm whose last three axes meet at `centre`; `size` is a characteristic length of the arm (m).
     pub fn new(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
         let [a, b, c, d, e, f] = *joints;
         let pair = |first: &JointAxis, second: &JointAxis| Pair::of(first, second, size, tolerance);
@@ -47,13 +47,13 @@ impl SphericalWrist {
         }
     }
 
-    /// The same where joints before the wrist slide; `None` where no method fits.
+    /// Prepares an arm with prismatic joints before the wrist; `None` if no method fits.
     pub fn sliding(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Option<Self> {
         let arm = SlidingArm::new(&[joints[0], joints[1], joints[2]], size, tolerance)?;
         Some(Self { arm: Arm::Sliding(arm), ..Self::new(joints, centre, size, tolerance) })
     }
 
-    /// For joints whose first three axes meet at `centre`: the same, from tip to base.
+    /// Prepares an arm whose first three axes meet at `centre`, by taking the chain from tip to base.
     pub fn shoulder(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
         let backwards = std::array::from_fn(|k| {
             let joint = &joints[5 - k];
@@ -62,11 +62,11 @@ impl SphericalWrist {
         Self { reversed: true, ..Self::new(&backwards, centre, size, tolerance) }
     }
 
-    /// All joint angles whose displacements make `goal`, as far as `ranges` may hold them.
+    /// Adds candidates whose displacements make `goal`, as far as `ranges` may hold them.
     #[inline(always)]
     pub fn solve(&self, goal: &Frame, ranges: &[AngleRange; 6], found: &mut Candidates) {
         let [a, b, c, d, e, f] = *ranges;
-        // Reversed: E6^-1 ... E1^-1 = H^-1, and a negative axis turns E^-1 into E.
+        // Reversed loop: E6^-1 ... E1^-1 = H^-1, and a negative axis turns E^-1 into E.
         if self.reversed {
             self.solve_forward(&goal.inverse(), [&[f, e, d], &[c, b, a]], found, |arm, wrist| {
                 [wrist[2], wrist[1], wrist[0], arm[2], arm[1], arm[0]]
@@ -108,7 +108,7 @@ impl SphericalWrist {
         }
     }
 
-    /// rot3' rot2' rot1' v.
+    /// Returns rot3' rot2' rot1' v.
     #[inline(always)]
     fn undone(&self, arm: &Three, v: &Vector) -> Vector {
         let mut v = *v;

@@ -1,32 +1,32 @@
-//! How neighbouring axes of a chain lie: parallel, meeting, skew; read from its numbers once.
+//! Relations between neighbouring axes of a chain, found once from its geometry: parallel, intersecting or skew.
 
 use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
 
-/// How far from parallel (rad) or from meeting (as a fraction of the arm's size) axes may be.
+/// Tolerance for parallel (rad) and for intersecting axes (as a fraction of the arm's size).
 ///
-/// Robot descriptions print angles with eleven digits or so: what is left then is polished away.
+/// Robot descriptions print angles with about eleven digits; polishing removes the remaining error.
 pub const EXACT: f64 = 1e-9;
 
-/// Relations that hold to [`EXACT`] but not to this leave rounding of a size that proofs do not allow for.
+/// Tolerance for exact relations. Relations that hold to [`EXACT`] but not to this leave rounding too large for a proof.
 const SHARP: f64 = 2e-11;
 
-/// The same for arms that were decomposable before they were calibrated: the closed form only gives starts.
+/// Tolerance for arms that were decomposable before calibration; their closed form only gives starting points.
 pub const NEARLY: f64 = 5e-3;
 
-/// How two axes lie.
+/// Relation between two axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pair {
-    /// Parallel, in the same or the opposite sense.
+    /// Parallel or antiparallel axes.
     Parallel,
-    /// They meet at this point.
+    /// Axes that meet at this point.
     Meet(Vector),
-    /// Neither.
+    /// Skew axes.
     Skew,
 }
 
 impl Pair {
-    /// How the axes of two joints that turn lie; lengths are compared with `size` (m).
+    /// Classifies the axes of two revolute joints; lengths are relative to `size` (m).
     pub fn of(first: &JointAxis, second: &JointAxis, size: f64, tolerance: f64) -> Self {
         let normal = cross(&first.axis, &second.axis);
         let sine = norm(&normal);
@@ -37,7 +37,7 @@ impl Pair {
         if dot(&between, &normal).abs() > tolerance * size * sine {
             return Self::Skew;
         }
-        // The feet of the common normal; the middle, where they differ by rounding.
+        // Feet of the common normal, or their midpoint if they differ by rounding.
         let foot = |joint: &JointAxis, other: &JointAxis, from: &Vector| {
             let along = cross(&other.axis, &normal);
             add_scaled(&joint.point, &joint.axis, dot(from, &along) / dot(&joint.axis, &along))
@@ -47,7 +47,7 @@ impl Pair {
     }
 }
 
-/// Whether three axes in a row meet in one point.
+/// Returns the point where three consecutive axes meet, if they do.
 pub fn three_meet(joints: &[JointAxis], size: f64, tolerance: f64) -> Option<Vector> {
     let [first, second, third] = joints else { return None };
     let Pair::Meet(point) = Pair::of(first, second, size, tolerance) else { return None };
@@ -56,11 +56,11 @@ pub fn three_meet(joints: &[JointAxis], size: f64, tolerance: f64) -> Option<Vec
     (!parallel && off <= tolerance * size).then_some(point)
 }
 
-/// Whether each relation between axes in a row holds to rounding or not at all, so that a method that builds on it may prove something.
+/// Whether each relation between consecutive axes either holds to rounding or clearly fails, as a proof requires.
 pub fn are_sharp(joints: &[JointAxis], size: f64) -> bool {
     let pair_is_sharp = |pair: &[JointAxis]| {
         let [exact, sharp] = [EXACT, SHARP].map(|tolerance| Pair::of(&pair[0], &pair[1], size, tolerance));
-        // The point of a joint that slides means nothing.
+        // Prismatic joints have no meaningful axis point.
         let turning = pair.iter().all(|joint| joint.motion == AxisKind::Turns);
         let same = (exact == Pair::Parallel) == (sharp == Pair::Parallel);
         same && (!turning || (exact == Pair::Skew) == (sharp == Pair::Skew))
@@ -72,7 +72,7 @@ pub fn are_sharp(joints: &[JointAxis], size: f64) -> bool {
     joints.windows(2).all(pair_is_sharp) && joints.windows(3).all(three_are_sharp)
 }
 
-/// Whether three axes in a row are parallel, and no two of them one line.
+/// Whether three consecutive axes are parallel, and no two of them coincide.
 pub fn three_parallel(joints: &[JointAxis], size: f64, tolerance: f64) -> bool {
     let parallel = |a: &JointAxis, b: &JointAxis| Pair::of(a, b, size, tolerance) == Pair::Parallel;
     let apart = |a: &JointAxis, b: &JointAxis| norm(&sub(&b.nearest_to(&a.point), &a.point)) > 1e-3 * size;

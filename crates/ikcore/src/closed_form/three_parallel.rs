@@ -1,7 +1,7 @@
-//! Six revolute joints of which the second to fourth are parallel: UR, Techman and their like, at most eight solutions.
+//! Six revolute joints with parallel axes 2 to 4, as in UR and Techman arms: at most eight solutions.
 //!
-//! The direction h of the three and the line of axis 6 give two equations in q1 and q5 alone; then a planar arm of two links is
-//! left. With n and p6 the direction of axis 6 and a point on it, H the displacement asked for:
+//! The direction h of the three axes and the line of axis 6 give two equations in q1 and q5 alone; the rest is a planar arm
+//! with two links. With n the direction of axis 6, p6 a point on it, and H the required displacement:
 //!
 //! h'rot1' R_H n = h'rot5 n,   h'rot1' (H p6 - p1) = h'(p5 - p1) + h'rot5 (p6 - p5)
 
@@ -22,75 +22,76 @@ use crate::math::arithmetic::{Arithmetic, Baseline};
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 
-/// An arm with three parallel axes, prepared.
+/// Precomputed arm with three parallel axes.
 #[derive(Debug, Clone, Copy)]
 pub struct ThreeParallel {
     axes: [Vector; 6],
     points: [Vector; 6],
     last: Last,
     bend: Bend,
-    /// 1 or -1: whether axes 3 and 4 point as axis 2 does.
+    /// Signs, 1 or -1: directions of axes 3 and 4 relative to axis 2.
     senses: [f64; 2],
-    /// Two unit vectors across the three axes, and h.
+    /// Two unit vectors perpendicular to the three axes, and h.
     flat: [Vector; 3],
-    /// Two unit vectors across axis 6, and that axis.
+    /// Two unit vectors perpendicular to axis 6, and axis 6.
     end: [Vector; 3],
-    /// Seen along `end`, by q5: where the first of `flat` and h are turned back to, and p4 from p6.
+    /// Circles in q5, in coordinates along `end`: the first vector of `flat`, h, and p4 relative to p6, each rotated back by
+    /// joint 5.
     mark: Orbit,
     seen: Orbit,
     wrist: Orbit,
-    /// The links from axis 2 to 3 and from 3 to 4, in the plane across them.
+    /// Links from axis 2 to 3 and from 3 to 4, in the plane perpendicular to the axes.
     links: [[f64; 2]; 2],
     elbow: Elbow,
     floor: f64,
 }
 
-/// The equation of q3, a cos q3 + b sin q3 = c: the sum of the links is as long as the way to be reached.
+/// Elbow equation a cos q3 + b sin q3 = c (subproblem 3): the sum of the links has the required length.
 #[derive(Debug, Clone, Copy)]
 struct Elbow {
     a: f64,
     b: f64,
-    /// The squared lengths of the links.
+    /// Squared lengths of the links.
     squares: [f64; 2],
-    /// Below this c counts as zero where a and b are.
+    /// Value below which c counts as zero if a and b do.
     floor: f64,
 }
 
-/// Joint 1 at one of its angles.
+/// One solution for joint 1.
 #[derive(Debug, Clone, Copy)]
 struct Shoulder {
     q1: Angle,
-    /// The vectors of `flat`, seen from the tip along `end`.
+    /// Vectors of `flat`, rotated to the tip and in coordinates along `end`.
     axes: [Vector; 3],
-    /// Where p6 lies in the plane across the three axes, from axis 2.
+    /// Position of p6 relative to axis 2, in the plane perpendicular to the three axes.
     offset: [f64; 2],
 }
 
-/// Shoulder and wrist of up to four branches, side by side.
+/// Shoulder and wrist of up to four branches, in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 struct Wrists {
-    /// The first two of [`Shoulder::axes`].
+    /// First two vectors of [`Shoulder::axes`].
     x: [F64x4; 3],
     y: [F64x4; 3],
     offset: [F64x4; 2],
-    /// Joints 1, 5 and 6: cosines and sines.
+    /// Cosines and sines of joints 1, 5 and 6.
     turns: [[F64x4; 2]; 3],
     count: usize,
 }
 
-/// How axes 5 and 6 lie, which decides how q1 and q5 come apart.
+/// Relation of axes 5 and 6, which decides how q1 and q5 separate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Last {
-    /// A point on both gives q1, the direction of axis 6 then q5.
+    /// Intersecting axes: their common point gives q1, then the direction of axis 6 gives q5 (subproblem 4 twice).
     Meet,
-    /// The direction of axis 6 gives q1, its distance q5.
+    /// Parallel axes: the direction of axis 6 gives q1, its distance q5 (subproblem 4 twice).
     Parallel,
-    /// Both equations at once (subproblem 6).
+    /// Skew axes: both equations are solved together (subproblem 6).
     Skew,
 }
 
 impl ThreeParallel {
-    /// For joints of which numbers 2 to 4 are parallel; `size` is a length of the size of the arm (m).
+    /// Prepares joints whose axes 2 to 4 are parallel; `size` is a characteristic length of the arm (m).
     pub fn new(joints: &[JointAxis; 6], size: f64, tolerance: f64) -> Self {
         let axes = joints.map(|joint| joint.axis);
         let mut points = joints.map(|joint| joint.point);
@@ -115,7 +116,7 @@ impl ThreeParallel {
         Self { axes, points, last, bend, senses, flat, end, mark, seen, wrist, links, elbow, floor }
     }
 
-    /// All joint angles whose displacements make `goal`.
+    /// Adds all candidates whose displacements make `goal`.
     #[inline(always)]
     pub fn solve<A: Arithmetic>(&self, goal: &Frame, found: &mut Candidates) {
         let mut wrists = Wrists::NONE;
@@ -156,7 +157,7 @@ impl ThreeParallel {
         self.planar::<A>(&mut wrists, found);
     }
 
-    /// q1 and q5 from both equations together.
+    /// Solves both equations together for q1 and q5 (subproblem 6).
     fn both<A: Arithmetic>(
         &self,
         goal: &Frame,
@@ -168,7 +169,7 @@ impl ThreeParallel {
     ) {
         let [h1, h, _, _, h5, h6] = &self.axes;
         let lever = sub(&self.points[5], &self.points[4]);
-        // h'rot(axis, q) v as constant, factor of the cosine, factor of the sine.
+        // Constant, cosine and sine parts of h'rot(axis, q) v.
         let parts = |axis: &Vector, v: &Vector| -> Linear {
             let across = cross(axis, v);
             [dot(h, axis) * dot(axis, v), dot(&cross(axis, h), &across), dot(h, &across)]
@@ -179,7 +180,7 @@ impl ThreeParallel {
         r1[0] -= of_n[0];
         r2[0] -= offset + of_lever[0];
         let m = [[of_n[1], of_n[2]], [of_lever[1], of_lever[2]]];
-        // Axes that nearly meet, or are nearly parallel, leave rounding much room.
+        // Axes that nearly meet, or are nearly parallel, amplify rounding.
         if (m[0][0] * m[1][1] - m[0][1] * m[1][0]).abs() <= NEARLY_JOINED * self.floor {
             found.doubt = Doubt::Open;
         }
@@ -201,13 +202,13 @@ impl ThreeParallel {
         let (x, y, h) = (turned(x), turned(y), turned(h));
         let from_tip = |v: &Vector| seen(&self.end, &goal.turn_back(v));
         let axes = [from_tip(&x), from_tip(&y), from_tip(&h)];
-        // rot1' (H p6 - p1) - (p2 - p1).
+        // Position of p6: rot1' (H p6 - p1) - (p2 - p1).
         let (from_p1, second) = (sub(&goal.place::<Baseline>(p6), p1), sub(p2, p1));
         let offset = [dot(&x, &from_p1) - dot(&self.flat[0], &second), dot(&y, &from_p1) - dot(&self.flat[1], &second)];
         Shoulder { q1, axes, offset }
     }
 
-    /// Adds q6.
+    /// Adds the wrist's q6 for a solution of q1 and q5.
     #[inline(always)]
     fn wrist<A: Arithmetic>(&self, shoulder: &Shoulder, q5: Angle, wrists: &mut Wrists, found: &mut Candidates) {
         if wrists.count == 4 {
@@ -226,7 +227,8 @@ impl ThreeParallel {
         wrists.push(shoulder, q5, q6);
     }
 
-    /// The sum of the three parallel joints, and q2, q3, q4 by the two links between axes 2, 3 and 4; empties `wrists`.
+    /// Solves the planar arm: the sum of the three parallel joints, and q2, q3 and q4 (subproblem 3) from the two links
+    /// between axes 2, 3 and 4. Empties `wrists`.
     #[inline(always)]
     fn planar<A: Arithmetic>(&self, wrists: &mut Wrists, found: &mut Candidates) {
         let Wrists { x, y, offset, turns, count } = wrists;
@@ -234,7 +236,7 @@ impl ThreeParallel {
         let angles = |turn: &[F64x4; 2]| FourAngles { cos: four(&turn[0]), sin: four(&turn[1]) };
         let (x, y) = ([four(&x[0]), four(&x[1]), four(&x[2])], [four(&y[0]), four(&y[1]), four(&y[2])]);
         let (q5, back) = (angles(&turns[1]), angles(&turns[2]).back());
-        // The sum of the three turns a vector across h as rot1' R_H rot6' rot5' does.
+        // Sum of the three parallel joints: it rotates a vector perpendicular to h by rot1' R_H rot6' rot5'.
         let mark = back.about_z(q5.on(&self.mark));
         let sum = FourAngles::towards(four_angles::dot(&x, &mark), four_angles::dot(&y, &mark));
         let wrist = back.about_z(q5.on(&self.wrist));
@@ -254,7 +256,7 @@ impl ThreeParallel {
         }
     }
 
-    /// q2, q3, q4 for q3.
+    /// Returns q2, q3 and q4, given q3.
     #[inline(always)]
     fn bent<R: Real>(&self, q3: FourAngles<R>, sum: FourAngles<R>, reached: &[R; 2]) -> [FourAngles<R>; 3] {
         let [[ax, ay], [bx, by]] = self.links;
@@ -267,7 +269,8 @@ impl ThreeParallel {
         [q2, q3, sum.and(q2.back()).and(q3.signed(-sense)).signed(self.senses[1])]
     }
 
-    /// Where p4 lies in the plane across the three axes, from axis 2: rot1' (H rot6' rot5' p4 - p1) - (p2 - p1).
+    /// Returns the position of p4 relative to axis 2, in the plane perpendicular to the three axes: rot1' (H rot6' rot5' p4 -
+    /// p1) - (p2 - p1).
     #[inline(always)]
     fn reached(&self, shoulder: &Shoulder, q5: Angle, q6: Angle) -> [f64; 2] {
         let Shoulder { axes: [x, y, _], offset, .. } = shoulder;
@@ -275,11 +278,12 @@ impl ThreeParallel {
         [dot(x, &wrist) + offset[0], dot(y, &wrist) + offset[1]]
     }
 
-    /// Axis 6 parallel to the three: q6 is free as far as the planar arm reaches. The middle of the reach stands for all.
+    /// Solves axis 6 parallel to the three axes: q6 is free as far as the planar arm reaches, represented by the middle of
+    /// the reach.
     #[cold]
     fn wrist_aligned(&self, shoulder: &Shoulder, q5: Angle, wrists: &mut Wrists, found: &mut Candidates) {
         let [first, second] = self.links.map(|[x, y]| x.hypot(y));
-        // The squared distance of axis 4 from axis 2 is base + a cos q6 + b sin q6.
+        // Squared distance of axis 4 from axis 2: base + a cos q6 + b sin q6.
         let quarter = |cos: f64, sin: f64| {
             let [x, y] = self.reached(shoulder, q5, Angle { cos, sin });
             x * x + y * y
@@ -299,7 +303,7 @@ impl ThreeParallel {
     }
 }
 
-/// Takes over what is not sure of the angles of q5 for one value of q1.
+/// Merges the doubt about the angles of q5 for one value of q1.
 #[inline(always)]
 fn add_doubt(q5: &Turns<2>, found: &mut Candidates) {
     if q5.near_miss {
@@ -317,7 +321,7 @@ impl Wrists {
         count: 0,
     };
 
-    /// Adds one; there is room for four.
+    /// Adds a wrist; the capacity is four.
     #[inline(always)]
     fn push(&mut self, shoulder: &Shoulder, q5: Angle, q6: Angle) {
         let Shoulder { q1, axes: [x, y, _], offset } = shoulder;
@@ -334,26 +338,27 @@ impl Wrists {
     }
 }
 
-/// The at most two values of q3 of four branches.
+/// At most two values of q3 in each of four lanes.
 #[derive(Debug, Clone, Copy)]
 struct Bends<R> {
     q3: [FourAngles<R>; 2],
-    /// How many values count in each lane.
+    /// Number of valid values in each lane.
     counts: [usize; 4],
     doubt: Doubt,
-    /// A lane has none, but only just.
+    /// True if a lane has no value, but a small change of the input would give one.
     near_miss: bool,
 }
 
 impl Elbow {
-    /// By the links in the plane across the axes; `sense` is that of axis 3.
+    /// Prepares the elbow equation from the links in the plane perpendicular to the axes; `sense` is the sign of axis 3.
     fn new(links: &[[f64; 2]; 2], sense: f64, floor: f64) -> Self {
         let [[ax, ay], [bx, by]] = *links;
         let squares = [ax * ax + ay * ay, bx * bx + by * by];
         Self { a: ax * bx + ay * by, b: sense * (ay * bx - ax * by), squares, floor: floor * squares[0].sqrt() }
     }
 
-    /// The values of q3 that reach as far as `reached`, as [`line_on_circle`] finds them; for the first `count` lanes.
+    /// Returns the values of q3 at which the two links reach the point `reached`, as in [`line_on_circle`], for the first
+    /// `count` lanes.
     #[inline(always)]
     fn bends<R: Real>(&self, reached: &[R; 2], count: usize) -> Bends<R> {
         let Self { a, b, squares, floor } = *self;
@@ -368,7 +373,7 @@ impl Elbow {
         let second = FourAngles { cos: (ac + to_b) * inverse, sin: (bc - to_a) * inverse };
         let mut bends = Bends { q3: [first, second], counts: [2; 4], doubt: Doubt::None, near_miss: false };
         for lane in 0..count {
-            // The links are nearly in line, or one has no length: not for NaN.
+            // Fallback if the links are nearly in line or one has no length, or on NaN.
             if !(radicand.lane(lane) > NEARLY_DOUBLE * square) || square <= floor * floor {
                 let turns = line_on_circle(a, b, c.lane(lane), floor);
                 bends.counts[lane] = turns.len();

@@ -1,4 +1,4 @@
-//! Three revolute joints that make a rotation: the spherical wrist.
+//! Spherical wrist: three revolute joints that produce a given rotation.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -10,35 +10,36 @@ use crate::closed_form::vector::{Vector, across, cross, dot};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// Below this sine of the angle between the outer axes (rad), they count as aligned: only the sum or difference of their
+/// Sine of the angle between the outer axes below which they count as aligned: then only the sum or the difference of their
 /// angles matters.
 pub const ALIGNED: f64 = 1e-10;
 
-/// Below this sine (rad) a pose within the tolerances of a caller has a family of solutions, of which rounding finds any member.
+/// Sine of that angle below which a pose within a caller's tolerances has a family of solutions, and rounding picks an
+/// arbitrary member.
 pub const NEARLY_ALIGNED: f64 = 1e-5;
 
-/// The middle joint of a wrist: angles q with outer' rot(axis, q) inner = outer' goal.
+/// Middle joint of a wrist (subproblem 4): angles q with outer' rot(axis, q) inner = outer' goal.
 #[derive(Debug, Clone, Copy)]
 pub struct Bend {
     outer: Vector,
-    /// a cos q + b sin q + constant = outer' goal.
+    /// Coefficients of a cos q + b sin q + constant = outer' goal.
     a: f64,
     b: f64,
     constant: f64,
-    /// 1 - cos of the smallest angle between outer and goal, 1 + cos of the largest.
+    /// Margins 1 - cos of the smallest angle between outer and goal, and 1 + cos of the largest.
     margins: [f64; 2],
-    /// The axis is nearly parallel to one of the others: its joint changes next to nothing, and may be at any angle.
+    /// True if the axis is nearly parallel to an outer one, so that its joint has almost no effect and may be at any angle.
     is_idle: bool,
 }
 
 impl Bend {
-    /// `inner` turns about `axis`; all are unit vectors.
+    /// Prepares the rotation of `inner` about `axis`; all are unit vectors.
     pub fn new(outer: &Vector, axis: &Vector, inner: &Vector) -> Self {
         let across = cross(axis, inner);
         let (a, b) = (dot(&cross(axis, outer), &across), dot(outer, &across));
         let constant = dot(outer, axis) * dot(axis, inner);
         let radius = a.hypot(b);
-        // Rounding of constants that are exactly one must not open a gap.
+        // Margins of rounding size are zero, so that no gap opens where the constant is exactly one.
         let margin = |m: f64| if m.abs() < 4e-16 { 0.0 } else { m };
         Self {
             outer: *outer,
@@ -50,17 +51,17 @@ impl Bend {
         }
     }
 
-    /// The angles for a unit vector `goal`, and the sine of the angle between `outer` and `goal`.
+    /// Returns the angles for a unit vector `goal`, and the sine of the angle between `outer` and `goal`.
     ///
-    /// The radicand r^2 - (outer'goal - constant)^2 is the product of the cosines' distances from both ends; either is small
-    /// where the wrist is straight, and then it comes from |outer x goal| and not from a cosine near one.
+    /// The radicand r^2 - (outer'goal - constant)^2 is the product of the distances of the cosine from both ends. Either
+    /// distance is small if the wrist is straight; it is then computed from |outer x goal| instead of a cosine near one.
     #[inline(always)]
     pub fn angles(&self, goal: &Vector) -> (Turns<2>, f64) {
         let normal = cross(&self.outer, goal);
         self.angles_by(dot(&self.outer, goal), dot(&normal, &normal))
     }
 
-    /// The same, given outer'goal and |outer x goal|^2.
+    /// Returns the same as [`Self::angles`], given outer'goal and |outer x goal|^2.
     #[inline(always)]
     fn angles_by(&self, cosine: f64, square: f64) -> (Turns<2>, f64) {
         let (below_one, above_minus_one) = if cosine > 0.0 {
@@ -77,56 +78,56 @@ impl Bend {
     }
 }
 
-/// A wrist: three axes of which neither neighbours are parallel.
+/// Spherical wrist whose neighbouring axes are not parallel.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrist {
-    /// Two unit vectors across the first axis, and that axis.
+    /// Two unit vectors perpendicular to the first axis, and that axis.
     outer: [Vector; 3],
     bend: Bend,
-    /// The last axis.
+    /// Last axis.
     end: Vector,
-    /// A unit vector across the last axis.
+    /// Unit vector perpendicular to the last axis, called the mark.
     mark: Vector,
-    /// Where the middle joint takes the mark, a third vector across both, and the last axis; seen along `outer`.
+    /// Circles of the middle joint, in coordinates along `outer`: the mark, the third vector of the frame, and the last axis.
     inner: [Orbit; 3],
-    /// The middle axis is at right angles to both others: the second set of angles follows from the first.
+    /// True if the middle axis is perpendicular to both others: then the second solution follows from the first.
     square: bool,
 }
 
-/// Where a rotation takes the last axis of a wrist and the mark across it.
+/// Last axis of a wrist and the mark perpendicular to it, after a rotation.
 #[derive(Debug, Clone, Copy)]
 pub struct Pointing {
-    /// The last axis.
+    /// Last axis.
     pub end: Vector,
-    /// The mark.
+    /// Mark.
     pub mark: Vector,
 }
 
 impl Pointing {
-    /// The same seen from where `frame` turns it.
+    /// Rotates both vectors by `frame`.
     #[inline(always)]
     pub fn turned(&self, frame: &Frame) -> Self {
         Self { end: frame.turn::<Baseline>(&self.end), mark: frame.turn::<Baseline>(&self.mark) }
     }
 }
 
-/// The at most two sets of angles of a wrist.
+/// At most two solutions for the angles of a wrist.
 #[derive(Debug, Clone, Copy)]
 pub struct WristTurns {
-    /// The sets; only the first `count` count.
+    /// Solutions; only the first `count` are valid.
     pub sets: [[Angle; 3]; 2],
-    /// How many there are.
+    /// Number of solutions.
     pub count: usize,
-    /// The outer axes are aligned: one set stands for a family.
+    /// True if the outer axes are aligned: one solution represents a family.
     pub aligned: bool,
-    /// Whether they are nearly aligned, or nearly cannot point so.
+    /// Doubt whether the outer axes are nearly aligned, or the pose is nearly out of reach.
     pub doubt: Doubt,
-    /// They cannot point so, but only just.
+    /// True if the pose is only just out of reach.
     pub near_miss: bool,
 }
 
 impl Wrist {
-    /// By the axes, in order.
+    /// Prepares a wrist from its axes, in order.
     pub fn new(axes: &[Vector; 3]) -> Self {
         let right_angle = |a: &Vector, b: &Vector| dot(a, b).abs() < 1e-12;
         let (outer, [mark, across_mark, end]) = (across(&axes[0]), across(&axes[2]));
@@ -140,20 +141,20 @@ impl Wrist {
         }
     }
 
-    /// The first axis, and the cosine of its angle to the last one as a function of the middle joint.
+    /// Returns the first axis, and the cosine of its angle to the last axis as a function of the middle joint.
     pub fn bending(&self) -> (Vector, Wave) {
         let Bend { outer, a, b, constant, .. } = &self.bend;
         (*outer, Wave::new(*constant, *a, *b))
     }
 
-    /// Where the rotation of `goal` takes this wrist.
+    /// Returns the directions of the wrist after the rotation of `goal`.
     #[inline(always)]
     pub fn pointing(&self, goal: &Frame) -> Pointing {
         Pointing { end: goal.turn::<Baseline>(&self.end), mark: goal.turn::<Baseline>(&self.mark) }
     }
 
-    /// All angles with rot1 rot2 rot3 = the rotation that points the wrist so, where rotations act on the zero configuration. Of a family,
-    /// the member deepest inside `ranges`.
+    /// Returns all angles whose product rot1 rot2 rot3, applied to the zero configuration, points the wrist to `goal`. A
+    /// family is represented by the member deepest inside `ranges`.
     #[inline(always)]
     pub fn turns(&self, goal: &Pointing, ranges: &[AngleRange; 3]) -> WristTurns {
         let [x, y, z] = seen(&self.outer, &goal.end);
@@ -183,7 +184,7 @@ impl Wrist {
             found.count += 1;
         }
         if found.aligned && found.count > 0 {
-            // The first and the last joint turn about one line, in the same sense or the opposite one.
+            // Aligned outer joints turn about one line, in the same or the opposite sense.
             let ([_, q2, q3], sense) = (found.sets[0], 1.0_f64.copysign(z));
             let [q1, q3] = ranges[0].deepest_pair(&ranges[2], q3.signed(sense), sense);
             found.sets[0] = [q1, q2, q3];

@@ -18,52 +18,52 @@ use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, MultiStart};
 use crate::task::{Target, TipError, Tolerance};
 
-/// Solutions nearer to each other in every joint (rad, m) are one.
+/// Largest joint difference (rad, m) at which two solutions count as one.
 const SAME: f64 = 1e-6;
 
-/// A branch that is outside its limits by less (rad, m) may reach the pose within tolerances from inside them.
+/// Largest excess over the limits (rad, m) of a branch that may reach the pose within tolerances from inside them.
 const NEAR_LIMIT: f64 = 1e-4;
 
-/// Tolerances below this (m, rad) are those of rounding.
+/// Tolerance (m, rad) below which rounding dominates.
 const LEAST_TOLERANCE: f64 = 1e-9;
 
-/// Tolerances by which a pose changes per rad or m, below which a direction is as good as free.
+/// Change of the pose, in tolerances per rad or m, below which a direction is practically free.
 const ALMOST_FREE: f64 = 1.0;
 
-/// The same, above which one branch is far from others.
+/// Change of the pose, in tolerances per rad or m, above which a branch is far from singular.
 const FAR_FROM_FREE: f64 = 1e3;
 
-/// A branch that no change of its pose by so many tolerances brings inside the limits is outside them.
+/// Change of the pose, in tolerances, up to which moving a branch inside its limits may still meet the target.
 const FIRMLY_OUTSIDE: f64 = 10.0;
 
-/// Steps to each side of a branch at which its nearly free direction is tried, and halvings of a step afterwards.
+/// Line search along the nearly free direction of a branch: steps to each side, and halvings of a step afterwards.
 const TRIED_ALONG: usize = 32;
 const HALVINGS_ALONG: usize = 30;
 
 /// Descents from scattered starts where the closed form may lack solutions.
 const SCATTERED: usize = 32;
 
-/// How many times more values of the parameter are tried where none has a solution.
+/// Factor on the number of parameter values where none has a solution.
 const FINER: usize = 4;
 
-/// Visits to configurations between two looks at the monitor.
+/// Configurations visited between two polls of the monitor.
 const VISITS_BETWEEN_LOOKS: usize = 32;
 
-/// What the closed form yields for one target.
+/// Result of the closed form for one target.
 pub(super) struct AllBranches {
     pub solutions: Solutions,
-    /// Why there is none, where that is proven.
+    /// Reason for having no solution, if that is proven.
     pub obstruction: Option<String>,
-    /// No solution inside the limits is missing, whole turns aside.
+    /// Whether no solution inside the limits is missing, whole turns aside.
     pub complete: bool,
-    /// One solution at least stands for a family, in which a joint is free.
+    /// Whether a solution represents a family in which a joint is free.
     pub singular: bool,
-    /// The monitor asked to stop.
+    /// Whether the monitor asked to stop.
     pub interrupted: bool,
 }
 
-/// The solutions at the whole turns nearest to `reference`; of a redundant arm those at `redundancy` values of its parameter. None
-/// where the closed form does not apply, or leaves open whether there are any.
+/// Returns the solutions at the whole turns nearest to `reference`; for a redundant arm, those at `redundancy` values of its
+/// parameter. `None` if the closed form does not apply, or cannot decide whether there are any.
 pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], redundancy: usize) -> Option<AllBranches> {
     let (target @ Target::Pose(pose), criterion) = attempt.problem.only_target()? else { return None };
     let tolerance = criterion.tolerance;
@@ -99,21 +99,21 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
     found.complete &= robot.proves_branches();
     if found.solutions.is_empty() {
         found.obstruction = found.complete.then(|| obstruction(attempt, count));
-        // The search goes on from what is left open.
+        // A search continues if nothing is proven.
         found.obstruction.as_ref()?;
     }
     Some(found)
 }
 
-/// The one of them nearest to the reference of `preference`, or a configuration near the target where there is none for certain; None
-/// where that is left open.
+/// Returns the solution nearest to the reference of `preference` or, if there is certainly none, a configuration near the
+/// target; `None` if the closed form leaves that open.
 #[cold]
 pub(super) fn nearest_of_all_branches(
     attempt: &mut Attempt<'_, '_>,
     preference: &Preference,
     start: Option<&[f64]>,
 ) -> Option<Solution> {
-    // Of a redundant arm only whether there are any: a single value of its parameter tells.
+    // For a redundant arm, a single value of its parameter decides whether there are any solutions.
     let all = all_branches(attempt, &preference.reference(), 1)?;
     if let Some(q) = preference.nearest(all.solutions.iter().map(|solution| solution.q)) {
         return attempt.solved_at(Point::from_slice(q));
@@ -123,25 +123,25 @@ pub(super) fn nearest_of_all_branches(
     Some(ended(attempt, from, obstruction))
 }
 
-/// Takes the branches that are inside the limits.
+/// Collector of the branches inside the limits.
 struct Taker<'a, 'm, 'p> {
     attempt: &'a mut Attempt<'m, 'p>,
     turns: NearestTurns<'a>,
     descent: LevenbergMarquardt,
-    /// The tolerances are no tighter than those by which branches are verified.
+    /// Whether the tolerances are no tighter than the verification of branches.
     verified_is_solved: bool,
-    /// The tolerances may be met although no branch is inside the limits.
+    /// Whether the tolerances may be met although no branch is inside the limits.
     nearly: bool,
     found: AllBranches,
 }
 
 impl Taker<'_, '_, '_> {
-    /// Takes those of a redundant arm at `count` values of its parameter, or at more where none of them has a solution.
+    /// Takes the solutions of a redundant arm at `count` values of its parameter, or at more values if there is none.
     fn sample(&mut self, family: &PoseFamily<'_>, count: usize) {
         let [lower, upper] = self.attempt.context.sampling_ranges();
         let limits = family.limits(lower, upper);
         let arcs = family.arcs(&limits);
-        // Outside the arcs there is none: without arcs the pose is out of reach, though not of wide tolerances.
+        // Outside the arcs there is no solution: without arcs the pose is out of reach, unless tolerances are wide.
         self.found.complete = arcs.is_empty() && !self.nearly;
         for finer in [1, FINER, FINER * FINER] {
             self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
@@ -178,7 +178,7 @@ impl Taker<'_, '_, '_> {
         });
     }
 
-    /// Takes those of an arm that is not redundant. Returns how many there are, limits aside; None without a closed form.
+    /// Takes the solutions of a non-redundant arm. Returns the number of branches, limits aside; `None` without a closed form.
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
@@ -205,7 +205,7 @@ impl Taker<'_, '_, '_> {
         }
     }
 
-    /// Takes a branch if it is inside the limits. Returns by how much a joint is outside them at most (rad, m).
+    /// Takes a branch if it is inside the limits. Returns its largest excess over them (rad, m).
     #[inline]
     fn take_inside(&mut self, q: &[f64], error: BranchError) -> f64 {
         let mut near = [0.0; MOST_JOINTS];
@@ -223,15 +223,15 @@ impl Taker<'_, '_, '_> {
             let BranchError { position, rotation } = error;
             self.found.solutions.push(near, TipError { position, rotation });
         } else {
-            // The tolerances asked for may be tighter than rounding allows the closed form.
+            // Rounding in the closed form may exceed the tolerances.
             self.found.complete = false;
             self.take_beyond(near);
         }
         outside
     }
 
-    /// Takes what the tolerances leave beside a branch: where the arm is nearly singular, they leave a curve of configurations, and of a
-    /// branch that is `outside` the limits (rad, m), part of it may be inside.
+    /// Takes solutions near a branch: close to a singularity the tolerances admit a curve of configurations, part of which may
+    /// be inside the limits even if the branch is `outside` them (rad, m).
     #[cold]
     fn take_nearby(&mut self, q: &[f64], outside: f64) {
         let Some((_, criterion)) = self.attempt.problem.only_target() else { return };
@@ -243,7 +243,7 @@ impl Taker<'_, '_, '_> {
             self.found.complete = false;
         }
         if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
-            // Where the arm is far from singular, a descent decides.
+            // A descent decides if the arm is far from singular.
             if weak.change > FAR_FROM_FREE {
                 return self.take_beyond(q);
             }
@@ -253,7 +253,7 @@ impl Taker<'_, '_, '_> {
         }
     }
 
-    /// The configuration on the line from `q` in a direction that is outside the limits by the least.
+    /// Returns the configuration least outside the limits on the line from `q` along `direction`.
     fn least_outside_along(&self, q: &[f64], direction: &[f64]) -> Point {
         let at = |t: f64| q.iter().zip(direction).map(|(q, v)| q + t * v).collect::<Point>();
         let outside = |t: f64| {
@@ -279,8 +279,8 @@ impl Taker<'_, '_, '_> {
         at(best.1)
     }
 
-    /// Takes the branches of a pose that is within the tolerances, where the pose itself has none inside the limits: it is at the
-    /// edge of the reach, or beside what an arm with few joints can reach.
+    /// Takes the branches of a pose within the tolerances if the pose itself has none inside the limits: at the edge of the
+    /// reach, or just outside the poses that an arm with few joints can reach.
     #[cold]
     fn take_beside(&mut self) {
         self.found.complete = false;
@@ -299,7 +299,7 @@ impl Taker<'_, '_, '_> {
         }
     }
 
-    /// Takes the solutions that descents from scattered starts find, where the closed form may lack some.
+    /// Takes the solutions of descents from scattered starts, where the closed form may miss some.
     #[cold]
     fn take_scattered(&mut self) {
         let mut start = self.attempt.first_start(None);
@@ -309,7 +309,7 @@ impl Taker<'_, '_, '_> {
         }
     }
 
-    /// Takes the solution that a descent from `q` finds.
+    /// Takes the solution of a descent from `q`.
     #[cold]
     fn take_beyond(&mut self, q: &[f64]) {
         let mut near = Point::from_slice(q);

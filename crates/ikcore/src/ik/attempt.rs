@@ -1,4 +1,4 @@
-//! The attempt at one target: runs of the solver within the target's budget, and a final descent from the best miss.
+//! Attempt at one target: runs of the solver within the target's budget, and a final descent from the best miss.
 
 use super::budget::Budget;
 use super::context::SolveContext;
@@ -12,16 +12,16 @@ use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
 use crate::task::{Aims, Assessment, Criterion, Goals, TipError, Tolerance};
 
-/// Number of starts for approaching a target out of reach.
+/// Number of starts of the approach to a target out of reach.
 pub(super) const APPROACHES: usize = 8;
 
-/// Most evaluations of a descent beyond the tolerances.
+/// Evaluation budget of a descent beyond the tolerances.
 const REFINEMENT: usize = 200;
 
-/// Most evaluations of a descent from where a closed form that holds only nearly puts the arm: four are usual.
+/// Evaluation budget of a descent from an approximate closed form; four evaluations are usual.
 const NEAR_SOLUTION: usize = 8;
 
-/// The state of solving one target.
+/// State of solving one target.
 pub(super) struct Attempt<'m, 'p> {
     pub context: &'p SolveContext<'p>,
     pub problem: &'m mut Problem<'p>,
@@ -31,7 +31,7 @@ pub(super) struct Attempt<'m, 'p> {
 }
 
 impl<'m, 'p> Attempt<'m, 'p> {
-    /// An attempt with its full budget.
+    /// Attempt with its full budget.
     pub fn new(
         context: &'p SolveContext<'p>,
         problem: &'m mut Problem<'p>,
@@ -42,7 +42,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Self { context, problem, rng, monitor, budget }
     }
 
-    /// The caller's start, or the indexed configuration nearest to the target.
+    /// Caller's start, or the indexed configuration nearest to the target.
     pub fn first_start(&mut self, start: Option<&[f64]>) -> Point {
         self.context.first_start(self.problem, start, self.rng)
     }
@@ -52,8 +52,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.problem.propose_start(1, self.context.bounds(), self.rng, x);
     }
 
-    /// Runs the solver from `x0` and, after a miss, descends from its best point. A target provably out of reach is
-    /// only approached.
+    /// Runs the solver from `x0` and, after a miss, descends from its best point. A target provably out of reach is only
+    /// approached.
     pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
         if self.budget.left() == 0 {
             return self.explained(Status::BudgetSpent, Point::from_slice(x0));
@@ -80,7 +80,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
-    /// Runs one attempt of the default solver from `x0`: it stalls as soon as it makes too little progress.
+    /// Runs a single start of the default solver from `x0`, which stalls as soon as it makes too little progress.
     pub fn search_once(&mut self, x0: &[f64]) -> (Status, Point) {
         let Some(MultiStart { solver, rule }) = self.context.solver().restarted_descent() else {
             return (Status::Stalled, Point::from_slice(x0));
@@ -94,7 +94,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
-    /// The solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.
+    /// Builds the solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.
     pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
             return self.explained(status, q);
@@ -103,12 +103,12 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.explained(if solved { Status::Solved } else { status }, q)
     }
 
-    /// Descends once from `q` until convergence; returns whether that solved the target, and the best point.
+    /// Descends once from `q` until convergence. Returns whether that solved the target, and the best point.
     pub fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
         self.descend_some(descent, q, usize::MAX)
     }
 
-    /// The same with at most `evaluations`.
+    /// Descends like [`descend`](Self::descend) with at most this many `evaluations`.
     pub fn descend_some(&mut self, descent: &LevenbergMarquardt, q: Point, evaluations: usize) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
@@ -121,8 +121,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// Descends once from `q` within `bounds`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider (of the only tip); returns the
-    /// best point. It refines a solution already found, so it may go on where the budget is spent.
+    /// Descends once from `q` within `bounds` to the tighter of the tolerances of the only tip and `tolerance` (m, rad).
+    /// Returns the best point. As a refinement of a known solution it may exceed the budget.
     pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64, bounds: &Bounds) -> Point {
         let Some((target, asked)) = self.problem.only_target() else { return q };
         let asked = *asked;
@@ -138,7 +138,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Point::from_slice(&evaluator.best().x)
     }
 
-    /// The best of `approaches` descents towards a target that cannot be reached.
+    /// Returns the best of `approaches` descents towards a target that cannot be reached.
     pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64], approaches: usize) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
@@ -156,14 +156,14 @@ impl<'m, 'p> Attempt<'m, 'p> {
         best.map_or(x, |(_, q)| q)
     }
 
-    /// The result of approaching a target that cannot be reached.
+    /// Approaches a target that cannot be reached, and returns the result.
     pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
         let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
         let q = self.approach(&descent, x0, approaches);
         self.explained(Status::OutOfReach, q)
     }
 
-    /// Moves `q` along its self-motion to the nearest optimum of `goals`; false if `q` is neither at nor near a
+    /// Moves `q` along its self-motion to the nearest optimum of `goals`. Returns false if `q` is neither at nor near a
     /// solution.
     pub fn descend_goals(&mut self, goals: &mut Goals, q: &mut Point) -> bool {
         let mut descent = GoalDescent {
@@ -180,7 +180,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         is_solved
     }
 
-    /// The result at `q`, with the reason for a miss. Within the tolerances there is none, whatever `status` expects.
+    /// Result at `q`, with the reason for a miss. Within the tolerances it is solved, even if `status` says out of reach.
     pub fn explained(&self, status: Status, q: Point) -> Solution {
         let Assessment { score, error } = self.problem.assess(&q);
         let status = if score.solved && status == Status::OutOfReach { Status::Solved } else { status };
@@ -191,13 +191,13 @@ impl<'m, 'p> Attempt<'m, 'p> {
         solution
     }
 
-    /// The result at `q` if that solves the target.
+    /// Result at `q` if it solves the target.
     pub fn solved_at(&mut self, q: Point) -> Option<Solution> {
         let error = self.error_if_solved(&q)?;
         Some(self.result(Status::Solved, q, error))
     }
 
-    /// The result at the preferred one of `configurations`, if it reaches the pose as well as a verified branch does.
+    /// Result at the preferred one of `configurations`, if it reaches the pose as well as a verified branch does.
     #[inline]
     pub fn preferred(
         &mut self,
@@ -211,7 +211,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         }
     }
 
-    /// The result of a short descent from the preferred one of `configurations`, which bring the tip only near the pose.
+    /// Result of a short descent from the preferred one of `configurations`, which are approximate.
     pub fn descended_from(
         &mut self,
         preference: &Preference,
@@ -222,7 +222,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         is_solved.then(|| self.solution(Status::Solved, q))
     }
 
-    /// The errors at `q` if that solves the target.
+    /// Errors at `q` if it solves the target.
     #[inline]
     pub fn error_if_solved(&mut self, q: &[f64]) -> Option<TipError> {
         self.budget.evaluations += 1;
@@ -230,13 +230,13 @@ impl<'m, 'p> Attempt<'m, 'p> {
         score.solved.then(|| error.into())
     }
 
-    /// The result at `q`.
+    /// Result at `q`.
     pub fn solution(&self, status: Status, q: Point) -> Solution {
         let error = self.problem.assess(&q).error;
         self.result(status, q, error.into())
     }
 
-    /// The result at `q`, where the errors are known.
+    /// Result at `q` with known errors.
     #[inline]
     pub fn result(&self, status: Status, q: Point, error: TipError) -> Solution {
         Solution {
@@ -252,8 +252,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         }
     }
 
-    /// Gives a solved `solution` the status [`Status::HeldInRegion`] if the region keeps the tip from the target
-    /// itself.
+    /// Changes the status of a solved `solution` to [`Status::HeldInRegion`] if the region keeps the tip from the exact target.
     pub fn mark_held_in_region(&self, solution: &mut Solution) {
         if solution.status == Status::Solved
             && let Some((target, criterion)) = self.problem.only_target()

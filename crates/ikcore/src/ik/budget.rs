@@ -1,4 +1,4 @@
-//! The budgets of one target over several runs of a solver.
+//! Budgets of one target over several runs of a solver.
 
 use crate::objective::Objective;
 use crate::solver::{Evaluator, Stop, Stopwatch};
@@ -7,7 +7,7 @@ use crate::solver::{Evaluator, Stop, Stopwatch};
 /// converge.
 const DESCENT_RESERVE: usize = 200;
 
-/// The counts of one target so far, and the limits on them.
+/// Budgets of one target, and the amounts spent.
 pub(super) struct Budget {
     stop: Stop,
     stopwatch: Stopwatch,
@@ -17,7 +17,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Nothing spent yet but the time on `stopwatch`.
+    /// Budget with nothing spent except the time on `stopwatch`.
     pub fn new(stop: Stop, stopwatch: Stopwatch) -> Self {
         Self { stop, stopwatch, iterations: 0, restarts: 0, evaluations: 0 }
     }
@@ -27,7 +27,7 @@ impl Budget {
         self.stopwatch.elapsed()
     }
 
-    /// Evaluations that may still be made.
+    /// Evaluations left.
     pub fn left(&self) -> usize {
         self.stop.max_evaluations.saturating_sub(self.evaluations)
     }
@@ -44,7 +44,7 @@ impl Budget {
             || self.stop.max_time.is_some_and(|limit| self.stopwatch.elapsed() >= limit)
     }
 
-    /// The remaining budgets, less `reserve` evaluations.
+    /// Remaining budgets without `reserve` evaluations.
     pub fn rest(&self, reserve: usize) -> Stop {
         Stop {
             max_evaluations: self.left() - reserve,

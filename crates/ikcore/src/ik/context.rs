@@ -1,4 +1,4 @@
-//! The validated arguments that all targets of a call share.
+//! Validated arguments shared by all targets of a call.
 
 use std::borrow::Cow;
 use std::sync::{LazyLock, OnceLock};
@@ -19,16 +19,16 @@ use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
 use crate::task::{Aims, Goals, Target, TargetRow, TipCriterion};
 
-/// A validated target and start.
+/// Validated target and start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Query<'a> {
-    /// The target or, of several tips, those of the tasks in their order, as returned by [`SolveContext::read`].
+    /// Target of the only tip, or the targets of the tasks in their order, as returned by [`SolveContext::read`].
     pub targets: &'a [Target],
-    /// The start, if given.
+    /// Start of the search, if given.
     pub start: Option<&'a [f64]>,
-    /// The random stream of the seed.
+    /// Random stream of the seed.
     pub stream: u64,
-    /// Runs since the solve began.
+    /// Time since the solve began.
     pub stopwatch: Stopwatch,
 }
 
@@ -36,16 +36,16 @@ pub(crate) struct Query<'a> {
 #[derive(Debug)]
 pub(crate) struct SolveContext<'a> {
     robot: &'a Robot,
-    /// The robot with the tool of the task, if there is one; boxed to keep the context small.
+    /// Robot with the tool of the task, if there is one; boxed to keep the context small.
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
-    /// One for the only tip.
+    /// Task of each target; one for a robot with one tip.
     tasks: SmallVec<[TipCriterion; 1]>,
     goals: Goals,
     bounds: Bounds,
-    /// The preference of queries without a start, made when first asked for.
+    /// Preference of queries without a start, computed on first use.
     central: OnceLock<Preference>,
-    /// Where solutions must be; boxed to keep the context small.
+    /// Clear space of the solutions; boxed to keep the context small.
     space: Option<Box<ClearSpace<'a>>>,
 }
 
@@ -89,7 +89,7 @@ impl<'a> SolveContext<'a> {
         &self.goals
     }
 
-    /// Where solutions must be, if anything is to be kept clear of.
+    /// Clear space of the solutions, if collisions are checked.
     pub(crate) fn space(&self) -> Option<&ClearSpace<'a>> {
         self.space.as_deref()
     }
@@ -103,23 +103,23 @@ impl<'a> SolveContext<'a> {
         self.options
     }
 
-    /// The solver of searches.
+    /// Solver of searches.
     pub(super) fn solver(&self) -> &AnySolver {
         static DEFAULT: LazyLock<AnySolver> = LazyLock::new(AnySolver::default);
         self.options.solver.as_ref().unwrap_or(&DEFAULT)
     }
 
-    /// Whether only pose and limits define a solution, goals aside, and the choice of solver is ours.
+    /// Whether only pose and limits define a solution, goals aside, and no solver is named.
     pub(crate) fn asks_for_pose(&self, target: &Target) -> bool {
         self.fixes_pose(target) && self.options.solver.is_none()
     }
 
-    /// The same without goals.
+    /// Whether only pose and limits define a solution, without goals, and no solver is named.
     pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
         self.goals.is_empty() && self.asks_for_pose(target)
     }
 
-    /// Which of several solutions to take.
+    /// Preference among several solutions.
     pub(super) fn preference(&self, start: Option<&[f64]>) -> Cow<'_, Preference> {
         match start {
             Some(_) => Cow::Owned(Preference::new(self.robot(), &self.bounds, start)),
@@ -127,7 +127,7 @@ impl<'a> SolveContext<'a> {
         }
     }
 
-    /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
+    /// Finite ranges inside the limits for drawing configurations: lower ends and upper ends.
     pub(super) fn sampling_ranges(&self) -> [&[f64]; 2] {
         self.central().ranges()
     }
@@ -136,16 +136,16 @@ impl<'a> SolveContext<'a> {
         self.central.get_or_init(|| Preference::new(self.robot(), &self.bounds, None))
     }
 
-    /// The problem of reaching the targets of a query.
+    /// Problem of reaching the targets of a query.
     pub(super) fn problem<'p>(&'p self, targets: &'p [Target]) -> Problem<'p> {
         let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
         Problem::of_configuration(self.robot(), Aims { tasks: &self.tasks, targets }, penalty)
     }
 
-    /// Returns the parts of the targets `wanted` that their tasks use, validated.
+    /// Validates the targets `wanted`, and returns the parts that their tasks use.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; those of [`reduce`](Self::reduce).
+    /// [`Error::NotFinite`]; errors of [`reduce`](Self::reduce).
     pub(crate) fn read(&self, wanted: &[Target]) -> Result<TargetRow> {
         wanted.iter().try_for_each(Target::validate)?;
         let mut targets = TargetRow::from_slice(wanted);
@@ -184,7 +184,7 @@ impl<'a> SolveContext<'a> {
         }
     }
 
-    /// The caller's start, or the indexed configuration nearest to the target.
+    /// Caller's start, or the indexed configuration nearest to the target.
     pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
         if let Some(start) = start {
             return Point::from_slice(start);
@@ -195,7 +195,7 @@ impl<'a> SolveContext<'a> {
     }
 }
 
-/// The position limits as a box. Velocity limits do not matter for a single configuration.
+/// Position limits as a box. Velocity limits do not matter for a single configuration.
 fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let Some(limits) = limits else {
         return Ok(open_box(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
@@ -207,7 +207,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }
 
-/// The box of these (lower, upper) (rad, m), open beyond limits that count as none.
+/// Box of these (lower, upper) (rad, m), unbounded where a limit counts as none.
 fn open_box(ranges: impl Iterator<Item = (f64, f64)>) -> Bounds {
     Bounds::from_ranges(ranges.map(|(lower, upper)| sampling_range::opened(lower, upper)))
 }

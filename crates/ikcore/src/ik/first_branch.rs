@@ -1,4 +1,4 @@
-//! The first solution of a pose by the closed form of the arm.
+//! First solution of a pose by the closed form of the arm.
 
 use super::all_branches::nearest_of_all_branches;
 use super::attempt::Attempt;
@@ -12,14 +12,14 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Target;
 
-/// Budgets of fewer evaluations are left to the search.
+/// Smallest evaluation budget for the closed form; smaller ones are left to the search.
 pub(super) const LEAST_BUDGET: usize = 500;
 
-/// Evaluations of a search that comes before a closed form that takes longer than most searches.
+/// Evaluations of the search before a closed form that is slower than most searches.
 const TRIAL: usize = 100;
 
-/// The branch nearest to the start or, without one, the most central one; or the nearest configuration, if it is proven that
-/// there is no solution inside the limits. None where the closed form does not apply, or leaves that open.
+/// Returns the branch nearest to the start or, without one, the most central branch; the nearest configuration if there is
+/// provably no solution inside the limits. `None` if the closed form does not apply, or cannot decide.
 pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let context = attempt.context;
     let (target @ Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
@@ -35,7 +35,7 @@ pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]
     }
 }
 
-/// Of an arm that has as many joints as the pose needs.
+/// Solves for an arm with as many joints as the pose needs.
 #[inline]
 fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]>) -> Option<Solution> {
     if let Some(start) = start
@@ -63,12 +63,12 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
             let from = from.unwrap_or_else(|| attempt.first_start(None));
             Some(ended(attempt, from, obstruction))
         }
-        // The pose is nearly singular, or the tolerances are tighter than rounding allows the closed form.
+        // Nearly singular pose, or tolerances below the rounding of the closed form.
         Err(_) => nearest_of_all_branches(attempt, &preference, start),
     }
 }
 
-/// Of an arm whose closed form takes longer than most searches.
+/// Searches briefly before a closed form that is slower than most searches.
 #[cold]
 fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let x0 = attempt.first_start(start);

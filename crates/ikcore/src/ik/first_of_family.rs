@@ -1,4 +1,4 @@
-//! The first solution of a pose by the closed form of an arm with one joint more than the pose needs.
+//! First solution of a pose by the closed form of an arm with one redundant joint.
 
 use std::borrow::Cow;
 
@@ -12,35 +12,35 @@ use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
 use crate::solver::Status;
 
-/// Most arm angles that are tried before near misses are.
+/// Largest number of arm angles before near misses are tried.
 const SCANNED_ANGLES: usize = 8;
 
-/// Arm angles after which it is asked whether any can have a solution: most poses have one before.
+/// Arm angles before testing whether any has a solution: most poses have one earlier.
 const ANGLES_BEFORE_DOUBT: usize = 4;
 
-/// Values of a joint as parameter that are tried before it is asked: the answer takes as long as fifty values.
+/// Values of a joint as parameter before that test, which takes as long as fifty values.
 const SCANNED_VALUES: usize = 10;
 
-/// Most values of the parameter that are tried first where near misses are looked for: those where a solution is not excluded.
+/// Largest number of parameter values, not yet excluded, that near misses start from.
 const OPEN: usize = 2;
 
-/// The search after both takes one of so many evaluations that the budget leaves.
-const SEARCHED_SHARE: usize = 400;
+/// Divisor of the remaining evaluation budget for the final short search.
+const SEARCH_DIVISOR: usize = 400;
 
-/// A configuration that is outside the limits by less (rad, m) may be inside but for rounding.
+/// Excess over the limits (rad, m) that rounding may explain.
 const UNDECIDED: f64 = 1e-4;
 
-/// How a look at scattered values ends without a solution.
+/// Outcome of scattered parameter values without a solution.
 enum Scattered {
-    /// No solution is within the limits.
+    /// Proof that no solution is within the limits.
     Unreachable,
-    /// None is at these values, but may be near others.
+    /// No solution at these values; others may have one.
     Open(Vec<f64>),
-    /// Branches that failed took half the budget: the rest is for a search.
+    /// Half the budget spent on failed branches: the rest is left to a search.
     TooCostly,
 }
 
-/// A pose of such an arm, and which of its solutions to take.
+/// Search over the self-motion of one pose of a redundant arm.
 pub(super) struct FamilySearch<'a> {
     family: &'a PoseFamily<'a>,
     limits: FamilyLimits,
@@ -50,7 +50,7 @@ pub(super) struct FamilySearch<'a> {
 }
 
 impl<'a> FamilySearch<'a> {
-    /// The solution nearest to the start or, without one, the most central one, each among few.
+    /// Search for the solution nearest to the start or, without one, the most central one, each among few.
     pub fn new(context: &'a SolveContext<'_>, family: &'a PoseFamily<'_>, start: Option<&'a [f64]>) -> Self {
         let [lower, upper] = context.sampling_ranges();
         let limits = family.limits(lower, upper);
@@ -58,8 +58,8 @@ impl<'a> FamilySearch<'a> {
         Self { family, limits, arcs, preference: context.preference(start), start }
     }
 
-    /// From the start by descent; then the first value of the parameter that has a branch inside the limits; then what is known of the
-    /// values between. None where a search is to go on.
+    /// Tries a descent from the start, then the first parameter values with a branch inside the limits, then the analysis of
+    /// the values between. `None` if a search has to continue.
     pub fn first(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         if let Some(start) = self.start {
             let (status, q) = attempt.search_once(start);
@@ -82,7 +82,7 @@ impl<'a> FamilySearch<'a> {
         }
     }
 
-    /// Of an arm whose structure holds only nearly: by descent from what the closed form finds at a few values.
+    /// Descends from the closed form at a few values, for an arm whose structure is only approximate.
     fn near_the_pose(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         if !self.family.is_approximate() {
             return None;
@@ -94,7 +94,7 @@ impl<'a> FamilySearch<'a> {
         })
     }
 
-    /// Tries a few values: most poses have a solution at one of the first.
+    /// Tries a few scattered values: most poses have a solution at one of the first.
     fn at_scattered_values(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Scattered> {
         if self.arcs.is_empty() {
             return Err(Scattered::Unreachable);
@@ -117,7 +117,7 @@ impl<'a> FamilySearch<'a> {
                 Err(Miss::Far) => continue,
                 Err(Miss::Near) => {}
             }
-            // Beside singular poses, what is near a branch is still to be polished.
+            // Polishing is still needed near singular poses.
             let branches = self.family.branches_at(value);
             attempt.budget.evaluations += branches.evaluations;
             if let Ok(q) = self.preference.choose(&mut branches.configurations())
@@ -132,12 +132,12 @@ impl<'a> FamilySearch<'a> {
         self.by_doubt(attempt)
     }
 
-    /// Most values that are tried before near misses are.
+    /// Largest number of values before near misses are tried.
     fn scanned(&self) -> usize {
         if self.family.is_by_arm_angle() { SCANNED_ANGLES } else { SCANNED_VALUES }
     }
 
-    /// A solution at a value that the proof of there being none could not exclude, or how that ends.
+    /// Tries a value that the proof of infeasibility could not exclude, or returns the outcome of the proof.
     #[cold]
     fn by_doubt(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Scattered> {
         let (mut likely, mut solution) = (ArmConfigurations::none(), None);
@@ -155,7 +155,7 @@ impl<'a> FamilySearch<'a> {
         }
     }
 
-    /// A solution at one of the values that decide whether there is any, where they are known; far if there is none for certain.
+    /// Tries the values that decide whether there is a solution, if they are known. `Miss::Far` if there is certainly none.
     #[cold]
     fn at_decisive_values(&self, attempt: &mut Attempt<'_, '_>) -> Result<Solution, Miss> {
         let decisive = self.family.decisive(&self.limits).ok_or(Miss::Near)?;
@@ -173,7 +173,7 @@ impl<'a> FamilySearch<'a> {
         Err(miss)
     }
 
-    /// A solution near branches that are little outside the limits.
+    /// Descends from branches slightly outside the limits.
     #[cold]
     fn near_the_limits(&self, attempt: &mut Attempt<'_, '_>, open: &[f64]) -> Option<Solution> {
         match from_near_misses(attempt, (self.family, &self.preference), &self.arcs, open) {
@@ -183,11 +183,11 @@ impl<'a> FamilySearch<'a> {
         }
     }
 
-    /// A search with a small share of the budget. What it misses is reported as not found, which is no proof.
+    /// Searches with a small fraction of the budget. A miss is reported as not found, which is no proof.
     #[cold]
     fn searched_in_short(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         let x0 = attempt.first_start(self.start);
-        let reserve = attempt.budget.left() - attempt.budget.left() / SEARCHED_SHARE;
+        let reserve = attempt.budget.left() - attempt.budget.left() / SEARCH_DIVISOR;
         let (status, q) = attempt.search(attempt.context.bounds(), &x0, reserve);
         if status != Status::BudgetSpent || attempt.budget.is_spent() {
             return Some(attempt.explained(status, q));
@@ -202,7 +202,7 @@ impl<'a> FamilySearch<'a> {
         Some(solution)
     }
 
-    /// No solution is within the limits; None where that is not proven.
+    /// Result if no solution is within the limits; `None` if that is not proven.
     #[cold]
     fn unreachable(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         if is_wide(attempt) {

@@ -1,8 +1,8 @@
 //! Descent on the goals along the self-motion of a solution: the joints move, the tip stays.
 //!
-//! Projected gradient descent: the gradient of the goals is projected onto the linearised task and the box;
-//! Gauss-Newton corrects each step back onto the task; the step length follows Barzilai and Borwein (1988), which on
-//! the one-dimensional self-motion of a 7-joint arm is the secant method.
+//! The method is projected gradient descent: the gradient of the goals is projected onto the linearised task and the box;
+//! Gauss-Newton corrects each step back onto the task; the step length follows Barzilai and Borwein (1988), which on the
+//! one-dimensional self-motion of a 7-joint arm is the secant method.
 
 use crate::math::vector::dot;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
@@ -13,31 +13,31 @@ use crate::task::Goals;
 
 /// Longest step of a joint (rad, m); beyond it the linearised task is inaccurate.
 const LONGEST: f64 = 0.3;
-/// The descent ends when no joint moves by more than this (rad, m) in a step.
+/// Largest joint step (rad, m) at which the descent ends.
 const SHORTEST: f64 = 1e-7;
-/// Step length for projecting a gradient (rad, m): so short that only joints at their limits are affected by them.
+/// Step length for projecting a gradient (rad, m): so short that only joints already at their limits are affected.
 const PROBE: f64 = 1e-5;
-/// Maximum number of steps; bounds the cost of a flat goal, since descents normally end by themselves.
+/// Largest number of steps; bounds the cost of a flat goal, since descents normally end by themselves.
 const MOST_STEPS: usize = 100;
 /// Gauss-Newton corrections before a step counts as too long.
 const MOST_CORRECTIONS: usize = 5;
 /// Factor on a step that was too long.
 const SHORTEN: f64 = 0.3;
 
-/// A descent on goals: problem, goals, and evaluations made.
+/// Descent on the goals of a problem, with its evaluation count.
 pub(super) struct GoalDescent<'a, 'p> {
     pub robot: &'a Robot,
     pub problem: &'a mut Problem<'p>,
     pub goals: &'a mut Goals,
     pub bounds: &'a Bounds,
-    /// Where the goals measure clearances. A descent that begins in there stays.
+    /// Space in which the goals measure clearances. A descent that begins clear stays clear.
     pub space: Option<&'a ClearSpace<'p>>,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
     pub max_evaluations: usize,
 }
 
-/// A point that solves the task, and the goals there.
+/// Point that solves the task, with cost and gradient of the goals.
 struct TaskPoint {
     q: Point,
     cost: f64,
@@ -45,7 +45,7 @@ struct TaskPoint {
 }
 
 impl GoalDescent<'_, '_> {
-    /// Moves `q`, at or near a solution, to the nearest optimum of the goals; false if there is no solution nearby.
+    /// Moves `q`, at or near a solution, to the nearest optimum of the goals. Returns false if there is no solution nearby.
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
         let within = self.space.filter(|space| space.holds(&begin.q));
@@ -56,7 +56,7 @@ impl GoalDescent<'_, '_> {
         }
         let exact = self.place(q.clone());
         let end = self.follow_slope(exact, within);
-        // After the exact correction, an arm that could not move may have lost the gain it had within the tolerance.
+        // The exact correction can undo a gain made within the tolerance, if the arm cannot move.
         let keeps = |q: &[f64]| within.is_none_or(|space| space.holds(q));
         *q = if (end.cost < begin.cost || !was_solved) && keeps(&end.q) { end.q } else { begin.q };
         true
@@ -66,7 +66,7 @@ impl GoalDescent<'_, '_> {
     fn follow_slope(&mut self, mut here: TaskPoint, within: Option<&ClearSpace<'_>>) -> TaskPoint {
         let mut linearization = Linearization::default();
         let mut rate = f64::INFINITY;
-        // The last step and its slope, from which the next rate is estimated.
+        // Last step and its slope, for estimating the next rate.
         let mut last: Option<(Point, Point)> = None;
         for _ in 0..MOST_STEPS {
             if self.evaluations + MOST_CORRECTIONS + 1 > self.max_evaluations {
@@ -88,7 +88,7 @@ impl GoalDescent<'_, '_> {
         here
     }
 
-    /// The step down `slope` at `rate`, or at the largest smaller rate that lowers the cost and solves the task; `None`
+    /// Returns the step down `slope` at `rate`, or at the largest smaller rate that lowers the cost and solves the task; `None`
     /// if no step is worthwhile.
     fn shorter_until_better(
         &mut self,
@@ -111,8 +111,8 @@ impl GoalDescent<'_, '_> {
         None
     }
 
-    /// Corrects `q` back onto the task; returns whether that succeeded. It takes one step more than the tolerance
-    /// requires: a gain from using up the tolerance could not be repeated in the next step.
+    /// Corrects `q` back onto the task. Returns whether that succeeded. It takes one step more than the tolerance requires: a
+    /// gain from using up the tolerance could not be repeated in the next step.
     fn correct(&mut self, q: &mut Point) -> bool {
         let (mut was_solved, bounds) = (false, self.bounds);
         Linearization::default().project(q, bounds.ends(), MOST_CORRECTIONS, |q, at| {
@@ -123,16 +123,16 @@ impl GoalDescent<'_, '_> {
         })
     }
 
-    /// The gradient projected onto the task and the box.
+    /// Gradient projected onto the task and the box.
     fn projected(&self, here: &TaskPoint, at: &Linearization) -> Point {
         let rate = PROBE / largest(&here.gradient);
         let out = self.near(at, here, &here.gradient, rate);
-        // The error of the task within its tolerance is not part of the slope.
+        // Task errors within the tolerance are not part of the slope.
         let still = self.near(at, here, &here.gradient, 0.0);
         difference(&still, &out).into_iter().map(|step| step / rate).collect()
     }
 
-    /// The point of the linearised task that is nearest to a step of `rate` down `slope`.
+    /// Point of the linearised task nearest to a step of `rate` down `slope`.
     fn near(&self, at: &Linearization, here: &TaskPoint, slope: &[f64], rate: f64) -> Point {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
@@ -141,7 +141,7 @@ impl GoalDescent<'_, '_> {
         out
     }
 
-    /// Residual and Jacobian at `q`; whether it solves the task.
+    /// Computes residual and Jacobian at `q`. Returns whether `q` solves the task.
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> bool {
         self.evaluations += 1;
         self.problem.linearize(q, out).solved
@@ -154,12 +154,12 @@ impl GoalDescent<'_, '_> {
     }
 }
 
-/// The largest magnitude of an entry; never zero, so that it can be a divisor.
+/// Largest magnitude of an entry; never zero, so that it can be a divisor.
 fn largest(slope: &[f64]) -> f64 {
     slope.iter().fold(f64::MIN_POSITIVE, |largest, slope| largest.max(slope.abs()))
 }
 
-/// a - b.
+/// Difference a - b.
 pub(super) fn difference(a: &[f64], b: &[f64]) -> Point {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

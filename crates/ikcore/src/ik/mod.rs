@@ -1,9 +1,9 @@
 //! Inverse kinematics: one solution of a target, or all of them.
 //!
-//! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
-//! one target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form, with the
-//! `preference` for one of its branches. `nearest` and `best` choose among several solutions,
-//! `tip_tasks` holds the tasks of several tips. `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects
+//! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of one
+//! target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form and takes the branch
+//! chosen by `preference`. `nearest`, `best` and `clear` choose among several solutions, `tip_tasks` holds the tasks of several
+//! tips. `goal_descent` moves a solution along its self-motion, `self_motion` traces the whole of it, `solve_all` collects
 //! solutions (`all_branches` by the closed form). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;

@@ -1,7 +1,7 @@
-//! Solutions of a redundant arm in narrow ranges of its parameter, which fall between the values that are tried.
+//! Solutions of a redundant arm in ranges of its parameter too narrow for the sampled values.
 //!
-//! A branch that is inside the limits somewhere is only a little outside them nearby. Descents from the branches that are least outside
-//! lead along the self-motion into the limits.
+//! Near such a range, branches are only slightly outside the limits. Descents from the branches least outside lead along the
+//! self-motion into the limits.
 
 use smallvec::SmallVec;
 
@@ -12,41 +12,41 @@ use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFam
 use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, Status};
 
-/// Values of the parameter at which near misses are looked for.
+/// Number of parameter values searched for near misses.
 pub(super) const LOOKED: usize = 32;
 
-/// A branch farther outside its limits (rad, m) is no near miss.
+/// Largest excess over the limits (rad, m) of a near miss.
 const NEAR: f64 = 1.2;
 
-/// A branch less far outside is at a limit just where a solution is: it is descended from at once.
+/// Excess below which a solution is at the limit itself: the descent starts at once.
 const AT_A_SOLUTION: f64 = 1e-3;
 
-/// A branch less far outside may only touch its limits from outside, where descents are slow: its parameter is refined first.
+/// Excess below which a branch may only touch its limits from outside, where descents are slow: its parameter is refined first.
 const TOUCHING: f64 = 0.03;
 
-/// A branch that is farther outside wherever the parameter is refined to does not touch its limits.
+/// Excess after refinement above which a branch does not touch its limits.
 const APART_FROM_LIMITS: f64 = 0.002;
 
-/// Halvings of the distance between values, two values each, that refine the parameter of such a branch.
+/// Halvings of the distance between values, with two values each, that refine the parameter of such a branch.
 const HALVINGS: usize = 7;
 
-/// Most near misses that are refined or descended from.
+/// Largest number of near misses to refine or descend from.
 const DESCENTS: usize = 6;
 
-/// Most evaluations of a descent.
+/// Evaluation budget of a descent.
 const STEPS: usize = 15;
 
-/// Near misses in which all joints differ by less (rad, m) lead to the same place.
+/// Joint difference (rad, m) below which two near misses lead to the same solution.
 const APART: f64 = 0.3;
 
-/// A branch near its limits.
+/// Branch slightly outside its limits.
 #[derive(Debug, Clone)]
 struct NearMiss {
-    /// How far outside it is (rad, m).
+    /// Excess over the limits (rad, m).
     outside: f64,
     /// Value of the parameter (rad, m).
     value: f64,
-    /// The branch, moved inside.
+    /// Branch clamped to the limits.
     q: Point,
 }
 
@@ -56,8 +56,8 @@ impl NearMiss {
     }
 }
 
-/// A solution that a descent from a near miss leads to, looked for at the values `open` of the parameter and then at others; a near miss
-/// if a branch is inside the limits that does not reach the pose: the tolerances are tighter than rounding allows the closed form.
+/// Finds a solution by descent from near misses at the parameter values `open`, then at others. `Miss::Near` if a branch is
+/// inside the limits but misses the pose: the tolerances are tighter than rounding allows the closed form.
 #[cold]
 pub(super) fn from_near_misses(
     attempt: &mut Attempt<'_, '_>,
@@ -67,7 +67,7 @@ pub(super) fn from_near_misses(
 ) -> Result<Solution, Miss> {
     let mut look = Look::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
-    // Where another joint reaches its limit just as joint 4 does, only the end of an arc is inside all limits.
+    // Only the end of an arc is inside all limits if another joint reaches its limit just as joint 4 does.
     let others = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
     for (number, value) in open.iter().copied().chain(others).enumerate() {
         let near = if number < open.len() { TOUCHING } else { AT_A_SOLUTION };
@@ -109,17 +109,17 @@ pub(super) fn from_near_misses(
     Err(Miss::Far)
 }
 
-/// The solution that a descent from a near miss leads to.
+/// Descends from a near miss to a solution.
 fn descended(attempt: &mut Attempt<'_, '_>, miss: &NearMiss) -> Option<Solution> {
     let (is_solved, q) = attempt.descend_some(&LevenbergMarquardt::default(), miss.q.clone(), STEPS);
     is_solved.then(|| attempt.solution(Status::Solved, q))
 }
 
-/// Where near misses are looked for.
+/// Search for near misses of one pose.
 struct Look<'a> {
     family: &'a PoseFamily<'a>,
     preference: &'a Preference,
-    /// Wider than those of the arm.
+    /// Limits widened by [`NEAR`].
     limits: FamilyLimits,
     likely: ArmConfigurations,
 }
@@ -132,14 +132,14 @@ impl<'a> Look<'a> {
         Self { family, preference, limits, likely: ArmConfigurations::none() }
     }
 
-    /// The near misses with the parameter at `value`.
+    /// Near misses with the parameter at `value`.
     fn at(&mut self, value: f64) -> SmallVec<[NearMiss; 4]> {
         self.family.likely_at(value, &self.limits, &mut self.likely);
         let misses = self.preference.misses(&mut self.likely, NEAR);
         misses.map(|(outside, q)| NearMiss { outside, value, q }).collect()
     }
 
-    /// The least of the misses around `miss`, which is one of those at values `spacing` apart.
+    /// Refines the parameter of `miss`, found among values `spacing` apart, towards the least excess.
     fn refined(&mut self, mut miss: NearMiss, spacing: f64) -> NearMiss {
         let mut step = spacing;
         for _ in 0..HALVINGS {

@@ -1,4 +1,4 @@
-//! [`Prefer::Nearest`](super::Prefer::Nearest): the solution nearest to the start.
+//! Solution nearest to the start: [`Prefer::Nearest`](super::Prefer::Nearest).
 
 use std::f64::consts::TAU;
 
@@ -15,11 +15,11 @@ use crate::task::{Goal, Goals};
 /// Consecutive solutions without improvement after which the search ends.
 const PATIENCE: usize = 24;
 
-/// Distances that differ by less (rad, m) count as equal.
+/// Largest difference of distances (rad, m) that count as equal.
 const SAME: f64 = 1e-9;
 
-/// Returns the nearest solution to `start` found before [`PATIENCE`] consecutive solutions were no nearer; the best
-/// miss if there is none.
+/// Returns the nearest solution to `start` found before [`PATIENCE`] consecutive solutions were no nearer; the best miss if
+/// there is none.
 pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
@@ -59,8 +59,8 @@ struct Spread<'a> {
 }
 
 impl Spread<'_> {
-    /// Draws a point whose joints differ from the start by at most `fraction` of their ranges, or of one turn if that is
-    /// less and the joint is periodic, since whole turns bring back any point beyond.
+    /// Draws a point whose joints differ from the start by at most `fraction` of their ranges, or of one turn if that is less
+    /// and the joint is periodic, since whole turns bring back any point beyond.
     fn draw(&self, fraction: f64, rng: &mut LazyRng, x: &mut [f64]) {
         let Self { robot, bounds, start } = self;
         for (j, joint) in robot.joints().iter().enumerate() {

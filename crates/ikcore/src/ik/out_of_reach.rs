@@ -1,4 +1,4 @@
-//! The end of a target that has no solution: why, and a configuration near it.
+//! Result of a target without a solution: the reason, and a configuration near the target.
 
 use super::attempt::Attempt;
 use super::solution::Solution;
@@ -6,19 +6,20 @@ use crate::objective::{LeastSquares, Linearization, Point};
 use crate::solver::Status;
 use crate::task::Assessment;
 
-/// Steps towards the target: on six arms they end 2 to 5 % nearer, on the average, than four of the default solver from an indexed start.
+/// Steps towards the target: on six arms they end 2 to 5 % nearer, on average, than four of the default solver from an indexed
+/// start.
 const STEPS: usize = 2;
 
 /// Damping of the first step, relative to the squared error.
 const DAMPING: f64 = 0.3;
 
-/// Factor on the damping after each step: most of the error is to stay, and what would remove it goes too far.
+/// Factor on the damping after each step: most of the error cannot be removed, and larger steps would overshoot.
 const INCREASE: f64 = 2.0;
 
-/// Tolerances (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
+/// Tolerance (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
 const WIDE: f64 = 1e-5;
 
-/// Whether tolerances are so wide that a pose may be reached although it has no solution inside the limits, nor one near them.
+/// Whether the tolerances are so wide that a pose may be reached without a solution inside the limits or near them.
 pub(super) fn is_wide(attempt: &Attempt<'_, '_>) -> bool {
     attempt.problem.only_target().is_none_or(|(_, criterion)| {
         let tolerance = criterion.tolerance;
@@ -26,7 +27,7 @@ pub(super) fn is_wide(attempt: &Attempt<'_, '_>) -> bool {
     })
 }
 
-/// Why a pose cannot be reached that has `count` solutions, none of them inside the limits; `count` is None if that is not known.
+/// Reason why a pose with `count` solutions, all outside the limits, cannot be reached; `None` if the count is unknown.
 pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> String {
     if let Some(beyond) = attempt.problem.reach_shortfall(attempt.context.bounds()) {
         return beyond.to_string();
@@ -39,7 +40,7 @@ pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> St
     }
 }
 
-/// The result where there is no solution, with a configuration a few steps nearer to the target than `from`.
+/// Result without a solution, at a configuration a few steps nearer to the target than `from`.
 #[cold]
 pub(super) fn ended(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
     let (q, Assessment { error, score }) = approached(attempt, from);
@@ -49,7 +50,7 @@ pub(super) fn ended(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: Str
     Solution { obstruction, ..attempt.result(Status::OutOfReach, q, error.into()) }
 }
 
-/// Where a few steps of damped least squares lead from `q`, or the last point before they went too far.
+/// Takes a few steps of damped least squares from `q`, and returns the last one that lowered the error.
 fn approached(attempt: &mut Attempt<'_, '_>, mut q: Point) -> (Point, Assessment) {
     let Attempt { context, problem, budget, .. } = attempt;
     let limits = [context.bounds().lower(), context.bounds().upper()];

@@ -1,4 +1,4 @@
-//! Which of several configurations to take: the nearest to the start or, without a start, the most central one.
+//! Choice among several configurations: nearest to the start or, without a start, most central.
 
 use smallvec::SmallVec;
 
@@ -8,16 +8,16 @@ use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
-/// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
+/// Excess over a limit (rad, m) that counts as rounding: the joint is at its limit.
 pub(super) const AT_LIMIT: f64 = 1e-9;
 
-/// The period of a joint of which no whole turn leads to the same pose.
+/// Period of a joint without equivalent whole turns.
 const NO_PERIOD: f64 = 1e300;
 
 /// Configurations whose costs are computed together.
 const LANES: usize = 4;
 
-/// Why none of several configurations is taken.
+/// Reason for choosing none of several configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Miss {
     /// Polishing may bring one of them to the pose inside the limits.
@@ -26,31 +26,31 @@ pub(super) enum Miss {
     Far,
 }
 
-/// A reference configuration within limits.
+/// Reference configuration within limits, and the weights of distances from it.
 #[derive(Debug, Clone)]
 pub(super) struct Preference {
     joints: SmallVec<[JointPreference; 8]>,
-    /// The finite ranges inside the limits.
+    /// Finite ranges inside the limits.
     ranges: [SmallVec<[f64; 8]>; 2],
 }
 
-/// The preferred value of a joint.
+/// Preferred value of a joint.
 #[derive(Debug, Clone)]
 struct JointPreference {
     lower: f64,
     upper: f64,
     reference: f64,
-    /// What its distance from the reference counts.
+    /// Weight of the squared distance from the reference.
     weight: f64,
-    /// Beyond all limits if no whole turn leads to the same pose.
+    /// Period of equivalent values; beyond all limits if there is none.
     period: f64,
-    /// Turns per rad or m; rounded down, so that half a turn stays where it is.
+    /// Turns per rad or m; rounded down, so that half a turn stays in place.
     turns: f64,
 }
 
 impl Preference {
-    /// Near `start`, all joints counted the same (rad, m); without one near the middle of the limits, joints counted in their
-    /// ranges.
+    /// Preference for configurations near `start`, with all joints weighted equally (rad, m); without one, near the middle of
+    /// the limits, with joints weighted by their ranges.
     pub fn new(robot: &Robot, bounds: &Bounds, start: Option<&[f64]>) -> Self {
         let mut preference = Self { joints: SmallVec::new(), ranges: Default::default() };
         for (j, joint) in robot.joints().iter().enumerate() {
@@ -72,18 +72,19 @@ impl Preference {
         preference
     }
 
-    /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
+    /// Finite ranges inside the limits for drawing configurations: lower ends and upper ends.
     pub fn ranges(&self) -> [&[f64]; 2] {
         let [lower, upper] = &self.ranges;
         [lower, upper]
     }
 
-    /// The reference configuration.
+    /// Reference configuration.
     pub fn reference(&self) -> Point {
         self.joints.iter().map(|joint| joint.reference).collect()
     }
 
-    /// The preferred one of `configurations`, which are brought to their whole turns nearest to the reference; or why none is taken.
+    /// Returns the preferred one of `configurations`, all brought to the whole turns nearest to the reference, or the reason
+    /// why none is chosen.
     pub fn choose(&self, configurations: &mut ArmConfigurations) -> Result<Point, Miss> {
         let costs = turn_inside(&self.joints, configurations);
         let mut best = (f64::INFINITY, 0);
@@ -95,8 +96,8 @@ impl Preference {
         if best.0 < f64::INFINITY { Ok(self.inside(configurations, best.1)) } else { Err(self.miss(configurations)) }
     }
 
-    /// Those of `configurations` that are inside the limits, preferred ones first. All are brought to their whole turns nearest to
-    /// the reference.
+    /// Returns the `configurations` inside the limits in order of preference. All are brought to the whole turns nearest to the
+    /// reference.
     pub fn ordered(&self, configurations: &mut ArmConfigurations) -> SmallVec<[Point; 8]> {
         let costs = turn_inside(&self.joints, configurations);
         let inside = (0..configurations.len()).filter(|place| costs[*place] < f64::INFINITY);
@@ -105,7 +106,7 @@ impl Preference {
         inside.iter().map(|place| self.inside(configurations, *place)).collect()
     }
 
-    /// One of `configurations`, rounding beyond the limits undone.
+    /// Configuration number `place`, clamped to the limits to undo rounding.
     #[inline]
     fn inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
         let mut q = Point::new();
@@ -115,7 +116,7 @@ impl Preference {
         q
     }
 
-    /// How near to the limits `configurations` are, none of which is inside them.
+    /// Classifies the miss of `configurations`, all of which are outside the limits.
     #[cold]
     fn miss(&self, configurations: &ArmConfigurations) -> Miss {
         let is_near = |place: usize| {
@@ -125,28 +126,28 @@ impl Preference {
         if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
     }
 
-    /// Those of `configurations` that are outside the limits by less than `most` (rad, m): how far, and the nearest configuration
-    /// inside. All are brought to whole turns near the limits.
+    /// Returns the `configurations` outside the limits by less than `most` (rad, m): their excess, and the nearest
+    /// configuration inside. All are brought to whole turns near the limits.
     pub fn misses(&self, configurations: &mut ArmConfigurations, most: f64) -> impl Iterator<Item = (f64, Point)> {
         let outside = turn_near(&self.joints, configurations);
         let places = (0..configurations.len()).filter(move |place| outside[*place] < most);
         places.map(move |place| (outside[place], self.moved_inside(configurations, place)))
     }
 
-    /// That of `configurations` least outside the limits, moved inside. All are brought to whole turns near the limits.
+    /// Returns the configuration least outside the limits, moved inside. All are brought to whole turns near the limits.
     pub fn nearest_miss(&self, configurations: &mut ArmConfigurations) -> Option<Point> {
         let outside = turn_near(&self.joints, configurations);
         let least = (0..configurations.len()).min_by(|a, b| outside[*a].total_cmp(&outside[*b]))?;
         Some(self.moved_inside(configurations, least)).filter(|q| q.iter().all(|q| q.is_finite()))
     }
 
-    /// The configuration inside the limits nearest to one of `configurations`, which are at whole turns near the limits.
+    /// Configuration inside the limits nearest to number `place`, which is at whole turns near the limits.
     fn moved_inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
         let joints = self.joints.iter().zip(configurations.columns());
         joints.map(|(joint, values)| joint.moved_inside(values[place])).collect()
     }
 
-    /// The preferred one of `configurations` inside the limits, which are at their whole turns nearest to the reference already.
+    /// Returns the preferred one of `configurations`, all inside the limits and at the whole turns nearest to the reference.
     pub fn nearest<'q>(&self, configurations: impl Iterator<Item = &'q [f64]>) -> Option<&'q [f64]> {
         let cost = |q: &[f64]| self.joints.iter().zip(q).fold(0.0, |sum, (joint, q)| sum + joint.cost(*q));
         configurations.min_by(|a, b| cost(a).total_cmp(&cost(b)))
@@ -154,8 +155,8 @@ impl Preference {
 }
 
 by_instructions! {
-    /// Brings each of `configurations` to its whole turns nearest to the reference; returns their weighted squared distances from
-    /// it, infinite outside the limits.
+    /// Brings each of `configurations` to the whole turns nearest to the reference. Returns their weighted squared distances
+    /// from it, infinite outside the limits.
     fn turn_inside(joints: &[JointPreference], configurations: &mut ArmConfigurations) -> [f64; MOST_CONFIGURATIONS] {
         let count = configurations.len();
         let mut costs = [0.0; MOST_CONFIGURATIONS];
@@ -166,7 +167,7 @@ by_instructions! {
                 sums.copy_from_slice(&costs[first..first + LANES]);
                 for w in 0..LANES {
                     lanes[w] = joint.turned(lanes[w]);
-                    // Added and not chosen: without branches the compiler takes all lanes at once.
+                    // Added instead of selected: without branches the compiler vectorises the lanes.
                     let penalty = if joint.is_within(lanes[w], AT_LIMIT) { 0.0 } else { f64::INFINITY };
                     sums[w] += joint.cost(joint.inside(lanes[w])) + penalty;
                 }
@@ -179,8 +180,8 @@ by_instructions! {
 }
 
 by_instructions! {
-    /// Brings each of `configurations` to the whole turns below its upper limits; returns how far each is outside the limits at
-    /// least (rad, m), or a whole turn later.
+    /// Brings each of `configurations` to the whole turns below its upper limits. Returns the excess of each over the limits
+    /// (rad, m), there or one turn later, whichever is less.
     fn turn_near(joints: &[JointPreference], configurations: &mut ArmConfigurations) -> [f64; MOST_CONFIGURATIONS] {
         let count = configurations.len();
         let mut most = [0.0; MOST_CONFIGURATIONS];
@@ -203,7 +204,7 @@ by_instructions! {
 }
 
 impl JointPreference {
-    /// The value `q` at the whole turn nearest to the reference inside the limits, where there is one.
+    /// Value `q` at the whole turn nearest to the reference, inside the limits if possible.
     #[inline(always)]
     fn turned(&self, q: f64) -> f64 {
         let fewest = ((self.lower - AT_LIMIT - q) * self.turns).ceil();
@@ -217,31 +218,31 @@ impl JointPreference {
         (self.lower - slack <= q) & (q <= self.upper + slack)
     }
 
-    /// Whether polishing may move `q` inside the limits, or the value one whole turn before or after it.
+    /// Whether polishing may move `q`, or its value one whole turn away, inside the limits.
     fn is_near(&self, q: f64) -> bool {
         [q - self.period, q, q + self.period].iter().any(|q| self.is_within(*q, MOVED_BY_POLISHING))
     }
 
-    /// How far `turned`, from [`Self::turned`], or the value a whole turn later is outside the limits.
+    /// Excess over the limits of `turned`, from [`Self::turned`], or of its value one turn later, whichever is less.
     #[inline(always)]
     fn outside(&self, turned: f64) -> f64 {
         let nearer = smaller(self.lower - turned, turned + self.period - self.upper);
         larger(0.0, larger(nearer, turned - self.upper))
     }
 
-    /// The value inside the limits nearest to `turned`, or to the value a whole turn later.
+    /// Value inside the limits nearest to `turned`, or to its value one turn later.
     fn moved_inside(&self, turned: f64) -> f64 {
         let is_later = turned + self.period - self.upper < self.lower - turned;
         self.inside(if is_later { turned + self.period } else { turned })
     }
 
-    /// The value inside the limits nearest to `q`.
+    /// Value inside the limits nearest to `q`.
     #[inline(always)]
     fn inside(&self, q: f64) -> f64 {
         smaller(larger(q, self.lower), self.upper)
     }
 
-    /// What the distance of `q` from the reference counts.
+    /// Weighted squared distance of `q` from the reference.
     #[inline(always)]
     fn cost(&self, q: f64) -> f64 {
         let off = q - self.reference;
@@ -262,7 +263,7 @@ mod tests {
 
     fn preference(reference: &[f64; JOINTS]) -> Preference {
         let joint = |j: usize| {
-            // The fifth slides.
+            // The fifth joint is prismatic.
             let period = if j == 4 { NO_PERIOD } else { TAU };
             let turns = (1.0 - f64::EPSILON) / period;
             let (lower, upper) = (LOWER[j], UPPER[j]);
@@ -271,7 +272,7 @@ mod tests {
         Preference { joints: (0..JOINTS).map(joint).collect(), ranges: Default::default() }
     }
 
-    /// The nearest of all whole turns inside the limits, and what it costs.
+    /// Finds the nearest of all whole turns inside the limits, and its cost, by enumeration.
     fn by_trying(preference: &Preference, q: &[f64]) -> Option<(f64, Point)> {
         let mut sum = 0.0;
         let turned = preference.joints.iter().zip(q).enumerate().map(|(j, (joint, q))| {

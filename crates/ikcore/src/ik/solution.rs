@@ -1,4 +1,4 @@
-//! The result of one target.
+//! Result of one target.
 
 use std::time::Duration;
 
@@ -12,19 +12,19 @@ use crate::solver::Status;
 use crate::task::TipError;
 use crate::wording::number;
 
-/// The best configuration found, and how the search ended.
+/// Best configuration found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
-    /// The configuration (n,) (rad, m), inside the limits.
+    /// Configuration (n,) (rad, m), inside the limits.
     pub q: Point,
-    /// Why the search ended.
+    /// Reason for the end of the search.
     pub status: Status,
     /// Errors at `q`, by forward kinematics.
     pub error: TipError,
-    /// Why the target was not reached, in words; empty if unknown or reached.
+    /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
-    /// The nearest two bodies at `q`, if obstacles or the robot's own links were to be kept clear of; `None` too while they are left for
-    /// later ([`SolveOptions::nearest_later`](super::SolveOptions)).
+    /// Nearest two bodies at `q`, if obstacles or self-collision were checked; `None` while deferred by
+    /// [`SolveOptions::nearest_later`](super::SolveOptions).
     pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -36,29 +36,29 @@ pub struct Solution {
     pub elapsed: Duration,
 }
 
-/// What is nearest to what at a configuration, where that was asked for.
+/// Nearest two bodies at a configuration, if collisions were checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nearest {
-    /// The two bodies; `None` if no two can touch.
+    /// Bodies and their distance; `None` if no two can touch.
     pub bodies: Option<NearestContact>,
-    /// The first obstacle that is a mesh which is not closed: its inside is not known.
+    /// First obstacle with an open mesh, whose inside is unknown.
     pub open_mesh: Option<usize>,
 }
 
 impl Nearest {
-    /// At `q` in `space`.
+    /// Nearest two bodies at `q` in `space`.
     pub(super) fn at(space: &ClearSpace<'_>, q: &[f64]) -> Self {
         Self { bodies: space.nearest(q), open_mesh: space.first_open_mesh() }
     }
 
-    /// The smallest distance (m); infinite if nothing can touch.
+    /// Smallest distance (m); infinite if nothing can touch.
     pub fn clearance(&self) -> f64 {
         self.bodies.as_ref().map_or(f64::INFINITY, |bodies| bodies.contact.distance)
     }
 }
 
 impl Solution {
-    /// Finds the nearest two bodies where they were left for later.
+    /// Computes the nearest two bodies if they were deferred.
     ///
     /// # Errors
     /// As [`Surroundings::clear_space`].
@@ -71,13 +71,13 @@ impl Solution {
         Ok(())
     }
 
-    /// The smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
+    /// Smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
     /// checked.
     pub fn clearance(&self) -> f64 {
         self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
     }
 
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         let Self { error, obstruction, status, .. } = self;
         if error.position.is_nan() && error.rotation.is_nan() {
@@ -100,7 +100,7 @@ impl Solution {
         format!("{ended} {error} away{why}: {}", status.advice())
     }
 
-    /// The clearance, as the end of a sentence; empty if nothing was checked.
+    /// Clearance as the end of a sentence; empty if nothing was checked.
     fn kept_clear(&self) -> String {
         let Some(nearest) = &self.nearest else { return String::new() };
         let clear = match nearest.bodies {

@@ -5,36 +5,36 @@ use serde::{Deserialize, Serialize};
 use crate::math::vector::distance;
 use crate::task::TipError;
 
-/// Configurations that reach a target, each with the errors of the tip.
+/// Configurations that reach a target, with the errors of the tip.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solutions {
     joints: usize,
-    /// The configurations, one after the other.
+    /// Configurations (k, n), row by row.
     values: Vec<f64>,
     errors: Vec<TipError>,
 }
 
-/// One of them.
+/// View of one solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolutionView<'a> {
-    /// The configuration (n,) (rad, m), inside the limits.
+    /// Configuration (n,) (rad, m), inside the limits.
     pub q: &'a [f64],
     /// Errors at `q`, by forward kinematics.
     pub error: TipError,
 }
 
 impl Solutions {
-    /// None, for an arm of `joints` joints.
+    /// Empty list for an arm of `joints` joints.
     pub(super) fn new(joints: usize) -> Self {
         Self { joints, values: Vec::new(), errors: Vec::new() }
     }
 
-    /// Adds one.
+    /// Adds a solution.
     #[inline]
     pub(super) fn push(&mut self, q: &[f64], error: TipError) {
         debug_assert_eq!(q.len(), self.joints);
         if self.errors.is_empty() {
-            // The branches of an arm with six joints fit without another allocation.
+            // Room for all branches of a six-joint arm in one allocation.
             self.values.reserve(8 * self.joints);
             self.errors.reserve(8);
         }
@@ -42,39 +42,39 @@ impl Solutions {
         self.errors.push(error);
     }
 
-    /// How many there are.
+    /// Number of solutions.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
 
-    /// Whether there is none.
+    /// Whether there is no solution.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// All configurations (k, n), row by row (rad, m).
+    /// Configurations (k, n), row by row (rad, m).
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Number `i`, counted from 0; None beyond the last.
+    /// Solution number `i`, counted from 0; `None` beyond the last.
     pub fn get(&self, i: usize) -> Option<SolutionView<'_>> {
         let error = *self.errors.get(i)?;
         Some(SolutionView { q: &self.values[i * self.joints..][..self.joints], error })
     }
 
-    /// All of them in order.
+    /// Iterates over the solutions in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = SolutionView<'_>> {
         self.values.chunks_exact(self.joints).zip(&self.errors).map(|(q, error)| SolutionView { q, error: *error })
     }
 
-    /// Keeps the first `count`.
+    /// Keeps the first `count` solutions.
     pub(super) fn truncate(&mut self, count: usize) {
         self.values.truncate(count.saturating_mul(self.joints));
         self.errors.truncate(count);
     }
 
-    /// Those for which `keep` holds, given the ones kept so far.
+    /// Copies the solutions for which `keep` holds, given those kept before.
     pub(super) fn filtered(&self, keep: impl Fn(&Self, &[f64]) -> bool) -> Self {
         let mut kept = Self::new(self.joints);
         for SolutionView { q, error } in self.iter() {

@@ -1,4 +1,4 @@
-//! One target, one solution.
+//! One solution of one target.
 
 use super::attempt::Attempt;
 use super::best::best_solution;
@@ -18,10 +18,10 @@ use crate::task::Target;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
-/// A pose of an arm with a closed form ([`Robot::closed_form`]) is solved by it, unless a solver is named or the task has weights or a
-/// region: the branch nearest to the start is returned or, without a start, the most central one inside the limits. A redundant arm
-/// descends from a given start first. A pose is called out of reach only where the closed form leaves no doubt of it. Everything else is
-/// searched for.
+/// A pose of an arm with a closed form ([`Robot::closed_form`]) is solved by it, unless a solver is named or the task has
+/// weights or a region: the branch nearest to the start is returned or, without a start, the most central one inside the
+/// limits. A redundant arm descends from a given start first. A pose is reported as out of reach only if the closed form proves
+/// it. All other targets are solved by search.
 ///
 /// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
@@ -40,10 +40,11 @@ pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &m
     solve_tips(robot, std::slice::from_ref(target), options, monitor)
 }
 
-/// [`solve`] for several tips: `targets` are those of [`SolveOptions::tips`], in the same order. Tips without a target are free.
+/// Solves for several tips at once, otherwise like [`solve`]: `targets` belong to the tasks of [`SolveOptions::tips`], in the
+/// same order. Tips without a target are free.
 ///
-/// Searches begin with the joints that tips share in the middle of their ranges, later anywhere, and each arm at its own closed form or
-/// index of starts, given those. All joints then move together.
+/// A search starts with the shared joints at the middle of their ranges, later anywhere; given these, each arm starts at its
+/// own closed form or indexed configuration. All joints then move together.
 ///
 /// # Errors
 /// As [`solve`]; [`Error::Contradiction`](crate::Error::Contradiction) for targets that contradict each other.
@@ -92,7 +93,7 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     attempt.solution(Status::Solved, solution.q)
 }
 
-/// The first solution that a search finds.
+/// Searches for a solution from the first start.
 fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let x0 = attempt.first_start(start);
     attempt.solve_from(&x0)

@@ -23,27 +23,27 @@ use crate::task::Target;
 /// Consecutive known solutions after which the search ends.
 const PATIENCE: usize = 100;
 
-/// How many solutions a search collects, and how far apart, unless asked otherwise.
+/// Default number of solutions of a search, and their smallest separation.
 const COLLECTED: usize = 16;
 const APART: f64 = 0.1;
 
-/// The most configurations that whole turns are to make of one pose.
+/// Largest number of configurations that whole turns may generate from one pose.
 const MOST_TURNED: f64 = 10_000.0;
 
-/// How to look for all solutions.
+/// Options of [`solve_all`].
 #[derive(Debug, Clone)]
 pub struct AllOptions {
-    /// How to solve. Its budgets apply to the whole search; a closed form takes no search.
+    /// Options of each solve. The budgets apply to the whole search; a closed form needs no search.
     pub each: SolveOptions,
-    /// Largest number of solutions to return. None: all of a closed form, 16 of a search.
+    /// Largest number of solutions to return. `None` means all of a closed form, 16 of a search.
     pub limit: Option<usize>,
-    /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside. None: all of a closed form
-    /// are returned, those of a search differ by 0.1.
+    /// Joint difference (rad, m), whole turns aside, below which two solutions count as the same. `None` returns all solutions
+    /// of a closed form; those of a search differ by 0.1.
     pub separation: Option<f64>,
-    /// A redundant arm with a closed form is solved at this many values of its parameter, spread over those that its limits allow.
-    /// 0: its solutions are searched for.
+    /// Number of parameter values at which a redundant arm with a closed form is solved, spread over those that its limits
+    /// allow. 0 means a search.
     pub redundancy: usize,
-    /// Return each solution at all whole turns inside the limits.
+    /// Whether to return each solution at all whole turns inside the limits.
     pub turns: bool,
 }
 
@@ -56,17 +56,17 @@ impl Default for AllOptions {
 /// Distinct solutions, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolutionSet {
-    /// The solutions, nearest to the start first; without a start in the order of discovery.
+    /// Solutions, nearest to the start first; without a start in the order of discovery.
     pub solutions: Solutions,
-    /// The nearest two bodies at each solution, if obstacles or the robot's own links were to be kept clear of.
+    /// Nearest two bodies at each solution, if obstacles or self-collision were checked.
     pub nearest: Option<Vec<Nearest>>,
-    /// Why there is no solution, where that is proven. [`nearest_miss`] then finds a configuration near the target.
+    /// Reason for having no solution, if that is proven. [`nearest_miss`] then finds a configuration near the target.
     pub obstruction: Option<String>,
-    /// The best miss of a search that found no solution.
+    /// Best miss of a search that found no solution.
     pub miss: Option<Box<Solution>>,
-    /// It is proven that there is no other solution inside the limits, whole turns aside.
+    /// Whether there is provably no other solution inside the limits, whole turns aside.
     pub complete: bool,
-    /// The pose is singular: one solution at least stands for a family, in which a joint is free.
+    /// Whether the pose is singular: a solution represents a family in which a joint is free.
     pub singular: bool,
     /// Iterations of a search, over all starts.
     pub iterations: usize,
@@ -76,12 +76,12 @@ pub struct SolutionSet {
     pub evaluations: usize,
     /// Time taken.
     pub elapsed: Duration,
-    /// The monitor asked to stop.
+    /// Whether the monitor asked to stop.
     pub interrupted: bool,
 }
 
 impl SolutionSet {
-    /// [`Status::Solved`] if there is a solution, else why there is none.
+    /// Status [`Status::Solved`] if there is a solution, else the reason for having none.
     pub fn status(&self) -> Status {
         match (&self.obstruction, &self.miss) {
             (Some(_), _) => Status::OutOfReach,
@@ -90,7 +90,7 @@ impl SolutionSet {
         }
     }
 
-    /// The number of solutions, or why there are none.
+    /// Returns a sentence with the number of solutions, or the reason for having none.
     pub fn message(&self) -> String {
         if let Some(obstruction) = &self.obstruction {
             return format!("no solution ({obstruction}): {}", Status::OutOfReach.advice());
@@ -105,7 +105,7 @@ impl SolutionSet {
         format!("{count}{complete}{singular}")
     }
 
-    /// A set with nothing said of it.
+    /// Set of these solutions, all other fields empty.
     fn of(solutions: Solutions) -> Self {
         Self {
             solutions,
@@ -122,7 +122,7 @@ impl SolutionSet {
         }
     }
 
-    /// Solution number `i`, counted from 0, with the counts of all; None beyond the last.
+    /// Solution number `i`, counted from 0, with the counts of all; `None` beyond the last.
     pub fn solution(&self, i: usize) -> Option<Solution> {
         self.solutions.get(i).map(|SolutionView { q, error }| Solution {
             q: Point::from_slice(q),
@@ -138,16 +138,16 @@ impl SolutionSet {
     }
 }
 
-/// Returns all solutions of a pose where the arm has a closed form ([`Robot::closed_form`]); otherwise looks for distinct
-/// solutions until a hundred in a row were known already, or the budget is spent.
+/// Returns all solutions of a pose if the arm has a closed form ([`Robot::closed_form`]); otherwise searches for distinct
+/// solutions until a hundred consecutive ones were known already, or the budget is spent.
 ///
-/// The closed form serves whole poses with the default solver, without weights, region or goals.
+/// The closed form applies to whole poses with the default solver, without weights, region or goals.
 ///
 /// Each solution is returned at the whole turns nearest to the start or, without one, to the middle of the limits. A redundant
 /// arm has infinitely many solutions: those returned are at least the separation apart.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] where whole turns make more than 10,000 configurations.
+/// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] if whole turns make more than 10,000 configurations.
 pub fn solve_all(
     robot: &Robot,
     target: &Target,
@@ -157,7 +157,8 @@ pub fn solve_all(
     solve_all_tips(robot, std::slice::from_ref(target), options, monitor)
 }
 
-/// [`solve_all`] for several tips: distinct solutions by a search. `targets` are those of [`SolveOptions::tips`], in the same order.
+/// Searches for distinct solutions of several tips, otherwise like [`solve_all`]. `targets` belong to the tasks of
+/// [`SolveOptions::tips`], in the same order.
 ///
 /// # Errors
 /// As [`solve_all`].
@@ -198,7 +199,7 @@ pub fn solve_all_tips(
     found.complete &= found.solutions.len() <= limit;
     found.solutions.truncate(limit);
     if let Some(space) = context.space() {
-        // Whole turns may have rounded a solution out of the clear space.
+        // Rounding in whole turns may have taken a solution out of the clear space.
         found.solutions = found.solutions.filtered(|_, q| space.holds(q));
         found.nearest = Some(found.solutions.iter().map(|one| Nearest::at(space, one.q)).collect());
     }
@@ -207,7 +208,7 @@ pub fn solve_all_tips(
     Ok(found)
 }
 
-/// Keeps the clear solutions of a closed form. If there is none, finds one, or says what is in the way.
+/// Keeps the clear solutions of a closed form. If there is none, searches for one, or reports the obstruction.
 fn require_clear<'p>(
     found: &mut SolutionSet,
     attempt: &mut Attempt<'_, 'p>,
@@ -226,7 +227,7 @@ fn require_clear<'p>(
     }
 }
 
-/// The nearest of a few descents towards a target that [`solve_all`] proves to be out of reach.
+/// Returns the nearest of a few descents towards a target that [`solve_all`] proves to be out of reach.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input.
@@ -246,7 +247,7 @@ pub fn nearest_miss(
     Ok(attempt.approached(&reference, APPROACHES))
 }
 
-/// The solutions of the closed form, thinned out where a separation is asked for.
+/// Result of the closed form, with solutions at least `separation` apart.
 fn by_closed_form(attempt: &Attempt<'_, '_>, branches: AllBranches, separation: Option<f64>) -> SolutionSet {
     let AllBranches { solutions: all, obstruction, complete, singular, interrupted } = branches;
     let count = all.len();
@@ -294,9 +295,9 @@ fn search(
         if solution.status != Status::Solved {
             blocked = Some(solution);
         }
-        // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
+        // Without a start any solutions suffice; with one, the nearest are wanted, and they may be found last.
         let enough = start.is_none() && solutions.len() == limit;
-        // Runs may be too short to poll the monitor.
+        // Polls here too, since runs may be too short to poll.
         interrupted = !attempt.monitor.keep_going();
         if interrupted || known == PATIENCE || enough || attempt.budget.is_spent() {
             break blocked;
@@ -326,7 +327,7 @@ fn at_all_turns(context: &SolveContext<'_>, solutions: &Solutions) -> Result<Sol
     Ok(turned)
 }
 
-/// The middle of the ranges that joints are sampled from.
+/// Middle of the sampling ranges of the joints.
 fn middle(robot: &Robot, bounds: &Bounds) -> Point {
     let ranges = bounds.lower().iter().zip(bounds.upper()).zip(robot.joints());
     ranges
@@ -337,7 +338,7 @@ fn middle(robot: &Robot, bounds: &Bounds) -> Point {
         .collect()
 }
 
-/// Whether no joint differs by `separation` from one of the `solutions`, whole turns aside.
+/// Whether one of the `solutions` differs from `q` by less than `separation` in every joint, whole turns aside.
 fn is_known(robot: &Robot, solutions: &Solutions, q: &[f64], separation: f64) -> bool {
     let apart = |j: usize, other: &[f64]| {
         let difference = other[j] - q[j];

@@ -1,4 +1,4 @@
-//! The tasks of a solve: their validation, the parts of their targets that count, and the errors of each.
+//! Tasks of a solve: validation, the target components that they use, and their errors.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -8,7 +8,7 @@ use crate::interrupt::checkpoint_at;
 use crate::robot::Robot;
 use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
 
-/// The tasks of `options`, validated; of one tip that of plain targets.
+/// Validates the tasks of `options`; without named tips, the one task of a plain target.
 #[inline]
 pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {
     if options.tips.is_empty() {
@@ -22,11 +22,11 @@ pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<Small
     Ok(checked_tasks(robot, &options.tips)?.into())
 }
 
-/// These tasks, validated.
+/// Validates these tasks.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for a tip that the robot has not, [`Error::Contradiction`] for a tip or pair that is named twice; those of
-/// wrong tasks and tolerances.
+/// [`Error::OutOfRange`] for an unknown tip, [`Error::Contradiction`] for a tip or pair that is named twice; errors of wrong
+/// tasks and tolerances.
 pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
     let tips: Vec<&str> = robot.tips().collect();
     for (i, task) in tasks.iter().enumerate() {
@@ -55,7 +55,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<Ti
     tasks.iter().map(NamedTask::validated).collect()
 }
 
-/// The same pair, seen from the other tip.
+/// Reverses a pair, as seen from its other tip.
 fn turned(subject: Subject) -> Subject {
     match subject {
         Subject::Tip(_) => subject,
@@ -76,11 +76,11 @@ pub(crate) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Targe
     Aims { tasks, targets }.require_consistent(robot)
 }
 
-/// The errors of each task of several tips at each of the configurations `qs` (m, n), row-major; NaN where a configuration or a
-/// target is not finite. `targets` returns those of a row.
+/// Errors of each task of several tips at each of the configurations `qs` (m, n), row-major; NaN if a configuration or a target
+/// is not finite. `targets` returns the targets of a row.
 ///
 /// # Errors
-/// Those of wrong tasks.
+/// Errors of wrong tasks.
 pub fn tip_errors(
     robot: &Robot,
     targets: impl Fn(usize) -> TargetRow,

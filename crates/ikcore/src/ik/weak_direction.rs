@@ -1,4 +1,4 @@
-//! The direction in which a configuration moves the tip least.
+//! Joint direction that moves the tip least.
 
 use nalgebra::{DMatrix, Dyn, OMatrix, SVD};
 
@@ -7,7 +7,7 @@ use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Tolerance;
 
-/// A direction in joint space, and how far it moves the tip.
+/// Direction in joint space, and its effect on the tip.
 pub(super) struct WeakDirection {
     /// Unit vector (n,) (rad, m).
     pub direction: Point,
@@ -16,12 +16,12 @@ pub(super) struct WeakDirection {
 }
 
 impl WeakDirection {
-    /// The least singular value of the Jacobian at `q`, its rows divided by the tolerances, and its right singular vector.
+    /// Smallest singular value of the Jacobian at `q`, its rows divided by the tolerances, and the right singular vector.
     pub fn at(robot: &Robot, q: &[f64], tolerance: &Tolerance) -> Self {
         let mut columns = Columns::default();
         robot.tip_and_jacobian(q, &mut columns);
         let per = |row: usize| if row < 3 { tolerance.position } else { tolerance.rotation };
-        // With more rows than columns, so that the decomposition has a right vector for each joint.
+        // More rows than columns, so that the decomposition has a right vector for each joint.
         let scaled: OMatrix<f64, Dyn, Dyn> =
             DMatrix::from_fn(
                 q.len().max(6),

@@ -1,4 +1,4 @@
-//! Whole turns of joints: the same posture nearer to a reference, or at every turn.
+//! Whole turns of joints: the equivalent configuration nearest to a reference, or all equivalent ones.
 
 use smallvec::SmallVec;
 
@@ -11,20 +11,20 @@ pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &
     NearestTurns::new(robot, bounds, reference).bring_near(q);
 }
 
-/// What [`bring_near`] needs, prepared for many configurations.
+/// Whole turns nearest to a reference, prepared for many configurations.
 pub(super) struct NearestTurns<'a> {
     reference: &'a [f64],
     joints: SmallVec<[NearestTurn; 8]>,
 }
 
-/// One joint.
+/// Reference and limits of one joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearestTurn {
-    /// The limits (rad, m).
+    /// Limits of the joint (rad, m).
     pub lower: f64,
     pub upper: f64,
     reference: f64,
-    /// 0 where there is none.
+    /// Period of the joint; 0 if it has none.
     period: f64,
 }
 
@@ -37,7 +37,7 @@ impl<'a> NearestTurns<'a> {
         Self { reference, joints: (0..reference.len()).map(joint).collect() }
     }
 
-    /// The configuration to be near to (n,).
+    /// Reference configuration (n,).
     pub fn reference(&self) -> &'a [f64] {
         self.reference
     }
@@ -56,8 +56,8 @@ impl<'a> NearestTurns<'a> {
 }
 
 impl NearestTurn {
-    /// `value` shifted by whole turns to be as near as possible to the reference within the limits, which it is moved inside of if it is
-    /// beyond them by rounding, or as little outside them as possible.
+    /// Shifts `value` by whole turns as near as possible to the reference within the limits, or as little outside them as
+    /// possible. Rounding beyond a limit is clamped.
     #[inline]
     pub fn nearest(&self, value: f64) -> f64 {
         let Self { lower, upper, reference, period } = *self;
@@ -81,7 +81,7 @@ impl NearestTurn {
     }
 }
 
-/// All configurations inside the limits that differ from `q` by whole turns, `q` first. Joints without limits stay.
+/// Returns all configurations inside the limits that differ from `q` by whole turns, `q` first. Joints without limits stay.
 pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Vec<Point> {
     let mut all = vec![Point::from_slice(q)];
     for j in 0..q.len() {
@@ -99,19 +99,19 @@ pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Vec<Point>
     all
 }
 
-/// How many configurations [`all_turns`] returns.
+/// Number of configurations that [`all_turns`] returns.
 pub(super) fn count_of_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> f64 {
     (0..q.len()).map(|j| range_of_turns(robot, bounds, q, j).map_or(1.0, |(_, low, high)| high - low + 1.0)).product()
 }
 
-/// Where whole turns take joint `j` inside its limits, besides where it is.
+/// Other values of joint `j` inside its limits at whole turns.
 fn other_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Vec<f64> {
     let Some((period, low, high)) = range_of_turns(robot, bounds, q, j) else { return vec![] };
     let turns = (low as i64..=high as i64).filter(|turns| *turns != 0);
     turns.map(|turns| (q[j] + turns as f64 * period).clamp(bounds.lower()[j], bounds.upper()[j])).collect()
 }
 
-/// The period of joint `j`, and the fewest and most whole turns that keep it inside its limits, up to rounding.
+/// Period of joint `j`, and the fewest and most whole turns that keep it inside its limits, up to rounding.
 fn range_of_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Option<(f64, f64, f64)> {
     const PART_OF_A_TURN: f64 = 1e-12;
     let period = robot.turn_period(j)?;

@@ -1,6 +1,6 @@
-//! A serial chain in the form used by the kernels: per moving element (a *stage*) one constant frame, then a rotation
-//! about and a translation along its own z axis. Constant transforms and axis directions are folded in when the chain
-//! is built.
+//! Serial chain in the form used by the kernels. Each moving element (a *stage*) has one constant frame, followed by a
+//! rotation about and a translation along its own z axis; constant transforms and axis directions are folded in when the
+//! chain is built.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,8 +9,8 @@ use super::stages::Stages;
 use crate::math::so3::cross;
 use crate::math::{Frame, Pose, pose};
 
-/// Motion of a stage: turn = turn_scale * q\[joint\] + turn_offset (rad), and likewise the slide (m). One of the scales
-/// is zero.
+/// Motion of a stage: a rotation by turn_scale * q\[joint\] + turn_offset (rad) and a translation of the same form (m). One
+/// of the two scales is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StageMotion {
     pub joint: usize,
@@ -18,7 +18,7 @@ pub(crate) struct StageMotion {
     pub turn_offset: f64,
     pub slide_scale: f64,
     pub slide_offset: f64,
-    /// Whether it is an entry of a [`RotationVector`], whose axis moves with it and with the others.
+    /// True for an entry of a [`RotationVector`], whose axis moves with all three entries.
     pub of_vector: bool,
 }
 
@@ -26,29 +26,29 @@ impl StageMotion {
     const NONE: Self =
         Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0, of_vector: false };
 
-    /// A turn by `scale * q[joint] + offset` (rad).
+    /// Returns a rotation by `scale * q[joint] + offset` (rad).
     pub fn turn(joint: usize, scale: f64, offset: f64) -> Self {
         Self { joint, turn_scale: scale, turn_offset: offset, ..Self::NONE }
     }
 
-    /// A slide by `scale * q[joint] + offset` (m).
+    /// Returns a translation by `scale * q[joint] + offset` (m).
     pub fn slide(joint: usize, scale: f64, offset: f64) -> Self {
         Self { joint, slide_scale: scale, slide_offset: offset, ..Self::NONE }
     }
 
-    /// A turn by entry `joint` of a rotation vector.
+    /// Returns a rotation by entry `joint` of a rotation vector.
     fn vector_entry(joint: usize) -> Self {
         Self { of_vector: true, ..Self::turn(joint, 1.0, 0.0) }
     }
 
-    /// Velocity of `point`, carried by the frame `moved` of this element, per unit speed of the joint.
+    /// Returns the velocity of `point` per unit joint speed, for a point fixed in this element's frame `moved`.
     pub fn velocity(&self, moved: &Frame, point: &[f64; 3]) -> [f64; 3] {
         let Frame { axes: [_, _, axis], origin } = moved;
         let moment = cross(axis, &std::array::from_fn(|k| point[k] - origin[k]));
         std::array::from_fn(|k| self.turn_scale * moment[k] + self.slide_scale * axis[k])
     }
 
-    /// Largest rotation (rad) and translation (m) when each joint changes by up to `reach`.
+    /// Returns the largest rotation (rad) and translation (m) if each joint changes by up to `reach`.
     #[inline]
     pub fn travel(&self, reach: &[f64]) -> [f64; 2] {
         [self.turn_scale, self.slide_scale].map(|scale| scale.abs() * reach[self.joint])
@@ -62,35 +62,35 @@ pub(crate) struct LinkFrame {
     pub offset: Frame,
 }
 
-/// The folded chain.
+/// Chain with its constant transforms folded in.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
     /// Number of moving elements; the remaining stages are padding.
     pub moving: usize,
-    /// One per moving element.
+    /// Constant frames, one per moving element.
     pub stages: Stages,
-    /// One per moving element, then padding that moves nothing.
+    /// Motions, one per moving element, then padding that moves nothing.
     pub motions: Vec<StageMotion>,
-    /// The tip relative to the last stage.
+    /// Tip frame relative to the last stage.
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
-    /// Whose stages do not turn about axes of their own.
+    /// Rotation vector, whose stages do not turn about axes of their own.
     pub vector: Option<RotationVector>,
 }
 
-/// Numbers of stages that kernels are compiled for. Chains are padded to the next one.
+/// Stage counts for which kernels are compiled; chains are padded to the next one.
 pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
 
-/// Sines are computed four at a time: a remainder of one to three costs as much as all the rest (measured).
+/// Number of sines computed together: a remainder of one to three costs as much as all the rest (measured).
 const LANES: usize = 4;
 
 impl Chain {
-    /// Number of stages with padding: one of [`SIZES`].
+    /// Returns the number of stages with padding: one of [`SIZES`].
     pub(super) fn padded_stages(&self) -> usize {
         padded(self.moving)
     }
 
-    /// Constant frames of the moving elements, each relative to the previous one.
+    /// Iterates over the constant frames of the moving elements, each relative to the previous one.
     pub fn moving_frames(&self) -> impl Iterator<Item = Frame> {
         (0..self.moving).map(|stage| self.stages.frame(stage))
     }
@@ -100,7 +100,7 @@ fn padded(moving: usize) -> usize {
     SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
 }
 
-/// Folds the elements of a chain, added from base to tip.
+/// Builder that folds the elements of a chain, added from base to tip.
 pub(crate) struct ChainFolder {
     /// Constant transform since the last moving element, from that element's z-aligned frame.
     constant: Pose,
@@ -111,7 +111,7 @@ pub(crate) struct ChainFolder {
 }
 
 impl ChainFolder {
-    /// An empty chain that starts at `base`.
+    /// Creates an empty chain that starts at `base`.
     pub fn new(base: &Pose) -> Self {
         Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None }
     }
@@ -121,12 +121,12 @@ impl ChainFolder {
         self.constant *= transform;
     }
 
-    /// Marks the current frame as that of the next link.
+    /// Makes the current frame the frame of the next link.
     pub fn link(&mut self) {
         self.links.push(LinkFrame { stages: self.frames.len(), offset: Frame::from(&self.constant) });
     }
 
-    /// Appends a motion about or along `axis`, of unit length.
+    /// Appends a motion about or along the unit vector `axis`.
     pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
         let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
         self.frames.push(Frame::from(&(self.constant * aligned)));
@@ -134,7 +134,7 @@ impl ChainFolder {
         self.constant = aligned.inverse();
     }
 
-    /// Appends the rotation whose vector stands in q from entry `joint` on. A chain has one at most.
+    /// Appends a rotation vector, stored in q from entry `joint` on. A chain has at most one.
     pub fn rotation_vector(&mut self, joint: usize) {
         let start = Frame::from(&self.constant);
         self.vector = Some(RotationVector { first: self.frames.len(), joint, start });
@@ -144,7 +144,7 @@ impl ChainFolder {
         self.constant = Pose::identity();
     }
 
-    /// Returns the chain with its tip moved by `tool`. It has at least one moving element and at most
+    /// Returns the chain with its tip moved by `tool`. The chain must have at least one moving element and at most
     /// [`MAX_DOF`](crate::math::MAX_DOF).
     pub fn finish(self, tool: &Pose) -> Chain {
         let Self { constant, frames, mut motions, links, vector } = self;
@@ -154,7 +154,7 @@ impl ChainFolder {
     }
 }
 
-/// A rotation whose z axis is `axis`; exact if the axis is a coordinate axis.
+/// Returns a rotation whose z axis is `axis`; exact if the axis is a coordinate axis.
 pub(super) fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
     let helper = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let x = (helper - axis * axis.dot(&helper)).normalize();

@@ -1,5 +1,5 @@
-//! Frames of all moving elements at eight configurations at once, in single precision: for searches, whose results are confirmed in
-//! double precision.
+//! Single-precision frames of all moving elements at eight configurations, for searches whose results are confirmed in double
+//! precision.
 
 use super::chain::StageMotion;
 use super::four_forward_pass::RunningFrames;
@@ -10,7 +10,7 @@ use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::sincos::sincos_eight;
 
-/// The moving elements of a robot.
+/// Moving elements of a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct EightStages {
     stages: Vec<Stage>,
@@ -19,16 +19,16 @@ pub(crate) struct EightStages {
 
 #[derive(Debug, Clone)]
 struct Stage {
-    /// Number of the frame that it starts from.
+    /// Index of the parent frame.
     parent: usize,
-    /// Its constant frame there, z along its axis, in all lanes.
+    /// Constant frame relative to the parent, z along the axis, in all lanes.
     frame: Frame<F32x8>,
     motion: StageMotion,
 }
 
 impl EightStages {
-    /// In the order of their frames from number 1 on: the number of the frame that each starts from, its constant frame there, and
-    /// its motion; and the rotation vector among them.
+    /// Builds the stages in the order of their frames, from index 1 on: parent frame, constant frame relative to it, and
+    /// motion. `vector` is the rotation vector among them.
     pub fn new(stages: impl Iterator<Item = (usize, Frame, StageMotion)>, vector: Option<RotationVector>) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
@@ -38,7 +38,7 @@ impl EightStages {
         Self { stages, vector }
     }
 
-    /// Room for [`write`](Self::write): one frame more than there are moving elements.
+    /// Allocates the buffer of [`write`](Self::write): one frame more than there are moving elements.
     pub fn buffer(&self) -> Vec<Frame<F32x8>> {
         let mut identity = Frame { axes: [[F32x8::ZERO; 3]; 3], origin: [F32x8::ZERO; 3] };
         (0..3).for_each(|k| identity.axes[k][k] = F32x8::splat(1.0));
@@ -68,7 +68,7 @@ impl EightStages {
     }
 }
 
-/// Frames of the stages of a rotation vector, each relative to the one before; computed in double precision.
+/// Returns the frames of the stages of a rotation vector, each relative to the previous one, computed in double precision.
 #[cold]
 fn vector_frames(vector: &RotationVector, qs: &[F32x8]) -> [Frame<F32x8>; RotationVector::STAGES] {
     let phi = vector.phi(qs);

@@ -1,25 +1,25 @@
-//! The direction that a tip keeps if all joints rotate about parallel axes: planar arms, palletisers.
+//! Direction that the tip keeps if all joints rotate about parallel axes, as in planar arms and palletisers.
 
 use super::chain::StageMotion;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{cross, norm};
 
-/// Largest angle between axes that count as parallel (rad): far below any tolerance over the length of an arm.
+/// Largest angle between parallel axes (rad): far below any tolerance over the length of an arm.
 const PARALLEL: f64 = 1e-12;
 
-/// A direction fixed in the base and in the tip at every configuration.
+/// Direction that is constant in base and in tip coordinates at every configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedDirection {
     /// Unit vector in base coordinates.
     pub base: [f64; 3],
-    /// The same direction in tip coordinates.
+    /// Unit vector in tip coordinates.
     pub tip: [f64; 3],
 }
 
 impl FixedDirection {
-    /// The fixed direction of a chain with parallel axes; `None` for other chains. `at_zero` holds the frames of the
-    /// moving elements at zero joint angles, z along their axes, followed by the frame of the tip.
+    /// Returns the fixed direction of a chain with parallel axes; `None` for other chains. `at_zero` holds the frames of the
+    /// moving elements at zero joint angles, z along their axes, followed by the tip frame.
     pub(super) fn of_chain(at_zero: &[Frame], motions: &[StageMotion]) -> Option<Self> {
         let (tip, moving) = at_zero.split_last()?;
         let mut axes =
@@ -29,7 +29,7 @@ impl FixedDirection {
         axes.all(|axis| norm(&cross(&base, &axis)) < PARALLEL).then_some(fixed)
     }
 
-    /// Smallest angle between the orientation of `frame` and one that the tip can have (rad).
+    /// Returns the smallest angle between the orientation of `frame` and an orientation that the tip can have (rad).
     pub fn angle_to(&self, frame: &Frame) -> f64 {
         let wanted = frame.turn::<NoFma>(&self.tip);
         let cosine = (0..3).map(|k| wanted[k] * self.base[k]).sum::<f64>();

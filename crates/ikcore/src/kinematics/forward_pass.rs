@@ -1,14 +1,13 @@
-//! The pass from base to tip that the kernels for one configuration share; plain arrays, no allocation.
+//! Forward pass from base to tip, shared by the kernels for one configuration; plain arrays, no allocation.
 //!
-//! Each kernel is one straight-line body over N stages, with sines padded to L; [`kernels`](super::kernels) compiles
-//! it.
+//! Each kernel is one straight-line body over N stages, with sines padded to L; [`kernels`](super::kernels) compiles it.
 
 use super::chain::Chain;
 use super::wide_frame::WideFrame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::sincos::sincos;
 
-/// Sines, cosines and slides (m) of all stages.
+/// Computes sines, cosines and translations (m) of all stages.
 #[inline(always)]
 pub(super) fn stage_motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f64]) -> ([f64; L], [f64; L], [f64; L]) {
     let (mut angles, mut slides) = ([0.0; L], [0.0; L]);
@@ -22,8 +21,8 @@ pub(super) fn stage_motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f
     (sines, cosines, slides)
 }
 
-/// Calls `visit(i, frame)` for each stage from the base on, and returns the tip frame. `frame` is the frame that stage
-/// i moves: its origin lies on the axis of the stage, and its z axis is that axis.
+/// Calls `visit(i, frame)` for each stage from the base on, and returns the tip frame. `frame` is the frame moved by stage i:
+/// its origin lies on the axis of the stage, and its z axis is that axis.
 #[inline(always)]
 pub(super) fn forward_pass<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,

@@ -1,4 +1,4 @@
-//! The pass from base to tip for four configurations at once, lane by lane to the bits of
+//! Forward pass from base to tip for four configurations in SIMD lanes, bit-identical to
 //! [`forward_pass`](super::forward_pass).
 
 use super::chain::Chain;
@@ -9,8 +9,8 @@ use crate::math::real::{Four, Real};
 use crate::math::sincos::sincos_by_column;
 use crate::math::vec3::Vec3;
 
-/// Calls `visit(i, frame)` for each stage from the base on, as [`forward_pass`](super::forward_pass::forward_pass), and returns the
-/// last frame. `qs` has one entry per independent joint.
+/// Calls `visit(i, frame)` for each stage from the base on, as [`forward_pass`](super::forward_pass::forward_pass) does, and
+/// returns the last frame. `qs` has one entry per independent joint.
 #[inline(always)]
 pub(super) fn four_forward_pass<A: Arithmetic, const N: usize>(
     chain: &Chain,
@@ -31,7 +31,7 @@ pub(super) fn four_forward_pass<A: Arithmetic, const N: usize>(
     frame
 }
 
-/// Sines, cosines and slides (m) of all stages.
+/// Computes sines, cosines and translations (m) of all stages.
 #[inline(always)]
 fn stage_motions<A: Arithmetic, const N: usize>(
     chain: &Chain,
@@ -48,7 +48,7 @@ fn stage_motions<A: Arithmetic, const N: usize>(
     (sines, cosines, slides)
 }
 
-/// Frames, one per lane, while the pass runs along the chain.
+/// Frames of the current stage during the forward pass, one per lane.
 #[derive(Clone, Copy)]
 pub(super) struct RunningFrames<R> {
     x: Vec3<R>,
@@ -58,21 +58,21 @@ pub(super) struct RunningFrames<R> {
 }
 
 impl<R: Real> RunningFrames<R> {
-    /// The same frame in all lanes.
+    /// Broadcasts a frame to all lanes.
     #[inline(always)]
     pub fn splat(frame: &Frame) -> Self {
         let [x, y, z] = &frame.axes;
         Self { x: Vec3::splat(x), y: Vec3::splat(y), z: Vec3::splat(z), origin: Vec3::splat(&frame.origin) }
     }
 
-    /// From their stored form.
+    /// Loads the frames.
     #[inline(always)]
     pub fn of(frames: &Frame<R::Stored>) -> Self {
         let [x, y, z] = &frames.axes;
         Self { x: Vec3::of(x), y: Vec3::of(y), z: Vec3::of(z), origin: Vec3::of(&frames.origin) }
     }
 
-    /// Slid along and turned about their own z axes.
+    /// Translates the frames along their own z axes and rotates them about these.
     #[inline(always)]
     pub fn moved(self, sine: R, cosine: R, slide: R) -> Self {
         let Self { x, y, z, origin } = self;
@@ -85,7 +85,7 @@ impl<R: Real> RunningFrames<R> {
         self.z.mul_add(v.z, self.y.mul_add(v.y, self.x * v.x))
     }
 
-    /// self * next, as [`WideFrame::then`](super::wide_frame::WideFrame::then).
+    /// Returns self * next, in the order of operations of [`WideFrame::then`](super::wide_frame::WideFrame::then).
     #[inline(always)]
     pub fn then(&self, next: Self) -> Self {
         let p = next.origin;
@@ -97,7 +97,7 @@ impl<R: Real> RunningFrames<R> {
         }
     }
 
-    /// Their stored form.
+    /// Stores the frames.
     #[inline(always)]
     pub fn stored(self) -> Frame<R::Stored> {
         Frame { axes: [self.x.stored(), self.y.stored(), self.z.stored()], origin: self.origin.stored() }

@@ -1,4 +1,4 @@
-//! The geometric Jacobian at the tip: one column per joint of the robot, from the axes and origins of its stages.
+//! Geometric Jacobian at the tip: one column per joint, from the axes and origins of the stages.
 
 use super::chain::Chain;
 use super::forward_pass::forward_pass;
@@ -6,7 +6,7 @@ use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame};
 
-/// Writes the Jacobian in world axes into `columns`, linear rows before angular rows, and returns the tip's frame.
+/// Writes the Jacobian in world axes into `columns`, linear rows before angular rows, and returns the tip frame.
 #[inline(always)]
 pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,
@@ -27,7 +27,7 @@ pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
         let [turn, slide] = [motion.turn_scale, motion.slide_scale].map(F64x4::splat);
         let linear = A::mul_add_x4(turn, moment, A::mul_x4(slide, axis)).vector();
         let angular = A::mul_x4(turn, axis).vector();
-        // Several stages may share a joint (mimics), so columns are summed.
+        // Columns are summed, since several stages may share a joint (mimics).
         let column = &mut columns[motion.joint];
         for k in 0..3 {
             column[k] += linear[k];

@@ -1,4 +1,4 @@
-//! The table of compiled kernels: one entry per padded number of stages, for machines with and without AVX2 and FMA.
+//! Table of compiled kernels: one entry per padded number of stages, with and without AVX2 and FMA.
 
 use super::chain::Chain;
 use super::jacobian;
@@ -10,31 +10,31 @@ use crate::math::arithmetic::by_instructions;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, STACK_DOF};
 
-/// The kernels compiled for one padded number of stages and one instruction set.
+/// Kernels compiled for one padded number of stages and one instruction set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kernels {
     /// Returns the tip frame. Here and below `q` has one finite entry per independent joint.
     pub tip: fn(&Chain, &[f64]) -> Frame,
     /// Returns the tip position (m), at half the work.
     pub tip_position: fn(&Chain, &[f64]) -> [f64; 3],
-    /// Tip positions (m) at two configurations, by coordinate.
+    /// Returns the tip positions (m) at two configurations, by coordinate.
     tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
-    /// Tip positions (m) at four configurations, by coordinate.
+    /// Returns the tip positions (m) at four configurations, by coordinate.
     tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
-    /// Writes the geometric Jacobian and returns the tip's frame.
+    /// Writes the geometric Jacobian and returns the tip frame.
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
+    /// Writes the joint torques J'w of a wrench w(tip) and returns the tip frame.
     pub torques: Torques,
-    /// Writes the frames of all stages; there is room for [`STACK_DOF`] + 1 at least.
+    /// Writes the frames of all stages into a buffer of at least [`STACK_DOF`] + 1 entries.
     pub stage_frames: fn(&Chain, &[f64], &mut [Frame]),
-    /// The frames of all stages for four configurations, bit-identical.
+    /// Writes the frames of all stages for four configurations, bit-identical to `stage_frames`.
     pub stage_frames_four: fn(&Chain, &[F64x4], &mut [Frame<F64x4>]),
 }
 
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
 
 impl Kernels {
-    /// For chains of any kind and length.
+    /// Kernels for chains of any kind and length.
     const LOOPS: Self = Self {
         tip: loop_kernels::tip,
         tip_position: |chain, q| loop_kernels::tip(chain, q).origin,
@@ -46,14 +46,14 @@ impl Kernels {
         stage_frames_four: loop_kernels::stage_frames_four,
     };
 
-    /// The fastest kernels for this machine.
+    /// Returns the fastest kernels for this chain and machine.
     pub fn for_chain(chain: &Chain) -> Self {
         let is_compiled = chain.vector.is_none() && chain.moving <= STACK_DOF;
         if is_compiled { for_stages(chain.padded_stages()) } else { Self::LOOPS }
     }
 
-    /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n`
-    /// entries each: in groups of four, then two; bit-identical to `tip_position`.
+    /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n` entries
+    /// each. Evaluates groups of four, then two; bit-identical to `tip_position`.
     #[inline]
     pub fn tip_positions(&self, chain: &Chain, mut qs: &[f64], n: usize, mut visit: impl FnMut([f64; 3])) {
         while let Some((group, rest)) = qs.split_at_checked(4 * n) {
@@ -70,8 +70,8 @@ impl Kernels {
     }
 }
 
-/// Turns arrays of coordinates into an array of points. Kept out of the kernels: there it makes the compiler vectorise
-/// along coordinates instead of lanes (27 ns a configuration instead of 17).
+/// Transposes arrays of coordinates into an array of points. Kept out of the kernels, where it would make the compiler
+/// vectorise along coordinates instead of lanes (27 ns per configuration instead of 17).
 #[inline]
 fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
     std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
@@ -93,7 +93,7 @@ macro_rules! for_each_size {
     };
 }
 
-/// The kernels for N stages. Closures are compiled with the instructions of the enclosing function.
+/// Builds the kernels for N stages. Closures are compiled with the instructions of the enclosing function.
 macro_rules! table {
     ($a:ty, $n:literal, $l:literal) => {
         Kernels {
@@ -124,7 +124,7 @@ mod tests {
     use crate::math::{MAX_DOF, Pose, pose};
     use nalgebra::Vector3;
 
-    /// An arm of this many joints, every third of them sliding, on axes of no special direction.
+    /// Returns an arm with this many joints, every third of them prismatic, on axes of no special direction.
     fn arm(joints: usize) -> Chain {
         let mut arm = ChainFolder::new(&Pose::identity());
         for i in 0..joints {

@@ -7,7 +7,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma};
 use crate::math::f64x4::F64x4;
 
-/// Writes the frame that each stage moves into `reached`, from entry 1 on: frames after 0, 1, 2, ... stages, at least N + 1.
+/// Writes the frames moved by the stages into `reached`, from entry 1 on; `reached` has at least N + 1 entries.
 #[inline(always)]
 pub(super) fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,
@@ -18,7 +18,7 @@ pub(super) fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
     forward_pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = Frame::from(*frame));
 }
 
-/// [`stage_frames`] of four configurations at once, bit-identical; `qs` has one entry per joint.
+/// Writes the frames of [`stage_frames`] for four configurations, bit-identical; `qs` has one entry per joint.
 #[inline(always)]
 pub(super) fn four_stage_frames<A: Arithmetic, const N: usize>(
     chain: &Chain,
@@ -29,7 +29,7 @@ pub(super) fn four_stage_frames<A: Arithmetic, const N: usize>(
     four_forward_pass::<A, N>(chain, qs, |i, frame| reached[i + 1] = frame.stored());
 }
 
-/// The frame of every link of `chain`, base to tip, with its stages at `reached`.
+/// Returns the frame of every link of `chain`, base to tip, with its stages at `reached`.
 pub(crate) fn link_frames(chain: &Chain, reached: &[Frame]) -> Vec<Frame> {
     chain.links.iter().map(|link| reached[link.stages].then::<NoFma>(&link.offset)).collect()
 }

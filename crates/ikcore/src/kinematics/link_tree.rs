@@ -1,7 +1,8 @@
-//! All links of a robot: those of the chain, and those that branch off it. Held joints are folded into constant frames, so that
-//! most branches add links to the stages of the chain; a mimic joint on a branch adds a stage of its own.
+//! Tree of all links of a robot: the links of the chain, and the links that branch off. Held joints are folded into constant
+//! frames, so that most branches only add links to the stages of the chain; a mimic joint on a branch adds a stage of its
+//! own.
 //!
-//! Frames are numbered: 0 is the base, i the frame that stage i - 1 of the chain moves, and the stages of the branches follow.
+//! Frame 0 is the base and frame i is moved by stage i - 1 of the chain; the stages of the branches follow.
 
 use nalgebra::Vector3;
 
@@ -10,18 +11,18 @@ use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, Pose, STACK_DOF, pose};
 
-/// A moving element of a branch.
+/// Moving element of a branch.
 #[derive(Debug, Clone)]
 struct BranchStage {
-    /// Number of the frame that it starts from.
+    /// Index of the parent frame.
     parent: usize,
-    /// Its constant frame there, z along its axis.
+    /// Constant frame relative to the parent, z along the axis.
     frame: Frame,
     motion: StageMotion,
 }
 
 impl BranchStage {
-    /// Its frame with its joint at `value`, from the frame that it starts from.
+    /// Returns the frame of the element with its joint at `value`, given the parent frame.
     fn moved(&self, value: f64, parent: &Frame) -> Frame {
         let Self { frame, motion, .. } = self;
         let (sine, cosine) = (motion.turn_scale * value + motion.turn_offset).sin_cos();
@@ -30,30 +31,30 @@ impl BranchStage {
     }
 }
 
-/// The links of a robot, and the stages of its branches.
+/// Links of a robot, and the stages of its branches.
 #[derive(Debug, Clone)]
 pub(crate) struct LinkTree {
-    /// Stages of the chain.
+    /// Number of stages of the chain.
     moving: usize,
     branches: Vec<BranchStage>,
-    /// The links of the chain, then those of the branches; `stages` is the number of a frame.
+    /// Links of the chain, then links of the branches; their `stages` is a frame index.
     pub links: Vec<LinkFrame>,
 }
 
 impl LinkTree {
-    /// Length of a buffer of frames: that of the kernels at least.
+    /// Returns the length of a frame buffer: at least the length that the kernels need.
     pub fn frames(&self) -> usize {
         (self.moving + 1 + self.branches.len()).max(STACK_DOF + 1)
     }
 
-    /// Adds the frames of the branches to those of the chain at `q`.
+    /// Adds the frames of the branches to the frames of the chain at `q`.
     pub fn extend_frames(&self, q: &[f64], frames: &mut [Frame]) {
         for (i, stage) in self.branches.iter().enumerate() {
             frames[self.moving + 1 + i] = stage.moved(q[stage.motion.joint], &frames[stage.parent]);
         }
     }
 
-    /// [`extend_frames`](Self::extend_frames) for four configurations, lane by lane.
+    /// Adds the frames of the branches for four configurations, lane by lane, as [`extend_frames`](Self::extend_frames) does.
     pub fn extend_frames_four(&self, qs: &[F64x4], frames: &mut [Frame<F64x4>]) {
         for (i, stage) in self.branches.iter().enumerate() {
             for lane in 0..4 {
@@ -63,14 +64,14 @@ impl LinkTree {
         }
     }
 
-    /// The frame of a link, with the stages at `frames`.
+    /// Returns the frame of a link, with the stages at `frames`.
     pub fn link_frame(&self, link: usize, frames: &[Frame]) -> Frame {
         let LinkFrame { stages, offset } = &self.links[link];
         frames[*stages].then::<NoFma>(offset)
     }
 
-    /// The moving elements between frame number `frame` and frame number `below` that carries it, the outermost first: the number
-    /// of the frame that each moves, and its motion.
+    /// Iterates over the moving elements from frame `frame` inwards to its ancestor `below`: the index of the frame moved by
+    /// each, and its motion.
     #[inline]
     pub fn carriers<'a>(
         &'a self,
@@ -90,15 +91,15 @@ impl LinkTree {
         })
     }
 
-    /// All moving elements, in the order of their frames from number 1 on: the number of the frame that each starts from, its constant
-    /// frame there, and its motion.
+    /// Iterates over all moving elements, in the order of their frames from index 1 on: parent frame, constant frame relative
+    /// to it, and motion.
     pub fn stages<'a>(&'a self, chain: &'a Chain) -> impl Iterator<Item = (usize, Frame, StageMotion)> + use<'a> {
         let of_chain = chain.moving_frames().zip(&chain.motions).enumerate();
         let of_chain = of_chain.map(|(parent, (frame, motion))| (parent, frame, *motion));
         of_chain.chain(self.branches.iter().map(|stage| (stage.parent, stage.frame, stage.motion)))
     }
 
-    /// Number of the frame that frame number `frame` > 0 moves on.
+    /// Returns the parent of frame `frame` > 0.
     fn parent(&self, frame: usize) -> usize {
         match frame.checked_sub(self.moving + 1) {
             None => frame - 1,
@@ -106,7 +107,7 @@ impl LinkTree {
         }
     }
 
-    /// Number of the last frame that carries both of these.
+    /// Returns the last common ancestor of two frames.
     #[inline]
     pub fn meeting(&self, one: usize, other: usize) -> usize {
         if one.max(other) <= self.moving {
@@ -114,14 +115,14 @@ impl LinkTree {
         }
         let (mut one, mut other) = (one, other);
         while one != other {
-            // A frame comes after the one that it moves on.
+            // Parents have smaller indices than their children.
             (one, other) = (one.min(other), self.parent(one.max(other)));
         }
         one
     }
 
-    /// Writes the geometric Jacobian of a link into `columns`, as [`jacobian`](super::jacobian) does for the tip, and returns the
-    /// frame of the link.
+    /// Writes the geometric Jacobian of a link into `columns`, as [`jacobian`](super::jacobian) does for the tip, and returns
+    /// the link frame.
     pub fn link_jacobian(&self, chain: &Chain, link: usize, frames: &[Frame], columns: &mut Columns) -> Frame {
         let frame = self.link_frame(link, frames);
         columns.fill([0.0; 6]);
@@ -137,21 +138,21 @@ impl LinkTree {
     }
 }
 
-/// Folds branches into a tree, link by link.
+/// Builder that folds branches into a tree, link by link.
 pub(crate) struct LinkTreeFolder {
     tree: LinkTree,
-    /// Number of the frame reached, and the constant transform since then.
+    /// Index of the current frame, and the constant transform since then.
     at: (usize, Pose),
 }
 
 impl LinkTreeFolder {
-    /// A tree that holds the links of `chain`.
+    /// Creates a tree with the links of `chain`.
     pub fn new(chain: &Chain) -> Self {
         let tree = LinkTree { moving: chain.moving, branches: vec![], links: chain.links.clone() };
         Self { tree, at: (0, Pose::identity()) }
     }
 
-    /// Starts at a link.
+    /// Continues from a link.
     pub fn start_at(&mut self, link: usize) {
         let LinkFrame { stages, offset } = &self.tree.links[link];
         self.at = (*stages, Pose::from(*offset));
@@ -162,7 +163,7 @@ impl LinkTreeFolder {
         self.at.1 *= transform;
     }
 
-    /// Appends a motion about or along `axis`, of unit length.
+    /// Appends a motion about or along the unit vector `axis`.
     pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
         let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
         let (parent, constant) = self.at;
@@ -170,7 +171,7 @@ impl LinkTreeFolder {
         self.at = (self.tree.moving + self.tree.branches.len(), aligned.inverse());
     }
 
-    /// Adds a link here.
+    /// Adds a link at the current frame.
     pub fn link(&mut self) {
         let (stages, constant) = self.at;
         self.tree.links.push(LinkFrame { stages, offset: Frame::from(&constant) });

@@ -1,5 +1,5 @@
-//! Kernels for any number of stages, for chains with a [rotation vector](super::rotation_vector) and for those that are longer than compiled
-//! ones: plain loops over frames.
+//! Kernels for any number of stages, written as plain loops: for chains with a [rotation vector](super::rotation_vector), and
+//! for chains longer than the compiled kernels.
 
 use super::chain::Chain;
 use super::torques::Wrench;
@@ -7,7 +7,7 @@ use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, MAX_DOF};
 
-/// Calls `visit(i, frame)` with the frame that each stage moves, from the base on, and returns the tip's.
+/// Calls `visit(i, frame)` with the frame moved by each stage, from the base on, and returns the tip frame.
 fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) -> Frame {
     let vector = chain.vector.as_ref().map(|vector| (vector, vector.frames(&vector.phi(q))));
     let mut frame = Frame::IDENTITY;

@@ -1,20 +1,20 @@
 //! Kinematics of a serial chain as plain data: no names, limits or files, and no `Robot`.
 //!
-//! Read `chain` for the data and `forward_pass` for the pass along it; then each file is one algorithm. `kernels`
-//! compiles them for each number of stages and for the instructions of the processor.
+//! Read `chain` for the data and `forward_pass` for the pass along it; then each file is one algorithm. `kernels` compiles
+//! them for each number of stages and for the instructions of the processor.
 //!
-//! | file | what |
+//! | file | contents |
 //! |---|---|
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
-//! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
-//! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_forward_pass`, `eight_frames` | the pass of four configurations at once, and of eight in single precision |
+//! | `forward_pass`, `wide_frame` | forward pass from base to tip, one frame per stage |
+//! | `tip`, `jacobian`, `torques`, `link_frames` | kernels |
+//! | `four_forward_pass`, `eight_frames` | forward pass at four configurations, and at eight in single precision |
 //! | `kernels` | table of compiled kernels |
-//! | `rotation_vector` | the rotation of a floating base |
-//! | `loop_kernels` | kernels of chains that have one, and of long ones |
-//! | `link_tree` | all links, with those that branch off the chain |
+//! | `rotation_vector` | rotation of a floating base |
+//! | `loop_kernels` | kernels for chains with a rotation vector, and for long chains |
+//! | `link_tree` | all links, including branches off the chain |
 //! | `screws` | axis and velocity of every stage |
-//! | `reach`, `fixed_direction` | bounds on the positions of the tip |
+//! | `reach`, `fixed_direction` | bounds on the tip positions |
 //! | `task_rank` | rank of the Jacobian by task |
 
 pub(crate) mod chain;

@@ -1,4 +1,4 @@
-//! Bounds on the positions of the tip, from the lengths of the links.
+//! Bounds on the tip position, from the lengths of the links.
 
 use std::fmt;
 
@@ -11,11 +11,10 @@ use crate::math::arithmetic::NoFma;
 use crate::math::so3::norm;
 use crate::wording::number;
 
-/// Rounding of positions, relative to the reach, and of angles (rad): a target beyond by less may be reached.
+/// Rounding error of positions, relative to the reach, and of angles (rad): a target outside by less may be reachable.
 const ROUNDING: f64 = 1e-12;
 
-/// The ball that the tip cannot leave, or the disk if all joints rotate about parallel axes. Not all of it can be
-/// reached.
+/// Ball that contains every tip position, or a disk if all joints rotate about parallel axes. Parts of it may be unreachable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// Centre on the axis of the first joint (m), in the plane of the disk.
@@ -24,18 +23,18 @@ pub struct Reach {
     pub radius: f64,
     /// Unit normal of the disk; `None` for a ball.
     pub normal: Option<[f64; 3]>,
-    /// The direction that the tip keeps, if it keeps one.
+    /// Direction that the tip keeps, if there is one.
     pub fixed_direction: Option<FixedDirection>,
 }
 
-/// Lower bounds on how far a target is out of reach.
+/// Lower bounds on the distance of a target from the reachable poses.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReachShortfall {
-    /// Distance from the nearest point that the tip can reach (m).
+    /// Distance to the nearest reachable point (m).
     pub distance: f64,
-    /// Distance from the plane of a planar arm (m); 0 for other arms.
+    /// Distance to the plane of a planar arm (m); 0 for other arms.
     pub off_plane: f64,
-    /// Angle from the nearest orientation that the tip can have (rad).
+    /// Angle to the nearest orientation that the tip can have (rad).
     pub angle: f64,
 }
 
@@ -53,7 +52,7 @@ impl fmt::Display for ReachShortfall {
 }
 
 impl Reach {
-    /// How far a position, an orientation, or both are outside; `None` if within `tolerance` (m, rad).
+    /// Returns how far a position, an orientation, or both are out of reach; `None` if within `tolerance` (m, rad).
     pub fn shortfall(
         &self,
         position: Option<&[f64; 3]>,
@@ -72,7 +71,7 @@ impl Reach {
         (shortfall != ReachShortfall::default()).then_some(shortfall)
     }
 
-    /// Distance of `position` from the reach (m); zero or less inside.
+    /// Returns the distance of `position` from the reach (m); zero or negative inside.
     pub fn excess(&self, position: &[f64; 3]) -> f64 {
         let offset: [f64; 3] = std::array::from_fn(|k| position[k] - self.center[k]);
         let Some(normal) = self.normal else { return norm(&offset) - self.radius };
@@ -82,7 +81,7 @@ impl Reach {
         if beyond > 0.0 { height.hypot(beyond) } else { height.abs() }
     }
 
-    /// Distance of `position` from the plane of the disk, along its normal (m); 0 for a ball.
+    /// Returns the distance of `position` from the plane of the disk, along its normal (m); 0 for a ball.
     pub fn off_plane(&self, position: &[f64; 3]) -> f64 {
         let along = |normal: [f64; 3]| (0..3).map(|k| (position[k] - self.center[k]) * normal[k]).sum();
         self.normal.map_or(0.0, along)
@@ -90,7 +89,7 @@ impl Reach {
 }
 
 impl Reach {
-    /// The reach of the stretched links, without prismatic motion.
+    /// Returns the reach of the stretched links, without prismatic motion.
     pub(crate) fn of_links(chain: &Chain) -> Self {
         let at_zero: Vec<Frame> = chain
             .moving_frames()
@@ -106,8 +105,8 @@ impl Reach {
         if let Some(FixedDirection { base: normal, .. }) = fixed_direction.filter(|_| !slides) {
             return Self { fixed_direction, ..Self::of_planar_links(&at_zero, normal) };
         }
-        // A rotating first joint keeps the height of the second one, so only its distance from the first axis counts;
-        // every other link counts with its full length.
+        // A revolute first joint keeps the height of the second joint, so only the distance of the latter from the first axis
+        // counts; every other link counts with its full length.
         let mut links = chain.moving_frames().skip(1).chain([chain.tip]).map(|frame| frame.origin);
         let [x, y, height] = links.next().unwrap_or_default();
         let (on_axis, first) = match motions[0].slide_scale {
@@ -118,13 +117,13 @@ impl Reach {
         Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, fixed_direction }
     }
 
-    /// This reach of the links of `chain`, extended by the prismatic motion between these limits.
+    /// Extends this reach of the links of `chain` by the prismatic motion between these limits.
     pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
         let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
         Self { radius: self.radius + slides, ..self }
     }
 
-    /// The disk of links between axes along `normal`. `at_zero` holds the frames of the stages and the tip at zero.
+    /// Returns the disk of links between axes along `normal`. `at_zero` holds the frames of the stages and the tip at zero.
     fn of_planar_links(at_zero: &[Frame], normal: [f64; 3]) -> Self {
         let (mut center, mut radius) = (at_zero[0].origin, 0.0);
         for ends in at_zero.windows(2) {

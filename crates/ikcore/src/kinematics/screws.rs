@@ -1,20 +1,20 @@
-//! Screws of a chain at a configuration: the velocity that each moving element gives to everything after it.
+//! Screws of a chain at a configuration: the velocity that each moving element imparts to everything after it.
 
 use super::chain::{Chain, StageMotion};
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::math::{Frame, MAX_DOF};
 
-/// Screw of a moving element in the base's axes, per unit speed of the joint that drives it.
+/// Screw of a moving element in base axes, per unit speed of its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screw {
-    /// Index in q of the joint that drives it.
+    /// Index in q of the joint that drives the element.
     pub joint: usize,
     /// Angular velocity.
     pub turn: [f64; 3],
-    /// Linear velocity of the points on its axis.
+    /// Linear velocity of the points on the axis.
     pub slide: [f64; 3],
-    /// A point on its axis (m).
+    /// Point on the axis (m).
     pub origin: [f64; 3],
     /// Origin of the next moving element, or the tip for the last one (m).
     pub end: [f64; 3],
@@ -23,7 +23,8 @@ pub struct Screw {
 impl Screw {
     const NONE: Self = Self { joint: 0, turn: [0.0; 3], slide: [0.0; 3], origin: [0.0; 3], end: [0.0; 3] };
 
-    /// Linear and angular velocity of a point after this element: its contribution to the Jacobian column of its joint.
+    /// Returns the linear and angular velocity of a point after this element: its contribution to the Jacobian column of its
+    /// joint.
     pub fn column(&self, point: &[f64; 3]) -> [f64; 6] {
         let lever = std::array::from_fn(|k| point[k] - self.origin[k]);
         let [x, y, z] = cross(&self.turn, &lever);
@@ -32,7 +33,7 @@ impl Screw {
     }
 }
 
-/// The screws of a chain, base to tip.
+/// Screws of a chain, base to tip.
 #[derive(Debug, Clone)]
 pub struct Screws {
     all: [Screw; MAX_DOF],
@@ -48,9 +49,9 @@ impl std::ops::Deref for Screws {
 }
 
 impl Screws {
-    /// The screws of `chain` with its stages at `reached`, mimics included.
+    /// Returns the screws of `chain` with its stages at `reached`, mimics included.
     pub(crate) fn of(chain: &Chain, reached: &[Frame]) -> Self {
-        // Padding moves nothing. A mimic of factor zero moves nothing either, but elements may follow it.
+        // Padding is dropped. A mimic of factor zero moves nothing either, but moving elements may follow it.
         let count = chain.motions.iter().rposition(moves).map_or(0, |last| last + 1);
         let mut screws = Self { all: [Screw::NONE; MAX_DOF], count };
         for (i, screw) in screws.all[..count].iter_mut().enumerate() {

@@ -1,5 +1,5 @@
-//! Constant frames of a chain as a structure of arrays: each row holds one entry of the frames of all stages, so that
-//! joint motion is applied to four stages at a time before the pass along the chain.
+//! Constant frames of a chain as a structure of arrays: each row holds one entry of the frames of all stages, so that joint
+//! motion is applied to four stages at a time before the forward pass.
 
 use crate::math::Frame;
 use crate::math::MAX_DOF;
@@ -18,7 +18,7 @@ pub(crate) struct Stages {
     origin: Vectors<MAX_DOF>,
 }
 
-/// L stages, moved by their joints.
+/// First L stages of a chain, moved by their joints.
 pub(crate) struct MovedStages<'a, const L: usize> {
     stages: &'a Stages,
     x: Vectors<L>,
@@ -27,7 +27,7 @@ pub(crate) struct MovedStages<'a, const L: usize> {
 }
 
 impl Stages {
-    /// Stages at `frames`, at most [`MAX_DOF`].
+    /// Stores `frames`, at most [`MAX_DOF`].
     pub fn new(frames: &[Frame]) -> Self {
         let frame = |i: usize| frames.get(i).unwrap_or(&Frame::IDENTITY);
         let rows = |number: &dyn Fn(&Frame, usize) -> f64| {
@@ -41,13 +41,13 @@ impl Stages {
         }
     }
 
-    /// Frame of stage `i`.
+    /// Returns the frame of stage `i`.
     #[inline(always)]
     pub fn frame(&self, i: usize) -> Frame {
         Frame { axes: [vector(&self.x, i), vector(&self.y, i), vector(&self.z, i)], origin: vector(&self.origin, i) }
     }
 
-    /// The first L stages (a multiple of four), each translated along and rotated about its own z axis.
+    /// Returns the first L stages (a multiple of four), each translated along and rotated about its own z axis.
     #[inline(always)]
     pub fn moved<A: Arithmetic, const L: usize>(
         &self,
@@ -71,7 +71,7 @@ impl Stages {
 }
 
 impl<const L: usize> MovedStages<'_, L> {
-    /// Frame of stage `i`.
+    /// Returns the frame of stage `i`.
     #[inline(always)]
     pub fn frame(&self, i: usize) -> Frame {
         Frame {

@@ -20,11 +20,11 @@ pub struct TaskRank {
 /// Singular values below this fraction of the largest count as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// Random configurations tried; one is enough with probability 1.
+/// Number of random configurations; one is enough with probability 1.
 const DRAWS: u64 = 3;
 
 impl TaskRank {
-    /// The largest ranks at random configurations within `ranges`, one per joint.
+    /// Returns the largest ranks at random configurations within `ranges`, one per joint.
     pub(crate) fn of(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
         let mut most = Self { pose: 0, position: 0, rotation: 0 };
         for draw in 0..DRAWS {
@@ -41,7 +41,7 @@ impl TaskRank {
     }
 }
 
-/// The three rows from `first` on; the others are zero.
+/// Extracts three rows, from row `first` on, and fills the others with zeros.
 fn rows(columns: &[[f64; 6]], first: usize) -> Vec<[f64; 6]> {
     columns.iter().map(|c| [c[first], c[first + 1], c[first + 2], 0.0, 0.0, 0.0]).collect()
 }

@@ -1,4 +1,4 @@
-//! Forward kinematics: the tip's frame, and its position alone for one or several configurations.
+//! Forward kinematics: the tip frame, and the tip position alone at one or several configurations.
 
 use super::chain::Chain;
 use super::forward_pass::{forward_pass, stage_motions};
@@ -6,13 +6,13 @@ use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::sincos::sincos_by_column;
 
-/// The tip's frame.
+/// Returns the tip frame.
 #[inline(always)]
 pub(super) fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
     forward_pass::<A, N, L>(chain, q, |_, _| ()).into()
 }
 
-/// The tip position (m): computed from the tip back to the base, half the work of [`tip`].
+/// Returns the tip position (m), computed from the tip back to the base: half the work of [`tip`].
 #[inline(always)]
 pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
     let (sines, cosines, slides) = stage_motions::<A, L>(chain, q);
@@ -25,7 +25,7 @@ pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain:
     point
 }
 
-/// [`tip_position`] for W configurations at once, by coordinate: lane w of every array is configuration w.
+/// Computes [`tip_position`] at W configurations, by coordinate: lane w of every array belongs to configuration w.
 #[inline(always)]
 pub(super) fn tip_positions<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
     chain: &Chain,

@@ -1,4 +1,4 @@
-//! Joint torques that balance a wrench at the tip: J'w without the Jacobian J.
+//! Joint torques that balance a wrench at the tip: J'w without forming the Jacobian J.
 
 use super::chain::Chain;
 use super::forward_pass::forward_pass;
@@ -8,8 +8,8 @@ use crate::math::arithmetic::Arithmetic;
 /// Force (N) and moment (N m) at the tip, in base axes.
 pub type Wrench = [f64; 6];
 
-/// Writes the joint torques J'w into `torques`, with w = wrench(tip), and returns the tip frame. A rotating joint takes
-/// the moment about its axis, a prismatic joint the force along it.
+/// Writes the joint torques J'w into `torques`, with w = wrench(tip), and returns the tip frame. A revolute joint takes the
+/// moment about its axis, a prismatic joint the force along its axis.
 #[inline(always)]
 pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,
@@ -34,7 +34,7 @@ pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
         ];
         let turning = A::mul_add(ax, about[0], A::mul_add(ay, about[1], az * about[2]));
         let sliding = A::mul_add(ax, fx, A::mul_add(ay, fy, az * fz));
-        // Several stages may share a joint (mimics), so torques are summed.
+        // Torques are summed, since several stages may share a joint (mimics).
         torques[motion.joint] += A::mul_add(motion.turn_scale, turning, motion.slide_scale * sliding);
     }
     tip

@@ -1,20 +1,20 @@
-//! A frame in four registers, for the pass along the chain: with plain arrays a Jacobian takes a tenth longer.
+//! Frame in four registers for the forward pass: with plain arrays a Jacobian takes a tenth longer.
 
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 
-/// A rigid transform, with each axis and the origin in its own register. The fourth lanes are unused.
+/// Rigid transform with each axis and the origin in its own register. The fourth lanes are unused.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideFrame {
-    /// x, y and z axis.
+    /// Axes x, y and z.
     pub axes: [F64x4; 3],
     /// Position of the origin (m).
     pub origin: F64x4,
 }
 
 impl WideFrame {
-    /// self * next.
+    /// Returns self * next.
     #[inline(always)]
     pub fn then<A: Arithmetic>(&self, next: &Frame) -> Self {
         let [x, y, z] = self.axes;

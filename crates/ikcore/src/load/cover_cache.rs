@@ -1,4 +1,4 @@
-//! Covers of mesh files, kept in the user's cache directory under a hash of what they follow from.
+//! Cache of mesh covers in the user's cache directory, keyed by a hash of their input.
 
 use std::collections::hash_map::{DefaultHasher, RandomState};
 use std::fs::{self, File, OpenOptions};
@@ -11,16 +11,17 @@ use crate::error::{Error, Result};
 use crate::shape::{Cover, Geometry};
 use crate::stored;
 
-/// Changes whenever covers do: entries of other versions are not found.
+/// Cache version, raised whenever covers change: entries of other versions are ignored.
 const VERSION: u32 = 2;
-/// Larger entries are damaged (bytes): a cover has few shapes.
+/// Largest valid entry (bytes): a cover has few shapes, so larger entries are damaged.
 const LARGEST_ENTRY: u64 = 1 << 20;
 
-/// A cover of the mesh in a file, scaled, by at most `most` spheres and capsules (see [`Mesh::cover`](crate::shape::Mesh::cover)).
-/// It is found once, and then read from the user's cache directory. A cache that cannot be read or written is not used.
+/// Covers the mesh in a file, scaled, by at most `most` spheres and capsules (see
+/// [`Mesh::cover`](crate::shape::Mesh::cover)). The result is stored in the user's cache directory and read from there
+/// afterwards; an unreadable or unwritable cache is ignored.
 ///
 /// # Errors
-/// [`Error::Unreadable`] names the file and says what is wrong with it.
+/// [`Error::Unreadable`] names the file and its problem.
 pub fn covered_mesh(path: &Path, scale: [f64; 3], most: usize) -> Result<Cover> {
     let bytes = read_bytes(path)?;
     let name = path.display().to_string();
@@ -36,13 +37,13 @@ pub fn covered_mesh(path: &Path, scale: [f64; 3], most: usize) -> Result<Cover> 
     };
     let cover = mesh.cover(most)?;
     if let Some(entry) = entry {
-        // Without a cache the cover is found again next time.
+        // Failure to write only means that the cover is computed again next time.
         let _ = write_entry(&entry, &cover);
     }
     Ok(cover)
 }
 
-/// `None` where the system has no such directory.
+/// Returns the cache directory; `None` if the system has none.
 fn cache_directory() -> Option<PathBuf> {
     let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = || absolute("HOME");
@@ -56,7 +57,7 @@ fn cache_directory() -> Option<PathBuf> {
     base.map(|base| base.join("beetle-ik").join("covers"))
 }
 
-/// 128 bits of a hash.
+/// Returns a 128-bit hash in hexadecimal.
 fn key(content: &impl Hash) -> String {
     let half = |which: u32| {
         let mut hasher = DefaultHasher::new();
@@ -67,15 +68,15 @@ fn key(content: &impl Hash) -> String {
     format!("{:016x}{:016x}", half(0), half(1))
 }
 
-/// `None` for an entry that is missing or damaged.
+/// Reads an entry; `None` if it is missing or damaged.
 fn read_entry(path: &Path) -> Option<Cover> {
     let mut bytes = vec![];
     File::open(path).ok()?.take(LARGEST_ENTRY).read_to_end(&mut bytes).ok()?;
-    // The shapes are checked again as they are read.
+    // Shapes are validated as they are read.
     stored::from_bytes("cover", &bytes).ok()
 }
 
-/// Writes an entry under a random name that follows no link, then renames it: readers see all of it or nothing.
+/// Writes an entry under a random name, without following links, then renames it: readers see all of it or nothing.
 fn write_entry(path: &Path, cover: &Cover) -> std::io::Result<()> {
     let Some(directory) = path.parent() else { return Ok(()) };
     fs::create_dir_all(directory)?;
@@ -110,7 +111,7 @@ mod tests {
         write_entry(&path, &cover()).unwrap();
         assert_eq!(read_entry(&path), Some(cover()));
         assert_eq!(fs::read_dir(&directory).unwrap().count(), 1);
-        // A damaged entry counts as missing, and is replaced.
+        // Damaged entries count as missing, and are replaced.
         let mut bytes = fs::read(&path).unwrap();
         for i in 0..bytes.len() {
             bytes[i] ^= 1;

@@ -10,18 +10,20 @@ use crate::wording::words;
 /// Convention of a Denavit-Hartenberg table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dh {
-    /// Denavit and Hartenberg 1955: frame i at the far end of link i, A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha).
+    /// Standard convention (Denavit and Hartenberg 1955): frame i at the far end of link i, A_i = Rz(theta) Tz(d) Tx(a)
+    /// Rx(alpha).
     Standard,
-    /// Craig 1986: frame i on joint i, A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d), with alpha_{i-1} and a_{i-1} in row i.
+    /// Modified convention (Craig 1986): frame i on joint i, A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d), with alpha_{i-1} and
+    /// a_{i-1} in row i.
     Modified,
 }
 
 words!("convention": Dh { Modified => "modified", Standard => "standard" });
 
-/// A Denavit-Hartenberg table: one entry per joint in every list.
+/// Denavit-Hartenberg table: every list has one entry per joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DhTable {
-    /// The convention.
+    /// Convention of the table.
     pub convention: Dh,
     /// Link lengths (m).
     pub a: Vec<f64>,
@@ -29,7 +31,7 @@ pub struct DhTable {
     pub alpha: Vec<f64>,
     /// Link offsets (m); added to q of a prismatic joint.
     pub d: Vec<f64>,
-    /// Joint angles (rad): added to q of a rotating joint, the fixed angle of a prismatic one.
+    /// Joint angles (rad): added to q of a revolute joint, the fixed angle of a prismatic joint.
     pub theta: Vec<f64>,
     /// Kinds of the joints.
     pub kinds: Vec<JointKind>,
@@ -46,8 +48,7 @@ pub struct DhTable {
 }
 
 impl DhTable {
-    /// Revolute joints without limits or angle offsets, no base and no tool. Lengths are checked by
-    /// [`Robot::from_dh`].
+    /// Creates a table of revolute joints without limits, angle offsets, base or tool. [`Robot::from_dh`] checks the lengths.
     pub fn new(convention: Dh, a: Vec<f64>, alpha: Vec<f64>, d: Vec<f64>) -> Self {
         let n = a.len();
         Self {
@@ -73,8 +74,8 @@ impl DhTable {
             let joint = Joint::new(format!("joint_{}", i + 1), kind).with_range(self.lower[i], self.upper[i]);
             let joint = chain.add_joint(joint.with_velocity(self.velocity[i]));
             let along_x = pose::translation(self.a[i], 0.0, 0.0) * pose::rotation(Vector3::x(), self.alpha[i]);
-            // Rotations about and translations along one axis commute, so the joint motion goes first and the constant
-            // one after.
+            // Rotation about and translation along one axis commute, so the joint motion goes first and the constant one
+            // after.
             let (offset, constant) = match kind {
                 JointKind::Prismatic => (self.d[i], pose::rotation(Vector3::z(), self.theta[i])),
                 JointKind::Revolute | JointKind::Continuous => (self.theta[i], pose::translation(0.0, 0.0, self.d[i])),
@@ -91,7 +92,7 @@ impl DhTable {
         Ok(())
     }
 
-    /// Checks that all lists are as long as `a`, and that lengths and angles are finite.
+    /// Checks that all lists have the length of `a`, and that lengths and angles are finite.
     fn check(&self, robot: &str) -> Result<()> {
         let n = self.a.len();
         let lengths = [
@@ -116,11 +117,12 @@ impl DhTable {
 }
 
 impl Robot {
-    /// A robot from its Denavit-Hartenberg table. Joints are named `joint_1` on; links `base`, `link_1` on.
+    /// Builds a robot from its Denavit-Hartenberg table. Joints are named `joint_1` and so on; links `base`, `link_1` and so
+    /// on.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] if a list is not as long as `a`; [`Error::NotFinite`] for lengths and angles; those of
-    /// [`ChainBuilder::build`].
+    /// [`Error::WrongLength`] if a list differs in length from `a`; [`Error::NotFinite`] for lengths and angles; the errors
+    /// of [`ChainBuilder::build`].
     pub fn from_dh(name: &str, table: &DhTable) -> Result<Self> {
         let mut chain = ChainBuilder::new(name, "base");
         table.append_to(&mut chain)?;

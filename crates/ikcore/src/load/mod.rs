@@ -1,7 +1,7 @@
-//! Loading of robots: URDF files, Denavit-Hartenberg tables, link lengths of planar arms, and built-in robots by name; and of
-//! the meshes that files of robots name.
+//! Loading of robots: URDF files, Denavit-Hartenberg tables, link lengths of planar arms, and built-in robots by name; also
+//! the meshes named in robot files.
 //!
-//! Each adds a constructor to [`Robot`](crate::robot::Robot): `from_urdf`, `from_dh`, `planar`, `named`.
+//! Each loader adds a constructor to [`Robot`](crate::robot::Robot): `from_urdf`, `from_dh`, `planar`, `named`.
 
 mod catalog;
 mod cover_cache;

@@ -9,10 +9,11 @@ use crate::math::pose;
 use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 
 impl Robot {
-    /// An arm of revolute joints about z in the x-y plane, first joint at the origin, stretched along x at q = 0.
+    /// Builds an arm of revolute joints about z in the x-y plane, with the first joint at the origin, stretched along x at q
+    /// = 0.
     ///
-    /// `lengths` (n,) are the links' lengths (m). Position limits are +-pi rad, velocity is unlimited. Link `link_i`
-    /// has its frame at joint i; the last frame is `tip`.
+    /// `lengths` (n,) are the link lengths (m). Position limits are +-pi rad, velocity is unlimited. Link `link_i` has its
+    /// frame at joint i; the last frame is `tip`.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a length that is not positive and finite; [`Error::WrongLength`] without links.

@@ -1,15 +1,15 @@
-//! The ellipsoid of tip velocities.
+//! Ellipsoid of tip velocities.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::singular_values::SingularValues;
 
-/// The tip velocities for unit joint speeds, |q'| = 1: semi-axes, the longest first, one per direction of motion.
+/// Ellipsoid of tip velocities for unit joint speeds, |q'| = 1: semi-axes, the longest first, one per direction of motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ellipsoid {
     /// Lengths of the semi-axes (m/s, rad/s).
     pub lengths: Vec<f64>,
-    /// Their directions: linear, then angular part, in the base's axes.
+    /// Directions of the semi-axes: linear, then angular part, in base coordinates.
     pub axes: Vec<[f64; 6]>,
 }
 
@@ -23,7 +23,7 @@ impl Ellipsoid {
         self.lengths.iter().product()
     }
 
-    /// The longest length over the shortest; infinite if a direction is lost.
+    /// Condition number, the longest length over the shortest; infinite if a direction is lost.
     pub fn condition(&self) -> f64 {
         match (self.lengths.first(), self.lengths.last()) {
             (Some(longest), Some(shortest)) if *shortest > 0.0 => longest / shortest,
@@ -31,8 +31,8 @@ impl Ellipsoid {
         }
     }
 
-    /// Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 if a direction is
-    /// lost.
+    /// Isotropy, the geometric over the arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 if a
+    /// direction is lost.
     pub fn isotropy(&self) -> f64 {
         let m = self.lengths.len() as f64;
         let mean = self.lengths.iter().map(|length| length * length).sum::<f64>() / m;

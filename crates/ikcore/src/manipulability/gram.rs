@@ -1,5 +1,5 @@
-//! The index from the LDL' factors of J J', at a tenth of the cost of singular values. `None` near singularities, where
-//! squaring J loses digits and singular values are used instead.
+//! Manipulability index from the LDL' factors of J J', at a tenth of the cost of singular values. `None` near singularities,
+//! where squaring J loses digits and singular values are used instead.
 
 use crate::math::Columns;
 use crate::math::arithmetic::NoFma;
@@ -8,10 +8,10 @@ use crate::math::ldl::{Ldl, trace};
 
 use super::motion::Motion;
 
-/// A pivot below this fraction of the trace counts as near a singularity: ten of sixteen digits remain there.
+/// Pivot, as a fraction of the trace, below which a singularity is near: ten of sixteen digits remain there.
 const NEAR: f64 = 1e-6;
 
-/// w = sqrt(det(J J')) on the rows of `motion`.
+/// Index w = sqrt(det(J J')) on the rows of `motion`.
 pub(super) fn index(columns: &[[f64; 6]], motion: Motion) -> Option<f64> {
     match motion {
         Motion::Pose => Some(GramFactor::<6>::of(columns, 0)?.index()),
@@ -29,14 +29,14 @@ pub(super) fn index_and_sensitivity(columns: &[[f64; 6]], motion: Motion, out: &
     }
 }
 
-/// J J' = L D L' of `R` rows from `first` on.
+/// Factorization J J' = L D L' of `R` rows from `first` on.
 struct GramFactor<const R: usize> {
     first: usize,
     ldl: Ldl<R>,
 }
 
 impl<const R: usize> GramFactor<R> {
-    /// None near a singularity.
+    /// Factorizes J J'; `None` near a singularity.
     fn of(columns: &[[f64; 6]], first: usize) -> Option<Self> {
         let matrix = gram::<NoFma, R>(columns.iter().map(|column| leading(column, first)), 0.0);
         let smallest = NEAR * trace(&matrix);
@@ -49,7 +49,7 @@ impl<const R: usize> GramFactor<R> {
         (0..R).map(|j| self.ldl.pivot(j)).product::<f64>().sqrt()
     }
 
-    /// Writes dw/dJ = w (J J')^-1 J, zero in the other rows; returns w.
+    /// Writes dw/dJ = w (J J')^-1 J, zero in the other rows, and returns w.
     fn write_sensitivity(&self, columns: &[[f64; 6]], out: &mut Columns) -> f64 {
         let index = self.index();
         for (out, column) in out.iter_mut().zip(columns) {

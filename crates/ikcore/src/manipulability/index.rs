@@ -9,7 +9,7 @@ use crate::math::Columns;
 use crate::math::singular_values::SingularValues;
 use crate::robot::Robot;
 
-/// The measure of a robot's postures: the motion that counts, and the rank of its Jacobian.
+/// Manipulability measure of a robot: the motion that counts, and the rank of its Jacobian.
 ///
 /// The index is the product of the `rank` largest singular values: sqrt(det(J J')) for full rank, sqrt(det(J' J)) for
 /// an arm with fewer joints, and the area of the ellipse for the tip of a planar arm, for which both determinants
@@ -23,12 +23,12 @@ pub struct Manipulability {
 }
 
 impl Manipulability {
-    /// The measure of `motion` for `robot`.
+    /// Measure of `motion` for `robot`.
     pub fn of(robot: &Robot, motion: Motion) -> Self {
         Self::of_tip(robot, 0, motion)
     }
 
-    /// The measure of `motion` for tip number `tip` of `robot`.
+    /// Measure of `motion` for tip number `tip` of `robot`.
     pub(crate) fn of_tip(robot: &Robot, tip: usize, motion: Motion) -> Self {
         let TaskRank { pose, position, rotation } = robot.task_rank_of(tip);
         let rank = match motion {
@@ -44,7 +44,7 @@ impl Manipulability {
         self.tip
     }
 
-    /// The motion that counts.
+    /// Motion that counts.
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -61,7 +61,7 @@ impl Manipulability {
         self.index_of(&mut columns[..q.len()])
     }
 
-    /// The index of the matrix with these columns; sets unused rows to zero.
+    /// Index of the matrix with these columns; sets unused rows to zero.
     pub(super) fn index_of(&self, columns: &mut [[f64; 6]]) -> f64 {
         let regular = if self.has_full_rank() { gram::index(columns, self.motion) } else { None };
         regular.unwrap_or_else(|| {
@@ -75,12 +75,12 @@ impl Manipulability {
         self.motion.rows().len() == self.rank
     }
 
-    /// The ellipsoid of tip velocities at `q`, which has one finite entry per joint.
+    /// Ellipsoid of tip velocities at `q`, which has one finite entry per joint.
     pub fn ellipsoid(&self, robot: &Robot, q: &[f64]) -> Ellipsoid {
         Ellipsoid::new(&decompose(robot, self, q), self.rank)
     }
 
-    /// The product of the `rank` largest singular values.
+    /// Product of the `rank` largest singular values.
     pub(super) fn product(&self, values: &SingularValues) -> f64 {
         values.lengths[..self.rank].iter().product()
     }

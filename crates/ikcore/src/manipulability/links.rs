@@ -1,5 +1,5 @@
-//! The index of every link's tip, and their sum: the tracking indices SM_i and SM of "Trajectory tracking of redundant
-//! manipulator based on PSO algorithm optimization", eq. (15) and (16).
+//! Indices of all links' tips, and their sum: the tracking indices SM_i and SM of "Trajectory tracking of redundant manipulator
+//! based on PSO algorithm optimization", eq. (15) and (16).
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use crate::math::Columns;
 use crate::math::MAX_DOF;
 use crate::robot::Robot;
 
-/// The indices of all moving links, base to tip.
+/// Indices of all moving links, base to tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkIndices {
     values: [f64; MAX_DOF],
@@ -17,19 +17,19 @@ pub struct LinkIndices {
 }
 
 impl LinkIndices {
-    /// One per moving link; the last is the tip's. Zero for links with fewer joints before them than the rank.
+    /// Index of each moving link; the last is the tip's. Zero for links with fewer joints before them than the rank.
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
     }
 
-    /// Eq. (16): their sum.
+    /// Sum of the indices, eq. (16).
     pub fn sum(&self) -> f64 {
         self.values().iter().sum()
     }
 }
 
 impl Manipulability {
-    /// Eq. (15), SM_i = k_m w_i, at `q`, which has one finite entry per joint: w_i is the index of the tip of link i
+    /// Indices SM_i = k_m w_i of eq. (15) at `q`, which has one finite entry per joint: w_i is the index of the tip of link i
     /// moved by the joints before it, k_m w_i the area or volume of its ellipsoid.
     pub fn link_indices(&self, robot: &Robot, q: &[f64]) -> LinkIndices {
         let screws = robot.screws(q);
@@ -38,15 +38,15 @@ impl Manipulability {
             let mut columns = Columns::default();
             columns.fit(q.len());
             for screw in &screws[..=i] {
-                let fraction = screw.column(&link.end);
-                columns[screw.joint].iter_mut().zip(fraction).for_each(|(sum, entry)| *sum += entry);
+                let element = screw.column(&link.end);
+                columns[screw.joint].iter_mut().zip(element).for_each(|(sum, entry)| *sum += entry);
             }
             indices.values[i] = self.unit_ball() * self.index_of(&mut columns[..q.len()]);
         }
         indices
     }
 
-    /// SM = sum of SM_i at `q`, and its gradient (n,) in `out`. `q` and `out` have one entry per joint.
+    /// Returns SM = sum of SM_i at `q`, and writes its gradient (n,) to `out`. `q` and `out` have one entry per joint.
     pub fn overall_gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
         let screws = robot.screws(q);
         out.fill(0.0);
@@ -55,9 +55,9 @@ impl Manipulability {
         self.unit_ball() * sum
     }
 
-    /// k_m of eq. (15): the volume of the unit ball in m dimensions, m the rank; pi in the plane.
+    /// Volume k_m of the unit ball in m dimensions, m the rank; pi in the plane. See eq. (15).
     pub fn unit_ball(&self) -> f64 {
-        // V_m = V_{m-2} 2 pi / m, from V_0 = 1 and V_1 = 2.
+        // Recurrence V_m = V_{m-2} 2 pi / m, from V_0 = 1 and V_1 = 2.
         let m = self.rank();
         let (first, from) = if m.is_multiple_of(2) { (1.0, 2) } else { (2.0, 3) };
         (from..=m).step_by(2).fold(first, |volume, m| volume * 2.0 * PI / m as f64)

@@ -1,25 +1,25 @@
-//! The motion of the tip that counts: rows of the Jacobian.
+//! Motion of the tip that counts, as rows of the Jacobian.
 
 use std::ops::Range;
 
 use crate::wording::words;
 
-/// The motion of the tip that counts.
+/// Motion of the tip that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Motion {
     /// Velocities (m/s) and angular velocities (rad/s); the index depends on the unit of length.
     #[default]
     Pose,
-    /// Velocities alone.
+    /// Velocities only.
     Position,
-    /// Angular velocities alone.
+    /// Angular velocities only.
     Rotation,
 }
 
 words!("motion": Motion { Pose => "pose", Position => "position", Rotation => "rotation" });
 
 impl Motion {
-    /// The rows that count.
+    /// Rows of the Jacobian that count.
     pub(super) fn rows(self) -> Range<usize> {
         match self {
             Self::Pose => 0..6,
@@ -28,7 +28,7 @@ impl Motion {
         }
     }
 
-    /// Sets the rows that do not count to zero.
+    /// Sets the other rows to zero.
     pub(super) fn select(self, columns: &mut [[f64; 6]]) {
         let Range { start, end } = self.rows();
         for column in columns {

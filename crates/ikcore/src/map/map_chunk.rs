@@ -1,31 +1,31 @@
-//! The results of a chunk.
+//! Results of a chunk of a map.
 
 use super::map_grid::MapGrid;
 use super::rings::Ring;
 
-/// What an arm reaches in the voxels of a chunk, in C order.
+/// Reachability of the voxels of a chunk, in C order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapChunk {
     /// Number of voxels along x, y and z.
     pub shape: [usize; 3],
-    /// A bit for each orientation of each voxel, the lowest first.
+    /// Reached orientations of each voxel, one bit each, the lowest first.
     pub reached: Vec<u8>,
-    /// Largest manipulability of a configuration found in each voxel, NaN where there is none; empty unless asked for.
+    /// Largest manipulability of a configuration found in each voxel, NaN if there is none; empty unless requested.
     pub manipulability: Vec<f32>,
-    /// Largest clearance (m), likewise.
+    /// Largest clearance (m) of a configuration found in each voxel, NaN if there is none; empty unless requested.
     pub clearance: Vec<f32>,
 }
 
-/// The results of a ring, one after another for each of its voxels.
+/// Results of a ring, stored consecutively for its voxels.
 #[derive(Debug, Clone)]
 pub(crate) struct RingResult {
     pub reached: Vec<u8>,
-    /// Manipulability and clearance; empty unless asked for.
+    /// Manipulability and clearance; empty unless requested.
     pub quality: [Vec<f32>; 2],
 }
 
 impl RingResult {
-    /// Nothing reached yet.
+    /// Result with nothing reached.
     pub fn new(ring: &Ring, bytes: usize, quality: bool) -> Self {
         let of_each = || if quality { vec![f32::NAN; ring.voxels.len()] } else { vec![] };
         Self { reached: vec![0; ring.voxels.len() * bytes], quality: [of_each(), of_each()] }

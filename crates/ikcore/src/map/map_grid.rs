@@ -1,4 +1,4 @@
-//! The poses of a map: voxels, and the orientations at the centre of each.
+//! Poses of a map: voxels, and the orientations at the centre of each.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,13 +13,13 @@ use crate::robot::Robot;
 use crate::task::{Task, TaskKind};
 use crate::wording::number;
 
-/// Most orientations of a voxel.
+/// Largest number of orientations of a voxel.
 const MOST_ORIENTATIONS: usize = 1 << 20;
 
-/// A normal off an axis by less in each entry counts as along it.
+/// Largest deviation of the entries of a normal along an axis.
 const ALONG: f64 = 1e-9;
 
-/// What a map is to cover, and how finely.
+/// Extent and resolution of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapLayout {
     /// Edge of the voxels (m).
@@ -28,25 +28,25 @@ pub struct MapLayout {
     pub directions: usize,
     /// Number of rolls about each direction.
     pub rolls: usize,
-    /// Two opposite corners of a box (m), which is extended to whole voxels. `None` means all that the tip can reach.
+    /// Opposite corners of a box (m), which is extended to whole voxels. `None` means the reach of the tip.
     pub region: Option<[[f64; 3]; 2]>,
 }
 
-/// The poses of a map.
+/// Poses of a map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapGrid {
     voxels: VoxelGrid,
     orientations: OrientationSet,
-    /// Azimuths differ by the limits of the first joint alone.
+    /// Whether azimuths differ only by the limits of the first joint.
     azimuths_alike: bool,
 }
 
 impl MapGrid {
-    /// The poses that a map of `robot` with these options has.
+    /// Grid of poses for a map of `robot` with these options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] or [`Error::NotFinite`] for a wrong layout; [`Error::Contradiction`] for a task that maps do not take, a tip
-    /// that moves in too few directions, and without a region, a tip that reaches infinitely far.
+    /// [`Error::OutOfRange`] or [`Error::NotFinite`] for a wrong layout; [`Error::Contradiction`] for a task that maps do not
+    /// support, a tip that moves in too few directions, and without a region, a tip with infinite reach.
     pub fn new(robot: &Robot, layout: &MapLayout, options: &MapOptions) -> Result<Self> {
         robot.require_one_tip("reachability")?;
         options.validate()?;
@@ -62,7 +62,7 @@ impl MapGrid {
         let mut anchor = [x, y, 0.0];
         let plane = reach.normal.map(|normal| plane_of(robot, normal)).transpose()?;
         if let Some(k) = plane {
-            // The plane lies in the middle of a layer.
+            // The plane is in the middle of a layer of voxels.
             anchor[k] = reach.center[k] - 0.5 * layout.voxel;
         }
         let corners = match layout.region {
@@ -80,12 +80,12 @@ impl MapGrid {
         Ok(Self { voxels, orientations, azimuths_alike })
     }
 
-    /// The voxels.
+    /// Voxels of the map.
     pub fn voxels(&self) -> &VoxelGrid {
         &self.voxels
     }
 
-    /// The orientations.
+    /// Orientations at each voxel.
     pub fn orientations(&self) -> &OrientationSet {
         &self.orientations
     }
@@ -94,17 +94,17 @@ impl MapGrid {
         self.azimuths_alike
     }
 
-    /// Bytes of the bits of one voxel.
+    /// Number of bytes for the bits of one voxel.
     pub fn bytes(&self) -> usize {
         self.orientations.len().div_ceil(8)
     }
 
-    /// The pose of orientation `i` at `place` (m), turned to `azimuth` (rad) about z.
+    /// Pose of orientation `i` at `place` (m), rotated to `azimuth` (rad) about z.
     pub fn pose(&self, place: [f64; 3], azimuth: f64, i: usize) -> Frame {
         Frame { axes: turned(&self.orientations.axes(i), azimuth), origin: place }
     }
 
-    /// The voxel that a pose is in, and the orientation there nearest to its own; None outside.
+    /// Returns the voxel that contains a pose, and the nearest orientation there; `None` outside the map.
     pub fn locate(&self, pose: &Frame) -> Option<([usize; 3], usize)> {
         let voxel = self.voxels.voxel_at(&pose.origin)?;
         let turned_back = turned(&pose.axes, -self.voxels.azimuth(voxel));
@@ -130,7 +130,7 @@ impl MapLayout {
     }
 }
 
-/// The orientations that the tip of `robot` can have almost anywhere.
+/// Orientations that the tip of `robot` can have almost anywhere.
 fn orientations(robot: &Robot, reach: &Reach, layout: &MapLayout, task: Option<&Task>) -> Result<OrientationSet> {
     let rank = robot.task_rank();
     let plane = usize::from(reach.normal.is_some());
@@ -158,7 +158,7 @@ fn orientations(robot: &Robot, reach: &Reach, layout: &MapLayout, task: Option<&
     Err(Error::Contradiction { problem })
 }
 
-/// The axis that `normal` is along.
+/// Axis parallel to `normal`.
 fn plane_of(robot: &Robot, normal: [f64; 3]) -> Result<usize> {
     (0..3).find(|k| normal[*k].abs() > 1.0 - ALONG).ok_or_else(|| {
         let name = robot.name();

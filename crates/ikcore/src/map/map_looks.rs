@@ -1,4 +1,4 @@
-//! What is reached in the voxels of a ring: a first look at each orientation, and a second one at those left open.
+//! Reachability of the voxels of a ring, in two passes: a first look at each orientation, and a second one at those left open.
 
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
@@ -9,10 +9,10 @@ use super::second_look::SecondLook;
 use crate::error::Result;
 use crate::solver::Monitor;
 
-/// Both looks. Shared by all threads.
+/// Both passes over a ring. Shared by all threads.
 pub(crate) struct MapLooks<'a> {
     test: MapTest<'a>,
-    /// `None` where the first look leaves nothing open.
+    /// Second pass; `None` if the first one leaves nothing open.
     second_look: Option<SecondLook<'a>>,
 }
 
@@ -27,7 +27,7 @@ impl<'a> MapLooks<'a> {
         Ok(Self { test, second_look })
     }
 
-    /// Finds what is reached in the voxels of a ring.
+    /// Computes the reachability of the voxels of a ring.
     pub fn ring(&self, ring: &Ring, monitor: &mut dyn Monitor) -> RingResult {
         let Self { test, second_look } = self;
         let mut result = test.empty_result(ring);

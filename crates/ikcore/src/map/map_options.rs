@@ -1,18 +1,18 @@
-//! What a pose of a map must fulfil, and how long it is looked for.
+//! Requirements on the poses of a map, and the budget of each pose.
 
 use crate::error::{Error, Result};
 use crate::obstacle::Surroundings;
 use crate::task::{Task, TaskKind};
 
-/// Options of the chunks of a map. Those of one map are computed with the same options.
+/// Options of a map. All chunks of one map are computed with the same options.
 #[derive(Debug, Clone)]
 pub struct MapOptions {
-    /// The part of the pose that matters. `None` means all of it.
+    /// Part of the pose to reach. `None` means all of it.
     pub task: Option<Task>,
-    /// What configurations keep clear of. By default nothing is checked.
+    /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
-    /// Most evaluations of a pose: values of the parameter of a redundant arm with a closed form, and evaluations of the forward
-    /// kinematics for an arm without one.
+    /// Budget of a pose: parameter values of a redundant arm with a closed form, and evaluations of the forward kinematics for
+    /// an arm without one.
     pub evaluations: usize,
     /// Whether to measure manipulability and clearance of the best configuration of each voxel.
     pub quality: bool,
@@ -25,7 +25,7 @@ impl Default for MapOptions {
 }
 
 impl MapOptions {
-    /// Whether nothing but the limits of the first joint distinguishes azimuths.
+    /// Whether only the limits of the first joint distinguish azimuths.
     pub(super) fn treat_azimuths_alike(&self) -> bool {
         let Surroundings { obstacles, self_collision, .. } = &self.surroundings;
         obstacles.is_none() && *self_collision != Some(true)
@@ -39,7 +39,7 @@ impl MapOptions {
     }
 }
 
-/// Checks that maps of a task make sense.
+/// Checks that a map of this task is meaningful.
 fn require_mapped(task: Option<&Task>) -> Result<()> {
     let Some(task) = task else { return Ok(()) };
     task.validate()?;

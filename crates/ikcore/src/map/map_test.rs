@@ -1,4 +1,4 @@
-//! Whether the tip reaches a pose, at several azimuths of its place together.
+//! Reachability test of a pose, at several azimuths at once.
 
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
@@ -15,21 +15,21 @@ use crate::robot::{Joint, Robot, UprightAxis};
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::{Target, Tolerance};
 
-/// Most evaluations of a descent from a near solution.
+/// Evaluation budget of a descent from a nearby solution.
 const DESCENT: usize = 40;
 
-/// Solutions of an orientation that are kept as starts for others, at the most.
+/// Largest number of solutions of an orientation that are kept as starts for others.
 const KEPT: usize = 4;
 
-/// Values of the parameter of a redundant arm after which it is asked whether the limits exclude all: most poses have a solution before.
+/// Parameter values of a redundant arm before testing whether the limits exclude all: most poses have a solution earlier.
 const VALUES_BEFORE_DOUBT: usize = 16;
 
-/// Decides which poses of a map are reached. Shared by all threads.
+/// Reachability test of the poses of a map. Shared by all threads.
 pub(crate) struct MapTest<'a> {
     pub(super) grid: &'a MapGrid,
-    /// Within the limits of the robot.
+    /// Solve context with the limits of the robot.
     own: SolveContext<'a>,
-    /// With the first joint free to turn, where azimuths are alike.
+    /// Solve context with the first joint free to turn, if azimuths are equivalent.
     pub(super) turning: Option<(UprightAxis, SolveContext<'a>)>,
     way: Way,
     reach: Reach,
@@ -38,22 +38,22 @@ pub(crate) struct MapTest<'a> {
     measure: Manipulability,
 }
 
-/// How solutions are found.
+/// Method of finding solutions.
 enum Way {
-    /// All branches of a closed form.
+    /// Closed form with all branches.
     Branches,
-    /// Branches at values of the parameter of a redundant arm, within these limits.
+    /// Closed form at parameter values of a redundant arm, within these limits.
     Family(Box<FamilyLimits>),
-    /// A search.
+    /// Numerical search.
     Search,
 }
 
-/// The two robots of a [`MapTest`], and the options of their solves.
+/// Robots of a [`MapTest`], and the options of their solves.
 pub(crate) struct MapRobots {
     pub(super) own: Robot,
     pub(super) turning: Option<(UprightAxis, Robot)>,
     each: SolveOptions,
-    /// Of descents from near solutions. What configurations keep clear of is checked afterwards.
+    /// Options of descents from nearby solutions. Collisions are checked afterwards.
     pub(super) brief: SolveOptions,
 }
 
@@ -118,27 +118,27 @@ impl<'a> MapTest<'a> {
         Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
     }
 
-    /// Whether what is not found may be there all the same.
+    /// Whether a pose may be reachable although no solution was found.
     pub(super) fn leaves_poses_open(&self) -> bool {
         !matches!(self.way, Way::Branches)
     }
 
-    /// Whether the tip gets to the place of a ring at all.
+    /// Whether the reach of the tip includes the position of a ring.
     pub(super) fn may_reach(&self, ring: &Ring) -> bool {
         self.reach.excess(&ring.place) <= Tolerance::default().position
     }
 
-    /// A result of a ring with nothing reached yet.
+    /// Result of a ring with nothing reached.
     pub(super) fn empty_result(&self, ring: &Ring) -> RingResult {
         RingResult::new(ring, self.grid.bytes(), self.options.quality)
     }
 
-    /// The azimuth at which the orientations of a ring are solved for.
+    /// Azimuth at which the orientations of a ring are solved.
     pub(super) fn azimuth(&self, ring: &Ring) -> f64 {
         if self.turning.is_some() { 0.0 } else { ring.azimuths[0] }
     }
 
-    /// What the first look at an orientation of a ring finds.
+    /// Tests orientation `i` of a ring in the first pass.
     pub(super) fn first_look(&self, ring: &Ring, i: usize, result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
         let pose = self.grid.pose(ring.place, self.azimuth(ring), i);
         let mut found = self.found(ring, Seen::default(), result);
@@ -161,7 +161,7 @@ impl<'a> MapTest<'a> {
         found.seen
     }
 
-    /// Goes on from what has been seen of an orientation of a ring.
+    /// Continues the test of an orientation of a ring from what has been `seen`.
     pub(super) fn found<'t>(
         &'t self,
         ring: &'t Ring,
@@ -171,12 +171,12 @@ impl<'a> MapTest<'a> {
         OrientationTest { test: self, azimuths: &ring.azimuths, seen, quality: &mut result.quality }
     }
 
-    /// The robot that solutions are found for.
+    /// Robot that solutions are found for.
     fn robot(&self) -> &Robot {
         self.turning.as_ref().map_or(&self.own, |(_, context)| context).robot()
     }
 
-    /// Whether `q` is clear and inside the limits of all joints but that which turns the arm.
+    /// Whether `q` is clear and inside the limits of all joints except the one that turns the arm.
     fn holds(&self, q: &[f64]) -> bool {
         let turning = self.turning.as_ref().map(|(axis, _)| axis.joint);
         let mut joints = self.ranges.iter().zip(q).enumerate();
@@ -185,23 +185,23 @@ impl<'a> MapTest<'a> {
     }
 }
 
-/// What is known of an orientation of a ring.
+/// Results for an orientation of a ring.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
-    /// The azimuths at which it is reached, a bit for each.
+    /// Azimuths at which the orientation is reached, one bit each.
     pub reached: u64,
-    /// Some of its solutions.
+    /// Some solutions of the orientation.
     pub solutions: Vec<Vec<f64>>,
-    /// It is proven that there are none.
+    /// Whether it is proven that there are no solutions.
     pub is_excluded: bool,
 }
 
-/// Collects the solutions of an orientation of a ring.
+/// Test of one orientation of a ring, which collects its solutions.
 pub(super) struct OrientationTest<'t, 'a> {
     test: &'t MapTest<'a>,
     azimuths: &'t [f64],
     pub seen: Seen,
-    /// Manipulability and clearance of the best at each azimuth.
+    /// Manipulability and clearance of the best configuration at each azimuth.
     quality: &'t mut [Vec<f32>; 2],
 }
 
@@ -210,7 +210,7 @@ impl OrientationTest<'_, '_> {
         self.seen.reached == u64::MAX >> (64 - self.azimuths.len())
     }
 
-    /// Takes those that are solutions; returns whether azimuths are left.
+    /// Takes the branches that are solutions. Returns whether azimuths are left.
     fn take_branches(&mut self, branches: &ArmBranches) -> bool {
         for (q, _) in branches.iter() {
             if self.test.options.quality || !self.is_everywhere() {
@@ -220,7 +220,7 @@ impl OrientationTest<'_, '_> {
         !self.is_everywhere()
     }
 
-    /// Takes those at `count` values of the parameter of a redundant arm, or at fewer where none can be found.
+    /// Takes the solutions at `count` values of the parameter of a redundant arm, or at fewer if none can exist.
     fn take_family(&mut self, family: &PoseFamily<'_>, limits: &FamilyLimits, count: usize) {
         let arcs = family.arcs(limits);
         let mut values = arcs.scattered(count);
@@ -233,7 +233,7 @@ impl OrientationTest<'_, '_> {
         }
     }
 
-    /// Takes those at these values; false if no more matter.
+    /// Takes the solutions at these values. Returns false if no further values matter.
     fn take_values(
         &mut self,
         family: &PoseFamily<'_>,
@@ -248,7 +248,7 @@ impl OrientationTest<'_, '_> {
         wants_more
     }
 
-    /// Takes a configuration that has the pose, at the azimuths at which it is a solution.
+    /// Takes a configuration with the pose, at the azimuths at which it is a solution.
     pub fn take(&mut self, q: &[f64]) {
         if !self.test.holds(q) {
             return;
@@ -265,7 +265,7 @@ impl OrientationTest<'_, '_> {
         }
     }
 
-    /// Keeps `q`, a solution at azimuth 0 but for its first joint, as one at these azimuths.
+    /// Records `q`, a solution at azimuth 0 except for its first joint, as a solution at these azimuths.
     fn keep(&mut self, q: &[f64], at: u64) {
         if at & !self.seen.reached != 0 && self.seen.solutions.len() < KEPT {
             self.seen.solutions.push(q.to_vec());
@@ -284,14 +284,14 @@ impl OrientationTest<'_, '_> {
         for (all, value) in self.quality.iter_mut().zip([index, clearance]) {
             for (place, best) in all.iter_mut().enumerate() {
                 if at >> place & 1 == 1 {
-                    // The larger one, and not NaN where one is a number.
+                    // Takes the larger value, and never NaN if one is a number.
                     *best = best.max(value as f32);
                 }
             }
         }
     }
 
-    /// Takes what a search finds. Where that turns out to be beyond the limits of the first joint, it searches again at that azimuth.
+    /// Takes the solution of a search. If the limits of the first joint exclude it at an azimuth, searches again there.
     fn search(&mut self, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) {
         let MapTest { own, turning, .. } = self.test;
         let Some((axis, context)) = turning else {
@@ -321,7 +321,7 @@ impl OrientationTest<'_, '_> {
     }
 }
 
-/// The solution of a pose, if one is found.
+/// Searches for a solution of a pose.
 fn searched(context: &SolveContext<'_>, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) -> Option<Solution> {
     let targets = context.read(&[Target::Pose(*pose)]).ok()?;
     let query = Query { targets: &targets, start: None, stream, stopwatch: Stopwatch::start() };

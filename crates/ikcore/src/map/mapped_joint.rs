@@ -1,9 +1,9 @@
-//! The limits of a joint, whole turns aside.
+//! Limits of a joint up to whole turns.
 
-/// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
+/// Excess over a limit (rad, m) that counts as rounding: the joint is at its limit.
 const AT_LIMIT: f64 = 1e-9;
 
-/// The limits of a joint, and the smallest change that leaves the pose unchanged.
+/// Limits of a joint, and the smallest change that leaves the pose unchanged.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MappedJoint {
     pub lower: f64,
@@ -12,7 +12,7 @@ pub(super) struct MappedJoint {
 }
 
 impl MappedJoint {
-    /// Whether a value is inside, whole turns aside.
+    /// Whether a value is inside the limits, whole turns aside.
     #[inline]
     pub fn holds(&self, value: f64) -> bool {
         let (lower, upper) = (self.lower - AT_LIMIT, self.upper + AT_LIMIT);
@@ -22,7 +22,7 @@ impl MappedJoint {
         }
     }
 
-    /// The value inside that is nearest but for whole turns, where there is one.
+    /// Shifts a value by whole turns into the limits if possible, and clamps it otherwise.
     pub fn brought_inside(&self, value: f64) -> f64 {
         let turned = match self.period {
             Some(period) if value < self.lower || value > self.upper => {

@@ -1,11 +1,11 @@
-//! Maps of what an arm reaches: space in voxels, the same orientations at the centre of each, and a bit for every pair.
+//! Reachability maps of an arm: space in voxels, the same orientations at the centre of each, and a bit for every pair.
 //!
-//! A `MapGrid` says which poses a map has: voxels (`voxel_grid`), whose chunks are computed one by one, and orientations
-//! (`orientation_set`). Where the first axis is vertical, the orientations turn with the azimuth of the voxel: then all voxels at one
-//! distance from the axis and one height ask the same, but for the limits of the first joint, and `rings` collects them. A `MapTest`
-//! (`map_test`) answers for one pose and many azimuths, by the closed form where there is one; where that leaves a pose open, `second_look`
-//! descends from solutions of near orientations; `map_looks` calls both. `map_chunk` holds the results. Threads are
-//! in [`batch`](crate::batch).
+//! A `MapGrid` defines the poses of a map: voxels (`voxel_grid`), computed in chunks, and orientations (`orientation_set`). If
+//! the first axis is vertical, the orientations rotate with the azimuth of the voxel: all voxels at one distance from the axis
+//! and one height are then equivalent except for the limits of the first joint, and form one of the `rings`. A `MapTest`
+//! (`map_test`) tests one pose at many azimuths, by the closed form if there is one; if that leaves a pose open, `second_look`
+//! descends from solutions of nearby orientations; `map_looks` calls both. `map_chunk` holds the results. Threads are in
+//! [`batch`](crate::batch).
 
 mod map_chunk;
 mod map_grid;

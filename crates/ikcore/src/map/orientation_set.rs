@@ -7,20 +7,20 @@ use serde::{Deserialize, Serialize};
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 
-/// The angle between neighbours of a spherical Fibonacci set, about its axis (rad).
+/// Angle between neighbours of a spherical Fibonacci set, about its axis (rad).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
-/// The orientations of a map, each direction with all rolls.
+/// Orientations of a map, each direction with all rolls.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OrientationSet {
     /// Polar angle and azimuth of each direction (rad).
     directions: Vec<[f64; 2]>,
     rolls: usize,
-    /// What orientations are counted from: `spread` applied to the frame `rest` has the axis along z.
+    /// Reference rotation: `spread` applied to the frame `rest` has the axis along z.
     rest: Rotation,
-    /// Takes z to the axis in the base about which rolls turn, where there is only one direction.
+    /// Rotation from z to the only direction in the base, about which rolls turn.
     base: Rotation,
-    /// The tip cannot leave its only direction.
+    /// Whether the tip cannot leave its only direction.
     is_fixed: bool,
 }
 
@@ -29,12 +29,12 @@ type Rotation = [[f64; 3]; 3];
 const AS_IT_IS: Rotation = Frame::IDENTITY.axes;
 
 impl OrientationSet {
-    /// One, for positions.
+    /// Set of one orientation, for positions.
     pub(super) fn single() -> Self {
         Self { directions: vec![[0.0; 2]], rolls: 1, rest: AS_IT_IS, base: AS_IT_IS, is_fixed: false }
     }
 
-    /// `directions` of the spherical Fibonacci set for the unit vector `axis` of the tip, each with `rolls`.
+    /// Set of `directions` of the spherical Fibonacci set for the unit vector `axis` of the tip, each with `rolls`.
     pub(super) fn spread(directions: usize, rolls: usize, axis: [f64; 3]) -> Self {
         let direction = |i: usize| {
             let height = 1.0 - (2.0 * i as f64 + 1.0) / directions as f64;
@@ -44,7 +44,7 @@ impl OrientationSet {
         Self { directions, rolls, rest: transposed(&towards(axis)), base: AS_IT_IS, is_fixed: false }
     }
 
-    /// `rolls` about the direction `base` that a tip keeps; `tip` is the same direction in the tip.
+    /// Set of `rolls` about the fixed direction `base` of a tip; `tip` is the same direction in the tip frame.
     pub(super) fn fixed(rolls: usize, base: [f64; 3], tip: [f64; 3]) -> Self {
         Self { directions: vec![[0.0; 2]], rolls, rest: transposed(&towards(tip)), base: towards(base), is_fixed: true }
     }
@@ -54,7 +54,7 @@ impl OrientationSet {
         self.directions.len() * self.rolls
     }
 
-    /// Never true: there is one at least.
+    /// Returns false: there is at least one orientation.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -64,7 +64,7 @@ impl OrientationSet {
         self.rolls
     }
 
-    /// Orientation number `i`, at azimuth 0: its axes.
+    /// Axes of orientation number `i` at azimuth 0.
     pub(super) fn axes(&self, i: usize) -> Rotation {
         let [polar, azimuth] = self.directions[i / self.rolls];
         let roll = TAU * (i % self.rolls) as f64 / self.rolls as f64;
@@ -72,9 +72,10 @@ impl OrientationSet {
         product(&product(&self.base, &spread), &self.rest)
     }
 
-    /// The number of the orientation nearest to `axes`: by direction, then by roll. None for a direction that the tip cannot have.
+    /// Number of the orientation nearest to `axes`: by direction, then by roll. `None` for a direction that the tip cannot
+    /// have.
     pub(super) fn nearest(&self, axes: &Rotation) -> Option<usize> {
-        // base' R rest' = Rz(azimuth) Ry(polar) Rz(roll).
+        // Decomposition base' R rest' = Rz(azimuth) Ry(polar) Rz(roll).
         let spread = product(&product(&transposed(&self.base), axes), &transposed(&self.rest));
         let [_, _, axis] = spread;
         if self.is_fixed && axis[2].clamp(-1.0, 1.0).acos() > PI / self.rolls as f64 {
@@ -97,12 +98,12 @@ impl OrientationSet {
     }
 }
 
-/// Orientations turned by an azimuth (rad) about z.
+/// Rotates orientations by an azimuth (rad) about z.
 pub(super) fn turned(axes: &Rotation, azimuth: f64) -> Rotation {
     product(&about_z(azimuth), axes)
 }
 
-/// a b, as columns.
+/// Matrix product a b, as columns.
 fn product(a: &Rotation, b: &Rotation) -> Rotation {
     let a = Frame { axes: *a, origin: [0.0; 3] };
     b.map(|column| a.turn::<NoFma>(&column))
@@ -122,7 +123,7 @@ fn about_y(angle: f64) -> Rotation {
     [[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]]
 }
 
-/// A rotation that takes z to the unit vector `v`.
+/// Rotation from z to the unit vector `v`.
 fn towards(v: [f64; 3]) -> Rotation {
     product(&about_z(v[1].atan2(v[0])), &about_y(v[0].hypot(v[1]).atan2(v[2])))
 }
@@ -166,7 +167,7 @@ mod tests {
             let apart = |b: &[f64; 3]| norm(&cross(a, b)).atan2((0..3).map(|k| a[k] * b[k]).sum());
             axes.iter().filter(|b| *b != a).map(apart).fold(f64::INFINITY, f64::min)
         };
-        // 200 equal caps have a radius of 0.14 rad.
+        // Caps of equal area have a radius of 0.14 rad for 200 directions.
         assert!(axes.iter().all(|axis| (0.17..0.29).contains(&nearest(axis))));
     }
 

@@ -1,24 +1,24 @@
-//! Voxels that ask the same: those at one distance from the first axis and one height.
+//! Rings of equivalent voxels, at one distance from the first axis and one height.
 
 use super::map_grid::MapGrid;
 
-/// Most voxels of a ring: their azimuths fit into the bits of a word.
+/// Largest number of voxels of a ring, so that their azimuths fit into the bits of a word.
 const MOST: usize = 64;
 
-/// The voxels of a chunk at one distance from the first axis and one height; a single voxel where azimuths differ.
+/// Voxels of a chunk at one distance from the first axis and one height; a single voxel if azimuths differ.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
-    /// The tip at azimuth 0 (m).
+    /// Position of the tip at azimuth 0 (m).
     pub place: [f64; 3],
-    /// The azimuth of each voxel (rad).
+    /// Azimuth of each voxel (rad).
     pub azimuths: Vec<f64>,
-    /// The number of each voxel in the chunk, in C order.
+    /// Number of each voxel in the chunk, in C order.
     pub voxels: Vec<usize>,
-    /// Numbers the ring within its map.
+    /// Number of the ring within its map, for its random stream.
     pub stream: u64,
 }
 
-/// The rings of the voxels of a chunk, first and last + 1 along x, y and z.
+/// Rings of the voxels of a chunk, given by first and last + 1 along x, y and z.
 pub(crate) fn rings_of(grid: &MapGrid, [xs, ys, zs]: [[usize; 2]; 3]) -> Vec<Ring> {
     let voxels = grid.voxels();
     let number = |[x, y, z]: [usize; 3]| ((x - xs[0]) * (ys[1] - ys[0]) + y - ys[0]) * (zs[1] - zs[0]) + z - zs[0];

@@ -1,7 +1,7 @@
-//! A second look at orientations without a solution, from solutions of the orientations near them.
+//! Second look at orientations without a solution, from solutions of nearby orientations.
 //!
-//! The solutions of a voxel lie on a few smooth sheets, so that a solution of an orientation is a good start for those next to it. All
-//! starts come from the same ring: a chunk has the same bits whatever the others are.
+//! The solutions of a voxel form a few smooth sheets, so a solution of one orientation is a good start for its neighbours. All
+//! starts come from the same ring, so that the bits of a chunk do not depend on other chunks.
 
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
@@ -13,28 +13,30 @@ use crate::math::Frame;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 
-/// Orientations near one, from which starts are taken.
+/// Number of neighbours of an orientation that starts are taken from.
 const NEAR: usize = 12;
 
-/// Orientations whose numbers differ by more are not near: one of a spread set is near those next to it in height.
+/// Largest index difference of neighbours: neighbours of a spread set have similar heights.
 const WINDOW: usize = 2048;
 
-/// Descents for each orientation and round, at the most.
+/// Largest number of descents per orientation and round.
 const DESCENTS: usize = 8;
 
-/// Rounds at the most; each but the first starts from what the one before found.
+/// Largest number of rounds; each after the first starts from the results of the one before.
 const ROUNDS: usize = 4;
 
-/// Descends from near solutions.
+/// Descents from nearby solutions.
 pub(super) struct SecondLook<'a> {
     own: SolveContext<'a>,
-    /// With the first joint free to turn, where azimuths are alike.
+    /// Solve context with the first joint free to turn, if azimuths are equivalent.
     turning: Option<SolveContext<'a>>,
-    /// For each orientation the numbers of those near it, the nearest first.
+    /// Indices of the neighbours of each orientation, the nearest first.
     near: Vec<Vec<u32>>,
 }
 
 impl<'a> SecondLook<'a> {
+    /// Second look with the robots and the grid of a map.
+    ///
     /// # Errors
     /// None in practice: the options of the map have been checked.
     pub fn new(robots: &'a MapRobots, grid: &MapGrid) -> Result<Self> {
@@ -43,7 +45,7 @@ impl<'a> SecondLook<'a> {
         Ok(Self { own: SolveContext::new(own, brief)?, turning, near: near_orientations(grid) })
     }
 
-    /// Completes what has been `seen` of the orientations of a ring.
+    /// Completes the results `all` for the orientations of a ring.
     pub fn complete(
         &self,
         test: &MapTest<'_>,
@@ -73,7 +75,7 @@ impl<'a> SecondLook<'a> {
     }
 }
 
-/// A second look at orientation number `i` of a ring.
+/// Second look at orientation number `i` of a ring.
 struct Look<'l, 'a> {
     second: &'l SecondLook<'a>,
     test: &'l MapTest<'a>,
@@ -82,7 +84,7 @@ struct Look<'l, 'a> {
 }
 
 impl Look<'_, '_> {
-    /// What is known of the orientation afterwards.
+    /// Descends to the orientation from nearby solutions, and returns its updated results.
     fn at(&self, all: &[Seen], result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
         let Self { test, ring, i, .. } = *self;
         let pose = test.grid.pose(ring.place, test.azimuth(ring), i);
@@ -118,12 +120,12 @@ impl Look<'_, '_> {
         found.seen
     }
 
-    /// The solutions of the orientations near this one.
+    /// Solutions of the nearby orientations.
     fn starts<'s>(&self, all: &'s [Seen]) -> impl Iterator<Item = &'s Vec<f64>> {
         self.second.near[self.i].iter().flat_map(move |other| &all[*other as usize].solutions)
     }
 
-    /// A start within the limits; the first joint is free to turn where there is no azimuth.
+    /// Moves a start inside the limits; without an azimuth, the first joint is free to turn.
     fn inside(&self, start: &[f64], azimuth: Option<f64>) -> Vec<f64> {
         let turning = self.test.turning.as_ref().map(|(axis, _)| *axis);
         let bring = |(j, value): (usize, &f64)| match (turning, azimuth) {
@@ -137,7 +139,7 @@ impl Look<'_, '_> {
     }
 }
 
-/// The solution of a pose to which a descent from `start` leads, if it does.
+/// Descends from `start` to a solution of a pose.
 fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
     let targets = context.read(&[Target::Pose(*pose)]).ok()?;
     let query = Query { targets: &targets, start: Some(start), stream: 0, stopwatch: Stopwatch::start() };
@@ -145,11 +147,11 @@ fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &
     (solution.status == Status::Solved).then(|| solution.q.to_vec())
 }
 
-/// For each orientation of a grid the numbers of those near it, the nearest first.
+/// Indices of the neighbours of each orientation of a grid, the nearest first.
 fn near_orientations(grid: &MapGrid) -> Vec<Vec<u32>> {
     let count = grid.orientations().len();
     let axes: Vec<_> = (0..count).map(|i| grid.orientations().axes(i)).collect();
-    // The trace of the rotation between two: 1 + 2 cos(angle).
+    // Trace of the rotation between two orientations: 1 + 2 cos(angle).
     let nearness = |i: usize, other: usize| -> f64 {
         axes[i].iter().flatten().zip(axes[other].iter().flatten()).map(|(a, b)| a * b).sum()
     };

@@ -1,36 +1,37 @@
-//! Cubic voxels in a box, cut into chunks.
+//! Cubic voxels in a box, divided into chunks.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
-/// Most voxels of a map.
+/// Largest number of voxels of a map.
 const MOST: f64 = 4e9;
 
-/// A corner nearer than this fraction of a voxel to a face of the lattice is on it.
+/// Distance from a face of the lattice, as a fraction of a voxel, within which a corner is on the face.
 const ON_FACE: f64 = 1e-6;
 
 /// Edge of the chunks of a map whose voxels are computed one by one.
 const BLOCK: usize = 8;
 
-/// Cubic voxels. Faces lie at whole multiples of the edge from an anchor: the first axis of the arm, or the origin of its base.
+/// Grid of cubic voxels. Faces are at whole multiples of the edge from an anchor: the first axis of the arm, or the origin of
+/// its base.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VoxelGrid {
-    /// Where faces meet (m).
+    /// Common corner of faces (m).
     anchor: [f64; 3],
-    /// The lower corner, in voxels from the anchor.
+    /// Lower corner, in voxels from the anchor.
     first: [i64; 3],
-    /// Edge (m).
+    /// Edge of a voxel (m).
     voxel: f64,
     shape: [usize; 3],
-    /// Whether orientations turn with the azimuth about the anchor.
+    /// Whether orientations rotate with the azimuth about the anchor.
     turns: bool,
     chunk_shape: [usize; 3],
 }
 
 impl VoxelGrid {
-    /// All voxels that meet the box between two corners (m), of which `corners[0]` is the lower one. With `by_layers`, a chunk is a
-    /// layer at one height.
+    /// Grid of all voxels that intersect the box between two corners (m), with `corners[0]` the lower one. With `by_layers`, a
+    /// chunk is a layer at one height.
     pub(super) fn new(
         corners: [[f64; 3]; 2],
         voxel: f64,
@@ -59,17 +60,17 @@ impl VoxelGrid {
         self.shape
     }
 
-    /// The lower corner (m).
+    /// Lower corner (m).
     pub fn origin(&self) -> [f64; 3] {
         std::array::from_fn(|k| self.anchor[k] + self.voxel * self.first[k] as f64)
     }
 
-    /// The vertical axis about which orientations turn, where they do: its point in the plane z = 0 (m).
+    /// Point (m) in the plane z = 0 on the vertical axis about which orientations rotate, if they do.
     pub fn axis(&self) -> Option<[f64; 2]> {
         self.turns.then_some([self.anchor[0], self.anchor[1]])
     }
 
-    /// Largest shape of a chunk; those at the upper ends are smaller.
+    /// Largest shape of a chunk; chunks at the upper ends are smaller.
     pub fn chunk_shape(&self) -> [usize; 3] {
         self.chunk_shape
     }
@@ -79,7 +80,7 @@ impl VoxelGrid {
         std::array::from_fn(|k| self.shape[k].div_ceil(self.chunk_shape[k]))
     }
 
-    /// First and last + 1 voxel of a chunk along x, y and z. Chunks count along z first.
+    /// First and last + 1 voxel of a chunk along x, y and z. Chunks are numbered along z first.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a number beyond the last.
@@ -96,37 +97,37 @@ impl VoxelGrid {
         }))
     }
 
-    /// The centre of a voxel (m).
+    /// Centre of a voxel (m).
     pub fn centre(&self, voxel: [usize; 3]) -> [f64; 3] {
         let halves = self.halves(voxel);
         std::array::from_fn(|k| self.anchor[k] + 0.5 * self.voxel * halves[k] as f64)
     }
 
-    /// The centre of a voxel, in half voxels from the anchor.
+    /// Centre of a voxel, in half voxels from the anchor.
     pub(super) fn halves(&self, voxel: [usize; 3]) -> [i64; 3] {
         std::array::from_fn(|k| 2 * (self.first[k] + voxel[k] as i64) + 1)
     }
 
-    /// The place (m) on the x side of the axis, at the height of the voxel `up` layers above the lowest, whose squared distance from the
-    /// axis is `square` (half voxels squared).
+    /// Point (m) on the x side of the axis, at the height of the voxel `up` layers above the lowest, whose squared distance
+    /// from the axis is `square` (half voxels squared).
     pub(super) fn place_at(&self, square: i64, up: usize) -> [f64; 3] {
         let [x, y, _] = self.anchor;
         [x + 0.5 * self.voxel * (square as f64).sqrt(), y, self.centre([0, 0, up])[2]]
     }
 
-    /// The azimuth of a voxel about the axis (rad); 0 where orientations do not turn.
+    /// Azimuth of a voxel about the axis (rad); 0 if orientations do not rotate.
     pub fn azimuth(&self, voxel: [usize; 3]) -> f64 {
         let [x, y, _] = self.halves(voxel);
         if self.turns { (y as f64).atan2(x as f64) } else { 0.0 }
     }
 
-    /// The voxel that holds a point (m).
+    /// Voxel that contains a point (m).
     pub fn voxel_at(&self, point: &[f64; 3]) -> Option<[usize; 3]> {
         let origin = self.origin();
         let mut voxel = [0; 3];
         for k in 0..3 {
             let number = ((point[k] - origin[k]) / self.voxel).floor();
-            // False for NaN too.
+            // Rejects NaN too.
             if !(number >= 0.0 && number < self.shape[k] as f64) {
                 return None;
             }

@@ -1,13 +1,13 @@
-//! The angle for a sine and a cosine without branches, for one pair or one per lane.
+//! Branch-free arctangent of a sine-cosine pair, for one pair or one per lane.
 //!
-//! Rotations by multiples of an eighth of a turn bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax
-//! polynomial has a relative error of 2e-18; it was fitted for this file by Remez exchange.
+//! Rotations by multiples of an eighth of a turn bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax polynomial
+//! has a relative error of 2e-18; it was fitted for this file by Remez exchange.
 
 use std::f64::consts::FRAC_PI_4;
 
 use super::real::Real;
 
-/// atan x = x + x u P(u), u = x^2.
+/// Polynomial P of atan x = x + x u P(u), u = x^2.
 const P: [f64; 11] = [
     -0.33333333333333287,
     0.19999999999975157,
@@ -21,9 +21,9 @@ const P: [f64; 11] = [
     0.03832231473820668,
     -0.018175035551833984,
 ];
-/// tan(pi/8): a larger quotient is reduced by pi/4 first.
+/// Threshold tan(pi/8), above which a quotient is first reduced by pi/4.
 const EIGHTH: f64 = 0.41421356237309503;
-/// pi/4 - [`FRAC_PI_4`].
+/// Rounding error of [`FRAC_PI_4`], pi/4 - FRAC_PI_4.
 const FRAC_PI_4_REST: f64 = 3.061616997868383e-17;
 
 /// Returns the angle (rad, from 0 to pi) of a point at (`cosine`, `sine`), at any nonzero distance; `sine` is not
@@ -33,7 +33,7 @@ pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let size = cosine.choose_below(zero, -cosine, cosine);
     let (less, more) = (sine.smaller(size), size.larger(sine));
-    // The angle is a multiple of pi/4, plus or minus the arctangent of a small quotient.
+    // Angle decomposition: a multiple of pi/4, plus or minus the arctangent of a small quotient.
     let quarter = (more * R::splat(EIGHTH)).choose_below(less, one, zero);
     let quotient = (less - quarter * more) / (more + quarter * less);
     let (quarters, sign) = (quarter, one);
@@ -45,12 +45,12 @@ pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
     quarters * R::splat(FRAC_PI_4) + small
 }
 
-/// atan x for |x| <= tan(pi/8).
+/// Returns atan x for |x| <= tan(pi/8).
 #[inline(always)]
 fn arctangent<R: Real>(x: R) -> R {
     let u = x * x;
     let (u2, u4) = (u * u, (u * u) * (u * u));
-    // Pairs, then pairs of pairs, and so on: shorter dependency chains than in Horner's scheme.
+    // Estrin's scheme: pairs, then pairs of pairs, for shorter dependency chains than Horner's scheme has.
     let pair = |k: usize| R::splat(P[k]) + R::splat(P[k + 1]) * u;
     let four = |k: usize| pair(k) + pair(k + 2) * u2;
     let last = pair(8) + R::splat(P[10]) * u2;

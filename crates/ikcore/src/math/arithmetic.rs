@@ -1,147 +1,147 @@
-//! Arithmetic with or without the processor's fused multiply-add (FMA) and four-lane registers.
+//! Arithmetic with or without the processor's fused multiply-add (FMA) and wide registers.
 //!
-//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and
-//! FMA by [`by_instructions`]. Both are repeatable; they differ in the last bit.
+//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and FMA by
+//! [`by_instructions`]. Both versions are repeatable; they differ in the last bit.
 
 #![allow(unsafe_code, reason = "instructions of the processor are unsafe functions")]
 
 use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 
-/// Operations in which the two compilations of a kernel differ.
+/// Operations in which the two versions of a kernel differ.
 pub trait Arithmetic: Copy {
-    /// a * b + c.
+    /// Returns a * b + c.
     fn mul_add(a: f64, b: f64, c: f64) -> f64;
 
-    /// a * b + c, lane by lane.
+    /// Returns a * b + c, lane by lane.
     #[inline(always)]
     fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| Self::mul_add(a.0[k], b.0[k], c.0[k])))
     }
 
-    /// a * b, lane by lane.
+    /// Returns a * b, lane by lane.
     #[inline(always)]
     fn mul_x4(a: F64x4, b: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| a.0[k] * b.0[k]))
     }
 
-    /// a + b, lane by lane.
+    /// Returns a + b, lane by lane.
     #[inline(always)]
     fn add_x4(a: F64x4, b: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| a.0[k] + b.0[k]))
     }
 
-    /// The cross product of two vectors in the first three lanes.
+    /// Returns the cross product of two vectors in the first three lanes.
     #[inline(always)]
     fn cross_x4(a: F64x4, b: F64x4) -> F64x4 {
-        // a x b = P (a * Pb - Pa * b), entry by entry, with the cyclic permutation P.
+        // Identity a x b = P (a * Pb - Pa * b), entry by entry, with the cyclic permutation P.
         let product = Self::mul_x4(a.permuted(), b);
         Self::mul_add_x4(a, b.permuted(), -product).permuted()
     }
 
-    /// a - b, lane by lane.
+    /// Returns a - b, lane by lane.
     #[inline(always)]
     fn sub_x4(a: F64x4, b: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| a.0[k] - b.0[k]))
     }
 
-    /// a / b, lane by lane.
+    /// Returns a / b, lane by lane.
     #[inline(always)]
     fn div_x4(a: F64x4, b: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| a.0[k] / b.0[k]))
     }
 
-    /// The square root, lane by lane.
+    /// Returns the square root, lane by lane.
     #[inline(always)]
     fn sqrt_x4(a: F64x4) -> F64x4 {
         F64x4(a.0.map(f64::sqrt))
     }
 
-    /// `then` in lanes with a < b, else `otherwise` (also for NaN).
+    /// Selects `then` in lanes with a < b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
-    /// `then` in lanes with a = b, else `otherwise` (also for NaN).
+    /// Selects `then` in lanes with a = b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
-    /// a * b + c, lane by lane.
+    /// Returns a * b + c, lane by lane.
     #[inline(always)]
     fn mul_add_x8(a: F32x8, b: F32x8, c: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| a.0[k] * b.0[k] + c.0[k]))
     }
 
-    /// a * b, lane by lane.
+    /// Returns a * b, lane by lane.
     #[inline(always)]
     fn mul_x8(a: F32x8, b: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| a.0[k] * b.0[k]))
     }
 
-    /// a + b, lane by lane.
+    /// Returns a + b, lane by lane.
     #[inline(always)]
     fn add_x8(a: F32x8, b: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| a.0[k] + b.0[k]))
     }
 
-    /// a - b, lane by lane.
+    /// Returns a - b, lane by lane.
     #[inline(always)]
     fn sub_x8(a: F32x8, b: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| a.0[k] - b.0[k]))
     }
 
-    /// a / b, lane by lane.
+    /// Returns a / b, lane by lane.
     #[inline(always)]
     fn div_x8(a: F32x8, b: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| a.0[k] / b.0[k]))
     }
 
-    /// The square root, lane by lane.
+    /// Returns the square root, lane by lane.
     #[inline(always)]
     fn sqrt_x8(a: F32x8) -> F32x8 {
         F32x8(a.0.map(f32::sqrt))
     }
 
-    /// `then` in lanes with a < b, else `otherwise` (also for NaN).
+    /// Selects `then` in lanes with a < b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_below_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
-    /// `then` in lanes with a = b, else `otherwise` (also for NaN).
+    /// Selects `then` in lanes with a = b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_equal_x8(a: F32x8, b: F32x8, then: F32x8, otherwise: F32x8) -> F32x8 {
         F32x8(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
-    /// The larger of a and b, lane by lane; b if either is NaN.
+    /// Returns the larger of a and b, lane by lane; b if either is NaN.
     #[inline(always)]
     fn larger_x8(a: F32x8, b: F32x8) -> F32x8 {
         Self::choose_below_x8(b, a, a, b)
     }
 
-    /// The smaller of a and b, lane by lane; b if either is NaN.
+    /// Returns the smaller of a and b, lane by lane; b if either is NaN.
     #[inline(always)]
     fn smaller_x8(a: F32x8, b: F32x8) -> F32x8 {
         Self::choose_below_x8(a, b, a, b)
     }
 
-    /// The lanes in which a >= b does not hold (also for NaN), one bit each.
+    /// Returns a bit mask of the lanes in which a >= b does not hold (also for NaN).
     #[inline(always)]
     fn not_at_least_x8(a: F32x8, b: F32x8) -> u32 {
         (0..8).fold(0, |lanes, k| lanes | (u32::from(!(a.0[k] >= b.0[k])) << k))
     }
 }
 
-/// Product and sum rounded separately: runs on any machine.
+/// Arithmetic without FMA: product and sum are rounded separately. Runs on any machine.
 #[derive(Debug, Clone, Copy)]
 pub enum NoFma {}
 
-/// Product and sum rounded once: fast only if the processor has the instruction. On x86-64 only for code inside
-/// [`by_instructions`], which is compiled for AVX2 and FMA.
+/// Arithmetic with FMA: product and sum are rounded once. Fast only if the processor has the instruction; on x86-64 only for
+/// code inside [`by_instructions`], which is compiled for AVX2 and FMA.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Fma {}
 
@@ -310,10 +310,10 @@ fn from_singles(register: x86::__m256) -> F32x8 {
     unsafe { std::mem::transmute(register) }
 }
 
-/// The arithmetic that is fast on every machine of this architecture.
+/// Fastest arithmetic available on every machine of this architecture.
 #[cfg(target_arch = "aarch64")]
 pub(crate) type Baseline = Fma;
-/// The arithmetic that is fast on every machine of this architecture.
+/// Fastest arithmetic available on every machine of this architecture.
 #[cfg(not(target_arch = "aarch64"))]
 pub(crate) type Baseline = NoFma;
 
@@ -324,7 +324,7 @@ pub(crate) fn has_fma() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
 
-/// The instructions that the kernels run with on this machine.
+/// Names the instruction set that the kernels use on this machine.
 pub fn instructions() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     if has_fma() {
@@ -334,8 +334,8 @@ pub fn instructions() -> &'static str {
 }
 
 /// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the version for this
-/// machine. In the body `A` is the [`Arithmetic`]. Functions that the body calls must be `#[inline(always)]`, or
-/// closures inside the body, to be compiled with its instructions.
+/// machine. In the body `A` is the [`Arithmetic`]. Functions called by the body must be `#[inline(always)]`, or closures
+/// inside the body, to be compiled with its instructions.
 macro_rules! by_instructions {
     (
         $(#[$attribute:meta])*
@@ -367,13 +367,13 @@ pub(crate) use by_instructions;
 mod tests {
     use super::*;
 
-    /// Numbers of all sizes, the special ones among them.
+    /// Numbers of all magnitudes, including special values.
     const A: [f64; 8] = [1.5, -0.0, f64::NAN, 1e300, -7.25, f64::INFINITY, 3.0, -1e-300];
     const B: [f64; 8] = [2.5, 0.0, 1.0, -1e300, f64::NAN, 2.0, 3.0, 4.0];
     const C: [f64; 8] = [0.1, -4.0, 2.0, 1e300, 1.0, f64::NEG_INFINITY, -9.0, 1e-300];
 
     by_instructions! {
-        /// Every operation on four doubles and on eight singles, one after the other.
+        /// Performs every operation on four doubles and on eight singles.
         fn every_operation(a: &[f64; 8], b: &[f64; 8], c: &[f64; 8]) -> (Vec<f64>, Vec<f32>, u32) {
             operations::<A>(a, b, c)
         }

@@ -1,4 +1,4 @@
-//! The bounded step of several tasks, six rows each: damped least squares as in [`box_step`](super::box_step), on J J' or J'J,
+//! Bounded step for several tasks of six rows each: damped least squares as in [`box_step`](super::box_step), on J J' or J'J,
 //! whichever is smaller.
 
 use smallvec::SmallVec;
@@ -18,14 +18,14 @@ pub struct TaskRows<'a> {
     pub residual: &'a [f64; ROWS],
 }
 
-/// A step of damped least squares of several tasks in a box, as [`BoxStep`] for one.
+/// Damped least-squares step in a box for several tasks; [`BoxStep`] is the case of one.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockStep<'a> {
-    /// The tasks; J has their rows one after another.
+    /// Tasks; J stacks their rows.
     pub tasks: &'a [TaskRows<'a>],
-    /// The damping.
+    /// Damping factor.
     pub lambda: f64,
-    /// The current point.
+    /// Current point.
     pub x: &'a [f64],
     /// Lower bounds, one per entry of `x`.
     pub lower: &'a [f64],
@@ -33,7 +33,7 @@ pub struct BlockStep<'a> {
     pub upper: &'a [f64],
 }
 
-/// TaskResiduals of the tasks; on the stack up to eight.
+/// Remaining residuals of the tasks; up to eight on the stack.
 type Remaining = SmallVec<[[f64; ROWS]; 8]>;
 
 impl BlockStep<'_> {
@@ -47,8 +47,8 @@ impl BlockStep<'_> {
         }
     }
 
-    /// Writes the point in the box that (nearly) solves residual + J (out - x) = 0 and is nearest to `preferred`, which
-    /// must be in the box.
+    /// Writes the point in the box that (approximately) solves residual + J (out - x) = 0 and is nearest to `preferred`,
+    /// which must be in the box.
     pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
         let mut there: Remaining = self.tasks.iter().map(|task| *task.residual).collect();
         for (j, (x, preferred)) in self.x.iter().zip(preferred).enumerate() {
@@ -59,13 +59,13 @@ impl BlockStep<'_> {
         BlockStep { tasks: &tasks, x: preferred, ..*self }.write(out);
     }
 
-    /// Solves in a system of at most `N` unknowns: all rows, or all entries of x.
+    /// Solves a system of at most `N` unknowns: all rows, or all entries of x.
     #[inline(always)]
     fn write_within<A: Arithmetic, const N: usize>(&self, out: &mut [f64]) {
         let Self { tasks, x, lower, upper, .. } = *self;
         let mut remaining: Remaining = tasks.iter().map(|task| *task.residual).collect();
         let moved = self.moved_tasks();
-        // Bit j: entry j is held at a bound.
+        // Bit j is set if entry j is fixed at a bound.
         let mut fixed = 0_u64;
         for _ in 0..ROUNDS {
             let mut change = [0.0; MAX_DOF];
@@ -90,7 +90,7 @@ impl BlockStep<'_> {
         }
     }
 
-    /// For each entry of x a bit for each task that it moves: most move few.
+    /// Returns for each entry of x a bit mask of the tasks that it moves; most entries move few tasks.
     #[inline(always)]
     fn moved_tasks(&self) -> [u64; MAX_DOF] {
         let mut moved = [0; MAX_DOF];
@@ -102,7 +102,7 @@ impl BlockStep<'_> {
         moved
     }
 
-    /// dx = -J' (J J' + lambda I)^-1 r over the free entries.
+    /// Computes dx = -J' (J J' + lambda I)^-1 r over the free entries.
     #[inline(always)]
     fn by_rows<A: Arithmetic, const N: usize>(
         &self,
@@ -139,7 +139,7 @@ impl BlockStep<'_> {
         }
     }
 
-    /// dx = -(J' J + lambda I)^-1 J' r over the free entries.
+    /// Computes dx = -(J' J + lambda I)^-1 J' r over the free entries.
     #[inline(always)]
     fn by_entries<A: Arithmetic, const N: usize>(
         &self,
@@ -164,12 +164,12 @@ impl BlockStep<'_> {
             }
             system[j][j] += lambda;
         }
-        // Held entries have empty rows, which the factorisation leaves out.
+        // Fixed entries have zero rows, which the factorization skips.
         change[..N.min(MAX_DOF)].copy_from_slice(&ldl::solve::<A, N>(system, right)[..N.min(MAX_DOF)]);
     }
 }
 
-/// Numbers of the bits that are set, the lowest first.
+/// Iterates over the indices of the set bits, lowest first.
 #[inline(always)]
 fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -179,7 +179,7 @@ fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The residuals after entry `j` of x has changed by `change`.
+/// Updates the residuals for a change of entry `j` of x.
 fn shift(residuals: &mut [[f64; ROWS]], tasks: &[TaskRows<'_>], j: usize, change: f64) {
     for (residual, task) in residuals.iter_mut().zip(tasks) {
         for (entry, slope) in residual.iter_mut().zip(&task.columns[j]) {
@@ -212,7 +212,7 @@ mod tests {
         columns.iter().zip(residuals).map(|(columns, residual)| TaskRows { columns, residual }).collect()
     }
 
-    /// Of `count` tasks with `n` entries of x, the first of which moves only the first task.
+    /// Generates `count` tasks with `n` entries of x, the first of which moves only the first task.
     fn columns(count: usize, n: usize) -> impl Strategy<Value = Vec<Columns>> {
         let task = prop::collection::vec(prop::array::uniform6(-1.0..1.0), n);
         prop::collection::vec(task, count).prop_map(|mut tasks: Vec<Columns>| {
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn what_a_stuck_entry_cannot_do_the_others_take_over_and_what_is_free_stays_near_the_preferred() {
-        // The first entry moves both tasks, the others one each.
+        // The first entry moves both tasks, each other entry one task.
         let column = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0];
         let columns = [vec![column(1.0), column(1.0), column(0.0)], vec![column(1.0), column(0.0), column(1.0)]];
         let residuals = [column(-1.0), column(-2.0)];

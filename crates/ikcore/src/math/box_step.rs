@@ -1,5 +1,5 @@
-//! The bounded step: damped least squares on six rows. Joints that reach a bound are held there, and the step is solved
-//! again.
+//! Bounded step: damped least squares on six rows within a box. Joints that reach a bound are fixed there, and the step is
+//! solved again.
 
 use super::arithmetic::{Arithmetic, by_instructions};
 use super::comparison::{larger, smaller};
@@ -10,30 +10,29 @@ use super::vector::squared_size;
 /// Number of task rows of every least-squares problem; unused rows are zero.
 pub const ROWS: usize = 6;
 
-/// Number of rows of a position: the first ones.
+/// Number of position rows, which come first.
 pub(super) const POSITION_ROWS: usize = 3;
 
-/// Damping, relative to the squared size of the Jacobian, that keeps a singular system solvable and has no effect
-/// otherwise.
+/// Damping, relative to the squared size of the Jacobian, that keeps a singular system solvable and has no other effect.
 pub const LEAST_DAMPING: f64 = 1e-10;
 
-/// Joints can reach bounds one after another; after this number of rounds the step is clipped to the box.
+/// Number of rounds in which joints may reach their bounds; after that the step is clipped to the box.
 pub(super) const ROUNDS: usize = 4;
 
-/// A step of damped least squares in a box: to the point x + dx in \[`lower`, `upper`\] that (nearly) minimises
+/// Damped least-squares step in a box: moves to the point x + dx in \[`lower`, `upper`\] that (approximately) minimises
 /// |residual + J dx|^2 + lambda |dx|^2.
 ///
-/// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is held at its bound,
-/// its contribution is subtracted from the residual, and the step of the others is solved again.
+/// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is fixed at its bound, its
+/// contribution is subtracted from the residual, and the step of the other joints is solved again.
 #[derive(Debug, Clone, Copy)]
 pub struct BoxStep<'a> {
     /// Columns of J, at least one per entry of `x`.
     pub columns: &'a [[f64; ROWS]],
     /// Residual to be removed by the step.
     pub residual: &'a [f64; ROWS],
-    /// The damping.
+    /// Damping factor.
     pub lambda: f64,
-    /// The current point.
+    /// Current point.
     pub x: &'a [f64],
     /// Lower bounds, one per entry of `x`.
     pub lower: &'a [f64],
@@ -41,7 +40,7 @@ pub struct BoxStep<'a> {
     pub upper: &'a [f64],
 }
 
-/// [`LEAST_DAMPING`] for the Jacobian with these columns.
+/// Returns [`LEAST_DAMPING`] times the squared size of the Jacobian with these columns.
 pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
     LEAST_DAMPING * squared_size(columns)
 }
@@ -52,8 +51,8 @@ impl BoxStep<'_> {
         write_step(self, out);
     }
 
-    /// Writes the point in the box that (nearly) solves residual + J (out - x) = 0 and is nearest to `preferred`, which
-    /// must be in the box.
+    /// Writes the point in the box that (approximately) solves residual + J (out - x) = 0 and is nearest to `preferred`,
+    /// which must be in the box.
     pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
         let mut there = *self.residual;
         for ((column, x), preferred) in self.columns.iter().zip(self.x).zip(preferred) {
@@ -64,7 +63,7 @@ impl BoxStep<'_> {
         BoxStep { residual: &there, x: preferred, ..*self }.write(out);
     }
 
-    /// Solves only the position rows if the others are zero: half the rows take less than half the time.
+    /// Solves only the position rows if the angular rows are zero: half the rows take less than half the time.
     #[inline(always)]
     fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [f64]) {
         let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
@@ -81,7 +80,7 @@ impl BoxStep<'_> {
         let Self { columns, lambda, x, lower, upper, .. } = *self;
         let n = x.len();
         let mut remaining = *self.residual;
-        // Bit j: joint j is held at a bound.
+        // Bit j is set if joint j is fixed at a bound.
         let mut fixed = 0_u64;
         for _ in 0..ROUNDS {
             let mut right = [0.0; R];
@@ -113,7 +112,7 @@ by_instructions! {
     }
 }
 
-/// a'b, in pairs.
+/// Returns the dot product a'b, summed in pairs.
 #[inline(always)]
 fn dot<A: Arithmetic, const N: usize>(a: &[f64; ROWS], b: &[f64; N]) -> f64 {
     let pair = |k: usize| {
@@ -175,7 +174,7 @@ mod tests {
 
     #[test]
     fn what_a_stuck_joint_cannot_do_the_others_take_over() {
-        // Both joints push along x; the first may move by 0.1 only, so the second does the remaining 0.9.
+        // Both joints push along x; the first may move by 0.1 only, so the second contributes the remaining 0.9.
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
         let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let mut out = [0.0; 2];
@@ -185,7 +184,7 @@ mod tests {
 
     #[test]
     fn what_the_task_leaves_free_goes_where_it_is_preferred() {
-        // x + y is to become 1; of all such points, the nearest to (0.8, 0.6) is (0.6, 0.4); with x <= 0.4, (0.4, 0.6).
+        // Target x + y = 1: of all such points the nearest to (0.8, 0.6) is (0.6, 0.4), and with x <= 0.4 it is (0.4, 0.6).
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
         let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let near = |upper: f64| {

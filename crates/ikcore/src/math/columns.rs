@@ -1,4 +1,4 @@
-//! The columns of a Jacobian.
+//! Columns of a Jacobian.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,8 +6,8 @@ use smallvec::SmallVec;
 
 use super::{MAX_DOF, STACK_DOF};
 
-/// Columns of a 6 x n matrix, one per joint: linear rows (m/rad, or 1 for a prismatic joint), then angular rows; the first n are
-/// in use. There is room for [`STACK_DOF`], on the stack; [`fit`](Self::fit) makes room for more.
+/// Columns of a 6 x n matrix, one per joint: linear rows (m/rad, or 1 for a prismatic joint), then angular rows; the first n
+/// are in use. Up to [`STACK_DOF`] columns are stored on the stack; [`fit`](Self::fit) allocates more.
 #[derive(Debug, Clone)]
 pub struct Columns(SmallVec<[[f64; 6]; STACK_DOF]>);
 
@@ -19,7 +19,7 @@ impl Default for Columns {
 }
 
 impl Columns {
-    /// Makes room for `n` columns, at most [`MAX_DOF`].
+    /// Grows to at least `n` columns, at most [`MAX_DOF`].
     #[inline]
     pub fn fit(&mut self, n: usize) {
         if n > self.0.len() {

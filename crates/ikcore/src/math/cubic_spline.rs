@@ -6,14 +6,15 @@ pub enum SplineEnds {
     /// Zero second derivative.
     #[default]
     Natural,
-    /// The first two pieces are one cubic, and so are the last two.
+    /// Third derivative continuous at the second and the second-last knot, so that the first two pieces are one cubic, and
+    /// the last two.
     NotAKnot,
     /// Zero slope.
     Clamped,
 }
 
-/// The second derivative at an end, from the slope of the chord and the second derivatives at the two knots next to it:
-/// q''_end = chord_share chord + near q''_1 + far q''_2.
+/// Linear rule for the second derivative at an end, from the slope of the chord and the second derivatives at the two nearest
+/// knots: q''_end = chord_fraction chord + near q''_1 + far q''_2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct EndRule {
     chord_fraction: f64,
@@ -22,14 +23,14 @@ struct EndRule {
 }
 
 impl SplineEnds {
-    /// The rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in total.
+    /// Returns the rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in total.
     /// `sign` is 1 at the start and -1 at the end.
     fn rule(self, h: f64, next: f64, pieces: usize, sign: f64) -> EndRule {
         let rule = |chord_fraction, near, far| EndRule { chord_fraction, near, far };
         match self {
             Self::Clamped if pieces == 1 => rule(sign * 6.0 / h, 0.0, 0.0),
             Self::Clamped => rule(sign * 3.0 / h, -0.5, 0.0),
-            // Three points: both conditions make the curve one parabola.
+            // Three points: both end conditions together make the curve one parabola.
             Self::NotAKnot if pieces == 2 => rule(0.0, 1.0, 0.0),
             Self::NotAKnot if pieces > 2 => rule(0.0, 1.0 + h / next, -h / next),
             Self::NotAKnot | Self::Natural => rule(0.0, 0.0, 0.0),
@@ -37,37 +38,37 @@ impl SplineEnds {
     }
 }
 
-/// The factored tridiagonal system of the knots: a spline through new values takes one forward and one backward pass.
+/// Factored tridiagonal system of a spline: new values take one forward and one backward pass.
 ///
-/// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) =
-/// 6 (chord_i - chord_(i-1)), with q'' at the ends by their rules.
+/// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) = 6 (chord_i -
+/// chord_(i-1)), with q'' at the ends by their rules.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicSpline {
     knots: Vec<f64>,
     rules: [EndRule; 2],
-    /// By knot: the entries below and above the diagonal, and the inverse of the diagonal entry, after elimination.
+    /// Entries below and above the diagonal, and the inverse of the diagonal entry, by knot, after elimination.
     below: Vec<f64>,
     above: Vec<f64>,
     inverse: Vec<f64>,
 }
 
-/// A cubic piece: value + slope s + curvature/2 s^2 + third/6 s^3 in the time s since its knot.
+/// Cubic piece: value + slope s + curvature/2 s^2 + third/6 s^3 in the time s since its knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Length in the parameter.
     pub span: f64,
-    /// Value at its knot.
+    /// Value at the knot.
     pub value: f64,
-    /// First derivative there.
+    /// First derivative at the knot.
     pub slope: f64,
-    /// Second derivative there.
+    /// Second derivative at the knot.
     pub curvature: f64,
     /// Third derivative.
     pub third: f64,
 }
 
 impl CubicSpline {
-    /// Splines over `knots`, at least two, which increase.
+    /// Prepares splines over `knots`, at least two, which increase.
     pub fn over(knots: Vec<f64>, ends: SplineEnds) -> Self {
         let last = knots.len() - 1;
         let h = |i: usize| knots[i + 1] - knots[i];
@@ -93,17 +94,18 @@ impl CubicSpline {
         Self { knots, rules, below, above, inverse }
     }
 
-    /// Splines with zero second derivative at their ends.
+    /// Prepares splines with zero second derivative at their ends.
     pub fn natural(knots: Vec<f64>) -> Self {
         Self::over(knots, SplineEnds::Natural)
     }
 
-    /// The knots.
+    /// Returns the knots.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// Writes the second derivatives at the knots of the spline through `values` into `curvatures`, which is as long.
+    /// Writes the second derivatives of the spline through `values` at the knots into `curvatures`, which has the same
+    /// length.
     pub fn curvatures(&self, values: &[f64], curvatures: &mut [f64]) {
         let last = self.knots.len() - 1;
         let h = |i: usize| self.knots[i + 1] - self.knots[i];
@@ -124,7 +126,7 @@ impl CubicSpline {
         for i in (1..last - 1).rev() {
             curvatures[i] -= self.above[i] * curvatures[i + 1];
         }
-        // If there are too few knots for a neighbour, its factor in the rule is zero.
+        // Missing neighbours have a zero factor in the rule.
         let inner = |i: usize| if 0 < i && i < last { curvatures[i] } else { 0.0 };
         let ends = [
             first_rule.curvature(chord(0), inner(1), inner(2)),
@@ -133,7 +135,7 @@ impl CubicSpline {
         [curvatures[0], curvatures[last]] = ends;
     }
 
-    /// The piece after knot `i` of the spline with these values and second derivatives.
+    /// Returns the piece after knot `i` of the spline with these values and second derivatives.
     pub fn piece(&self, i: usize, values: &[f64], curvatures: &[f64]) -> Piece {
         let span = self.knots[i + 1] - self.knots[i];
         Piece {
@@ -145,7 +147,7 @@ impl CubicSpline {
         }
     }
 
-    /// The value at `u`, inside the knots.
+    /// Returns the value at `u`, inside the knots.
     pub fn at(&self, u: f64, values: &[f64], curvatures: &[f64]) -> f64 {
         let i = self.knots.partition_point(|knot| *knot <= u).clamp(1, self.knots.len() - 1) - 1;
         self.piece(i, values, curvatures).at(u - self.knots[i])
@@ -159,17 +161,17 @@ impl EndRule {
 }
 
 impl Piece {
-    /// The coefficients of 1, s, s^2 and s^3.
+    /// Returns the coefficients of 1, s, s^2 and s^3.
     pub fn coefficients(&self) -> [f64; 4] {
         [self.value, self.slope, 0.5 * self.curvature, self.third / 6.0]
     }
 
-    /// The value `s` after the knot.
+    /// Returns the value at `s` after the knot.
     pub fn at(&self, s: f64) -> f64 {
         self.value + s * (self.slope + s * (self.curvature / 2.0 + s * self.third / 6.0))
     }
 
-    /// The largest slope magnitude: at an end or where the second derivative vanishes.
+    /// Returns the largest slope magnitude: at an end or where the second derivative vanishes.
     pub fn steepest(&self) -> f64 {
         let slope_at = |s: f64| (self.slope + s * (self.curvature + 0.5 * s * self.third)).abs();
         let level = -self.curvature / self.third;
@@ -177,7 +179,7 @@ impl Piece {
         inside.max(slope_at(0.0)).max(slope_at(self.span))
     }
 
-    /// Parameters of zero slope, at most two, ascending.
+    /// Returns the parameters of zero slope, at most two, ascending.
     pub fn turning_points(&self) -> smallvec::SmallVec<[f64; 2]> {
         super::polynomial::quadratic_roots(self.slope, self.curvature, 0.5 * self.third, 0.0, self.span)
     }

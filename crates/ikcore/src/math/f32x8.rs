@@ -1,18 +1,18 @@
-//! Eight numbers of single precision in one register, if the machine has such registers.
+//! Eight single-precision numbers, in one register if the machine has such registers.
 
 use std::ops::Neg;
 
-/// Eight numbers, on which [`Arithmetic`](super::arithmetic::Arithmetic) works lane by lane: for searches, whose results are confirmed
-/// in double precision.
+/// Eight lanes for [`Arithmetic`](super::arithmetic::Arithmetic), used by searches whose results are confirmed in double
+/// precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
 pub struct F32x8(pub [f32; 8]);
 
 impl F32x8 {
-    /// Zeros.
+    /// Zero in all lanes.
     pub const ZERO: Self = Self([0.0; 8]);
 
-    /// The same number in all lanes.
+    /// Broadcasts a number to all lanes.
     #[inline(always)]
     pub fn splat(value: f32) -> Self {
         Self([value; 8])
@@ -24,7 +24,7 @@ impl Neg for F32x8 {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        // Written out, as for `F64x4`.
+        // Unrolled by hand, as in `F64x4`.
         let [a, b, c, d, e, f, g, h] = self.0;
         Self([-a, -b, -c, -d, -e, -f, -g, -h])
     }

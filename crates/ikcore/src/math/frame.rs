@@ -1,4 +1,4 @@
-//! A rigid transform in plain arrays, for the kernels.
+//! Rigid transform in plain arrays, for the kernels.
 
 use nalgebra::Matrix3;
 
@@ -7,18 +7,18 @@ use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 use super::{Pose, pose};
 
-/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4`
-/// entries, four transforms, one per lane.
+/// Rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4` entries it
+/// holds four transforms, one per lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame<T = f64> {
-    /// x, y and z axis.
+    /// Axes x, y and z.
     pub axes: [[T; 3]; 3],
     /// Position of the origin (m).
     pub origin: [T; 3],
 }
 
 impl Frame<F64x4> {
-    /// These frames, one per lane.
+    /// Packs four frames, one per lane.
     #[inline(always)]
     pub(crate) fn of(frames: [&Frame; 4]) -> Self {
         let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
@@ -26,12 +26,12 @@ impl Frame<F64x4> {
         all
     }
 
-    /// The frame in lane `lane`.
+    /// Returns the frame in lane `lane`.
     pub(crate) fn lane(&self, lane: usize) -> Frame {
         Frame { axes: self.axes.map(|axis| axis.map(|k| k.0[lane])), origin: self.origin.map(|k| k.0[lane]) }
     }
 
-    /// Puts `frame` into lane `lane`.
+    /// Stores `frame` in lane `lane`.
     pub(crate) fn set_lane(&mut self, lane: usize, frame: &Frame) {
         for k in 0..3 {
             self.origin[k].0[lane] = frame.origin[k];
@@ -43,7 +43,7 @@ impl Frame<F64x4> {
 }
 
 impl Frame<F32x8> {
-    /// The frame in lane `lane`.
+    /// Returns the frame in lane `lane`.
     pub(crate) fn lane(&self, lane: usize) -> Frame {
         let number = |x: F32x8| f64::from(x.0[lane]);
         Frame { axes: self.axes.map(|axis| axis.map(number)), origin: self.origin.map(number) }
@@ -51,7 +51,7 @@ impl Frame<F32x8> {
 }
 
 impl Frame {
-    /// The identity.
+    /// Identity transform.
     pub const IDENTITY: Self = Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
 
     /// Rotates a vector from this frame into the base: R v.
@@ -64,7 +64,7 @@ impl Frame {
     /// Rotates a vector from the base into this frame: R'v.
     #[inline(always)]
     pub(crate) fn turn_back(&self, v: &[f64; 3]) -> [f64; 3] {
-        // Written out: a closure over the array would be compiled without the instructions of the caller.
+        // Unrolled by hand: a closure over the array would be compiled without the instructions of the caller.
         let [x, y, z] = &self.axes;
         [
             x[0] * v[0] + x[1] * v[1] + x[2] * v[2],
@@ -82,14 +82,14 @@ impl Frame {
         std::array::from_fn(|k| A::mul_add(x[k], p[0], self.origin[k]) + A::mul_add(y[k], p[1], z[k] * p[2]))
     }
 
-    /// self * next.
+    /// Returns self * next.
     #[inline(always)]
     pub(crate) fn then<A: Arithmetic>(&self, next: &Self) -> Self {
         let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
         Self { axes, origin: self.place::<A>(&next.origin) }
     }
 
-    /// The inverse transform.
+    /// Returns the inverse transform.
     #[inline]
     pub fn inverse(&self) -> Self {
         let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
@@ -97,7 +97,7 @@ impl Frame {
         Self { axes, origin }
     }
 
-    /// The homogeneous matrix, row-major.
+    /// Returns the homogeneous matrix, row-major.
     pub(crate) fn rows(&self) -> [f64; 16] {
         let ([x, y, z], p) = (self.axes, self.origin);
         [
@@ -108,7 +108,7 @@ impl Frame {
         ]
     }
 
-    /// This frame rotated about its own z axis, given sine and cosine of the angle.
+    /// Rotates the frame about its own z axis, given sine and cosine of the angle.
     #[inline(always)]
     pub(crate) fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
         let [x, y, z] = self.axes;

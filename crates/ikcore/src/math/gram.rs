@@ -1,4 +1,4 @@
-//! The damped Gram matrix of a Jacobian.
+//! Damped Gram matrix of a Jacobian.
 
 use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;

@@ -1,6 +1,6 @@
-//! Hermite interpolation: the cubic with given values and slopes at both ends.
+//! Cubic Hermite interpolation between values and slopes at both ends.
 
-/// A cubic in a parameter from 0 at one end to 1 at the other.
+/// Cubic polynomial in a parameter that runs from 0 at one end to 1 at the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
     /// Coefficients in ascending powers of the parameter.
@@ -8,28 +8,28 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// The cubic between two values, with these slopes at them.
+    /// Returns the cubic between two values, with these slopes at the ends.
     #[inline]
     pub fn new([from, to]: [f64; 2], [left, right]: [f64; 2]) -> Self {
         let chord = to - from;
         Self { coefficients: [from, left, 3.0 * chord - 2.0 * left - right, left + right - 2.0 * chord] }
     }
 
-    /// The value at `fraction`.
+    /// Returns the value at `fraction`.
     #[inline]
     pub fn at(&self, fraction: f64) -> f64 {
         let [a, b, c, d] = self.coefficients;
         a + fraction * (b + fraction * (c + fraction * d))
     }
 
-    /// The derivative at `fraction`.
+    /// Returns the derivative at `fraction`.
     #[inline]
     pub fn slope(&self, fraction: f64) -> f64 {
         let [_, b, c, d] = self.coefficients;
         b + fraction * (2.0 * c + 3.0 * fraction * d)
     }
 
-    /// Bounds of the values between the ends: the smallest and largest Bézier coefficient.
+    /// Bounds the values between the ends by the smallest and the largest Bézier coefficient.
     #[inline]
     pub fn hull(&self) -> [f64; 2] {
         let [a, b, c, _] = self.coefficients;
@@ -39,12 +39,12 @@ impl Cubic {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| [low.min(point), high.max(point)])
     }
 
-    /// The parameter of the smallest value.
+    /// Returns the parameter of the smallest value.
     pub fn lowest(&self) -> f64 {
         let [_, b, c, d] = self.coefficients;
         let end = if self.at(1.0) < self.at(0.0) { 1.0 } else { 0.0 };
-        // Of the roots of b + 2 c s + 3 d s^2, the one with positive second derivative, in a form without cancellation
-        // if the cubic decreases at first; NaN if there is none.
+        // Root of b + 2 c s + 3 d s^2 with positive second derivative, in a form without cancellation if the cubic decreases
+        // at first; NaN if there is none.
         let inside = -b / (c + (c * c - 3.0 * b * d).sqrt());
         if 0.0 < inside && inside < 1.0 && self.at(inside) < self.at(end) { inside } else { end }
     }

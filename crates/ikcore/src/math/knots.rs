@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite};
 
-/// Times (s) that start at zero and increase: the ends of the segments of a piecewise function of time.
+/// Knot times (s), which start at zero and increase: the ends of the segments of a piecewise function of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>")]
 pub struct Knots(Vec<f64>);
 
-/// Stored knots are checked again.
+/// Validates knots again when they are deserialized.
 impl TryFrom<Vec<f64>> for Knots {
     type Error = Error;
 
@@ -19,7 +19,7 @@ impl TryFrom<Vec<f64>> for Knots {
 }
 
 impl Knots {
-    /// Checks the times (s); `what` names them in errors.
+    /// Validates the times (s); `what` names them in errors.
     ///
     /// # Errors
     /// [`Error::WrongLength`] for fewer than two, [`Error::NotFinite`], [`Error::OutOfRange`] if the first is not zero,
@@ -44,27 +44,27 @@ impl Knots {
         }
     }
 
-    /// The times (s).
+    /// Returns the knot times (s).
     pub fn times(&self) -> &[f64] {
         &self.0
     }
 
-    /// Number of segments: one less than the number of knots.
+    /// Returns the number of segments: one less than the number of knots.
     pub fn segments(&self) -> usize {
         self.0.len() - 1
     }
 
-    /// The last knot (s).
+    /// Returns the last knot (s).
     pub fn duration(&self) -> f64 {
         self.0[self.segments()]
     }
 
-    /// Duration of a segment (s).
+    /// Returns the duration of a segment (s).
     pub fn span(&self, segment: usize) -> f64 {
         self.0[segment + 1] - self.0[segment]
     }
 
-    /// The segment that contains time `t` (s, clamped to the knots), and the time since its start (s). A knot belongs
+    /// Finds the segment that contains time `t` (s, clamped to the knots), and the time since its start (s). A knot belongs
     /// to the segment that starts there.
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let t = t.clamp(0.0, self.duration());

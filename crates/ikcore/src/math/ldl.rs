@@ -1,21 +1,21 @@
-//! Small symmetric systems by LDL'.
+//! LDL' factorization of small symmetric systems.
 
 use super::arithmetic::Arithmetic;
 
-/// Pivots below this fraction of the matrix's trace count as zero: no step in that direction.
+/// Pivot below which a direction counts as singular, relative to the trace: the solution has no step along it.
 const SINGULAR: f64 = 1e-15;
 
-/// A = L D L' of a symmetric positive semi-definite matrix.
+/// Factorization A = L D L' of a symmetric positive semi-definite matrix.
 #[derive(Debug, Clone, Copy)]
 pub struct Ldl<const N: usize> {
-    /// L D in the lower triangle; the pivots D on the diagonal.
+    /// Product L D in the lower triangle, with the pivots D on the diagonal.
     scaled: [[f64; N]; N],
-    /// 1 / D; zero for pivots that count as zero.
+    /// Inverse pivots; zero for singular directions.
     inverse_pivots: [f64; N],
 }
 
 impl<const N: usize> Ldl<N> {
-    /// Factors the matrix with this lower triangle.
+    /// Factors the matrix, of which only the lower triangle is read.
     #[inline(always)]
     pub fn of<A: Arithmetic>(matrix: [[f64; N]; N]) -> Self {
         Self::eliminated::<A, 0>(matrix, []).0
@@ -44,7 +44,7 @@ impl<const N: usize> Ldl<N> {
         (Self { scaled, inverse_pivots }, right)
     }
 
-    /// Solves A z = b, without components of z along directions whose pivots count as zero.
+    /// Solves A z = b, without components of z along singular directions.
     #[inline(always)]
     pub fn solve<A: Arithmetic>(&self, mut b: [f64; N]) -> [f64; N] {
         for j in 0..N {
@@ -67,7 +67,7 @@ impl<const N: usize> Ldl<N> {
         z
     }
 
-    /// Pivot `j`.
+    /// Returns pivot `j`.
     #[inline(always)]
     pub fn pivot(&self, j: usize) -> f64 {
         self.scaled[j][j]
@@ -81,7 +81,7 @@ pub fn solve<A: Arithmetic, const N: usize>(matrix: [[f64; N]; N], b: [f64; N]) 
     ldl.substituted_back::<A>(b)
 }
 
-/// The sum of the diagonal.
+/// Returns the sum of the diagonal.
 #[inline(always)]
 pub fn trace<const N: usize>(matrix: &[[f64; N]; N]) -> f64 {
     (1..N).fold(matrix[0][0], |sum, i| sum + matrix[i][i])

@@ -1,26 +1,25 @@
-//! The natural logarithm without branches, so that the compiler vectorises it. For random draws: relative error below
-//! 1e-11.
+//! Branch-free natural logarithm, which the compiler vectorises. Used for random draws: relative error below 1e-11.
 
 use std::f64::consts::{LN_2, SQRT_2};
 
-/// The mantissa's bits.
+/// Bit mask of the mantissa.
 const MANTISSA: u64 = (1 << 52) - 1;
-/// The bits of 1.0: exponent zero.
+/// Bits of 1.0, whose exponent is zero.
 const ONE: u64 = 1.0_f64.to_bits();
-/// 2^52: for numbers of this size the lowest bit has the value one.
+/// Constant 2^52: the lowest bit of numbers of this size has the value one.
 const COUNTER: f64 = 4503599627370496.0;
 
-/// ln x of a normal positive x.
+/// Returns ln x of a normal positive x.
 #[inline(always)]
 pub fn ln(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = f64::from_bits((bits >> 52) | COUNTER.to_bits()) - COUNTER - 1023.0;
     let mantissa = f64::from_bits((bits & MANTISSA) | ONE);
-    // Scales the mantissa into [sqrt(1/2), sqrt(2)).
+    // Scale the mantissa into [sqrt(1/2), sqrt(2)).
     let large = mantissa >= SQRT_2;
     let m = if large { 0.5 * mantissa } else { mantissa };
     let k = if large { exponent + 1.0 } else { exponent };
-    // ln m = 2 artanh s, s = (m - 1) / (m + 1), |s| <= 0.172
+    // Series ln m = 2 artanh s, s = (m - 1) / (m + 1), |s| <= 0.172.
     let s = (m - 1.0) / (m + 1.0);
     let u = s * s;
     let series = 1.0

@@ -2,14 +2,16 @@
 //!
 //! Kernels are compiled with and without FMA (`arithmetic`).
 //!
-//! | files | what |
+//! | files | contents |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `columns` | columns of Jacobians |
-//! | `gram`, `ldl`, `box_step`, `block_step`, `row_step`, `secant`, `singular_values` | small linear systems, and the bounded step: in a box, of several tasks, beside rows |
+//! | `gram`, `ldl`, `singular_values` | small linear systems |
+//! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
+//! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
 
@@ -48,11 +50,11 @@ pub use columns::Columns;
 pub use frame::Frame;
 pub use knots::Knots;
 
-/// The largest number of independent joints, and of moving elements, of a robot.
+/// Largest number of independent joints, and of moving elements, of a robot.
 pub const MAX_DOF: usize = 64;
 
-/// Up to this number of joints no hot loop allocates: what grows with it is on the stack.
+/// Number of joints up to which scratch memory is on the stack, so that no hot loop allocates.
 pub const STACK_DOF: usize = 32;
 
-/// A rigid transform: rotation matrix and translation (m).
+/// Rigid transform: rotation matrix and translation (m).
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

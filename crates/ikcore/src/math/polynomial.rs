@@ -1,16 +1,16 @@
-//! Polynomials of low degree, as coefficients in ascending powers: p(x) = c\[0\] + c\[1\] x + c\[2\] x^2 + ...
+//! Polynomials of low degree, stored as coefficients in ascending powers: p(x) = c\[0\] + c\[1\] x + c\[2\] x^2 + ...
 
 use smallvec::SmallVec;
 
 /// Coefficients or roots of a polynomial up to degree 6, on the stack.
 pub type Short = SmallVec<[f64; 7]>;
 
-/// The value at `x`.
+/// Returns the value at `x`.
 pub fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |value, c| value * x + c)
 }
 
-/// Value, first and second derivative at `x`, in one Horner pass.
+/// Returns value, first and second derivative at `x`, in one Horner pass.
 pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
     let (mut value, mut slope, mut half_bend) = (0.0, 0.0, 0.0);
     for &c in coefficients.iter().rev() {
@@ -21,15 +21,15 @@ pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
     [value, slope, 2.0 * half_bend]
 }
 
-/// The coefficients of the derivative; none for a constant.
+/// Returns the coefficients of the derivative; none for a constant.
 pub fn derivative(coefficients: &[f64]) -> Short {
     coefficients.iter().enumerate().skip(1).map(|(power, c)| power as f64 * c).collect()
 }
 
-/// All distinct real roots in `[lower, upper]`, ascending; the two ends for the zero polynomial.
+/// Returns all distinct real roots in `[lower, upper]`, ascending; the two ends for the zero polynomial.
 ///
-/// Between the roots of its derivative a polynomial is monotone, so each such interval contains at most one root,
-/// bracketed by its ends. Two roots count as one if rounding hides the sign between them.
+/// A polynomial is monotone between the roots of its derivative, so each such interval contains at most one root, bracketed
+/// by its ends. Two roots count as one if rounding hides the sign between them.
 pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     let mut found = Short::new();
     let mut left = (lower, value_or_zero(coefficients, lower));
@@ -48,26 +48,26 @@ pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     found
 }
 
-/// The real roots of a + b x + c x^2 strictly inside `(lower, upper)`, ascending, in closed form.
+/// Returns the real roots of a + b x + c x^2 strictly inside `(lower, upper)`, ascending, in closed form.
 pub fn quadratic_roots(a: f64, b: f64, c: f64, lower: f64, upper: f64) -> SmallVec<[f64; 2]> {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return SmallVec::new();
     }
-    // Both roots from the half-sum without cancellation; for c = 0 only -a/b remains, the other is infinite.
+    // Both roots from the half-sum without cancellation; for c = 0 only -a/b remains, since the other is infinite.
     let half_sum = -0.5 * (b + discriminant.sqrt().copysign(b));
     let [first, second] = [half_sum / c, a / half_sum];
     let ordered = if second < first { [second, first] } else { [first, second] };
     ordered.into_iter().filter(|x| lower < *x && *x < upper).collect()
 }
 
-/// The largest magnitude on `[lower, upper]`: at an end, or where the derivative vanishes.
+/// Returns the largest magnitude on `[lower, upper]`: at an end, or where the derivative vanishes.
 pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
     let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
     candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
 }
 
-/// The smallest and the largest value on `[lower, upper]`.
+/// Returns the smallest and the largest value on `[lower, upper]`.
 pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
     let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
     candidates
@@ -85,16 +85,16 @@ fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     points
 }
 
-/// The value at `x`, or zero if it is within the rounding error of its terms.
+/// Returns the value at `x`, or zero if the value is within the rounding error of its terms.
 fn value_or_zero(coefficients: &[f64], x: f64) -> f64 {
     let value = evaluate(coefficients, x)[0];
     let terms = coefficients.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
     if value.abs() <= 4.0 * f64::EPSILON * terms { 0.0 } else { value }
 }
 
-/// The root between two points with different signs, to the last bits.
+/// Finds the root between two points with different signs, to the last bits.
 ///
-/// Newton steps, replaced by bisection if a step leaves the bracket or is longer than half the previous step.
+/// Newton's method, replaced by bisection where a step leaves the bracket or is longer than half the previous step.
 fn bracketed_root(coefficients: &[f64], mut lower: f64, mut upper: f64) -> f64 {
     let rising = evaluate(coefficients, lower)[0] < 0.0;
     let mut last_step = upper - lower;

@@ -1,4 +1,4 @@
-//! Rigid transforms from their parts, and the check of 4x4 matrices.
+//! Construction of rigid transforms, and validation of 4x4 matrices.
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -8,28 +8,28 @@ use crate::error::{Error, Result, require_finite};
 /// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-6;
 
-/// A transform from its parts; `rotation` must be a rotation matrix.
+/// Builds a transform from its parts; `rotation` must be a rotation matrix.
 pub fn from_parts(translation: [f64; 3], rotation: Matrix3<f64>) -> Pose {
     Pose::from_parts(Translation3::from(translation), Rotation3::from_matrix_unchecked(rotation))
 }
 
-/// A pure translation (m).
+/// Returns a pure translation (m).
 pub fn translation(x: f64, y: f64, z: f64) -> Pose {
     from_parts([x, y, z], Matrix3::identity())
 }
 
-/// A pure rotation by `angle` (rad) about a unit `axis`.
+/// Returns a pure rotation by `angle` (rad) about a unit `axis`.
 pub fn rotation(axis: Vector3<f64>, angle: f64) -> Pose {
     let axis = nalgebra::Unit::new_unchecked(axis);
     Pose::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&axis, angle))
 }
 
-/// The rotation of fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+/// Builds a transform from fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
 pub fn from_rpy(rpy: [f64; 3], translation: [f64; 3]) -> Pose {
     Pose::from_parts(Translation3::from(translation), Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]))
 }
 
-/// The rotation of a quaternion (x, y, z, w) of any nonzero length.
+/// Builds a transform from a quaternion (x, y, z, w) of any nonzero length.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for a zero quaternion.
@@ -44,12 +44,12 @@ pub fn from_quaternion(xyzw: [f64; 4], translation: [f64; 3]) -> Result<Pose> {
     Ok(Pose::from_parts(Translation3::from(translation), rotation))
 }
 
-/// The rotation by the length of a rotation vector (rad) about its direction.
+/// Builds a transform from a rotation vector (rad), whose length is the angle about its direction.
 pub fn from_rotation_vector(rotation_vector: [f64; 3], translation: [f64; 3]) -> Pose {
     Pose::from_parts(Translation3::from(translation), Rotation3::new(Vector3::from(rotation_vector)))
 }
 
-/// The rotation of a 3x3 matrix; `what` names it in errors.
+/// Builds a transform from a 3x3 rotation matrix; `what` names the matrix in errors.
 ///
 /// # Errors
 /// As [`from_matrix`].
@@ -59,25 +59,25 @@ pub fn from_rotation_matrix(what: &str, rotation: Matrix3<f64>, translation: [f6
     from_matrix(what, &matrix)
 }
 
-/// The same pose, checked to be finite.
+/// Checks that a pose is finite.
 ///
 /// # Errors
-/// [`Error::NotFinite`]; `what` names it.
+/// [`Error::NotFinite`]; `what` names the pose.
 pub fn checked(what: &str, pose: Pose) -> Result<Pose> {
     require_finite(what, pose.to_homogeneous().as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     Ok(pose)
 }
 
-/// The same point or angles, checked to be finite.
+/// Checks that a point or three angles are finite.
 ///
 /// # Errors
-/// [`Error::NotFinite`]; `what` names them.
+/// [`Error::NotFinite`]; `what` names the values.
 pub fn finite(what: &str, values: [f64; 3]) -> Result<[f64; 3]> {
     require_finite(what, &values, |i| format!("entry {i}"))?;
     Ok(values)
 }
 
-/// The 16 numbers of a pose, in row-major order.
+/// Returns the 16 entries of a pose in row-major order.
 pub fn rows(pose: &Pose) -> [f64; 16] {
     let (r, p) = (pose.rotation.matrix(), &pose.translation);
     [
@@ -88,16 +88,16 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
     ]
 }
 
-/// Reads a homogeneous 4x4 matrix; `what` names it in errors.
+/// Reads a homogeneous 4x4 matrix; `what` names the matrix in errors.
 ///
 /// # Errors
-/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation
-/// is not orthonormal to 1e-6 or is a reflection. Deviations within 1e-6 are orthonormalised.
+/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation is not
+/// orthonormal to 1e-6 or is a reflection. Deviations within 1e-6 are orthonormalised.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     check_matrix(what, matrix).map(|()| from_checked(matrix))
 }
 
-/// Checks that a matrix is a pose; `what` names it in errors.
+/// Checks that a matrix is a pose; `what` names the matrix in errors.
 ///
 /// # Errors
 /// As [`from_matrix`].
@@ -120,7 +120,7 @@ pub fn check_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<()> {
     Ok(())
 }
 
-/// The pose of a matrix that [`check_matrix`] accepts, orthonormalised.
+/// Returns the pose of a matrix accepted by [`check_matrix`], orthonormalised.
 #[inline]
 pub fn from_checked(matrix: &Matrix4<f64>) -> Pose {
     let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();

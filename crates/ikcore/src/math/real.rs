@@ -1,6 +1,6 @@
-//! The number type of kernels that are written once for one number, for four, and for eight of single precision.
+//! Number type of kernels written once for one double, four doubles, or eight singles.
 //!
-//! Each lane of the four performs the operations of the one in the same order, so both agree bit for bit.
+//! Each lane of four doubles performs the operations of one double in the same order, so both agree bit for bit.
 
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -10,59 +10,59 @@ use super::comparison::{larger, smaller};
 use super::f32x8::F32x8;
 use super::f64x4::F64x4;
 
-/// A real number, or one per lane.
+/// Real number, or several in SIMD lanes.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Its stored form.
+    /// Storage type.
     type Stored: Copy;
 
     /// Number of lanes.
     const LANES: usize;
 
-    /// From its stored form.
+    /// Loads from storage.
     fn of(stored: Self::Stored) -> Self;
 
-    /// Its stored form.
+    /// Returns the storage form.
     fn stored(self) -> Self::Stored;
 
-    /// The same number in all lanes.
+    /// Broadcasts a number to all lanes.
     fn splat(value: f64) -> Self;
 
-    /// The number in lane `lane`.
+    /// Returns the number in lane `lane`.
     fn lane(self, lane: usize) -> f64;
 
-    /// The same with `value` in lane `lane`.
+    /// Replaces the number in lane `lane`.
     fn with_lane(self, lane: usize, value: f64) -> Self;
 
-    /// self * factor + addend.
+    /// Returns self * factor + addend.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
 
-    /// The square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
 
-    /// `then` if self < limit, else `otherwise` (also for NaN).
+    /// Returns `then` if self < limit, else `otherwise` (also for NaN).
     fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self;
 
-    /// `then` if self = other, else `otherwise` (also for NaN).
+    /// Returns `then` if self = other, else `otherwise` (also for NaN).
     fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
 
-    /// The larger of the two; `other` if either is NaN.
+    /// Returns the larger number; `other` if either is NaN.
     fn larger(self, other: Self) -> Self;
 
-    /// The smaller of the two; `other` if either is NaN.
+    /// Returns the smaller number; `other` if either is NaN.
     fn smaller(self, other: Self) -> Self;
 }
 
-/// One number, by arithmetic `A`.
+/// One double, with arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
 pub struct One<A>(f64, PhantomData<A>);
 
-/// Four numbers, one per lane, by arithmetic `A`.
+/// Four doubles in SIMD lanes, with arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
 pub struct Four<A>(F64x4, PhantomData<A>);
 
-/// Eight numbers of single precision, one per lane, by arithmetic `A`.
+/// Eight singles in SIMD lanes, with arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
 pub struct Eight<A>(F32x8, PhantomData<A>);
 
@@ -252,14 +252,14 @@ impl<A: Arithmetic> Real for Eight<A> {
 }
 
 impl<A: Arithmetic> Eight<A> {
-    /// The lanes in which self >= limit does not hold (also for NaN), one bit each.
+    /// Returns a bit mask of the lanes in which self >= limit does not hold (also for NaN).
     #[inline(always)]
     pub fn not_at_least(self, limit: Self) -> u32 {
         A::not_at_least_x8(self.0, limit.0)
     }
 }
 
-/// Implements `$operator` for [`One`] by f64, for [`Four`] and [`Eight`] by the arithmetic.
+/// Implements `$operator`: for [`One`] by f64, for [`Four`] and [`Eight`] by the arithmetic.
 macro_rules! operator {
     ($operator:ident, $method:ident, $of_four:ident, $of_eight:ident) => {
         impl<A: Arithmetic> $operator for One<A> {

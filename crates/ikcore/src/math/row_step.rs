@@ -1,54 +1,56 @@
-//! The bounded step beside rows: damped least squares in a box, with linear inequalities.
+//! Damped least-squares step in a box with linear inequalities (rows).
 //!
-//! Minimises |residual + J (x - start)|^2 + lambda |x - start|^2 over `lower` <= x <= `upper`, rows g'x >= least and held rows g'x = least.
-//! The dual is a least-squares problem in the multipliers, none of them negative but those of held rows, which the active-set method of
-//! Lawson and Hanson ("Solving Least Squares Problems", 1974, chapter 23) solves in finitely many exchanges. Rows are a little soft: if
-//! no point of the box keeps them all, each falls short by as little as the others allow.
+//! Minimises |residual + J (x - start)|^2 + lambda |x - start|^2 over `lower` <= x <= `upper`, subject to rows g'x >= least
+//! and held rows g'x = least. The dual is a least-squares problem in the multipliers, which are nonnegative except for held
+//! rows; the active-set method of Lawson and Hanson ("Solving Least Squares Problems", 1974, chapter 23) solves it in
+//! finitely many exchanges. Rows are slightly compliant: if no point of the box satisfies all rows, the violations are spread
+//! and as small as possible.
 
 use super::MAX_DOF;
 use super::block_step::TaskRows;
 use super::vector::dot;
 
-/// Violations below this (rad, m) count as rounding.
+/// Tolerance for violations by rounding (rad, m).
 const ROUNDING: f64 = 1e-12;
 
-/// Softness of a row that comes before others.
+/// Compliance of a row of high priority.
 pub const SOFTNESS: f64 = 1e-9;
 
-/// Exchanges of the active set per constraint; a few are enough.
+/// Largest number of active-set exchanges per constraint; a few are usual.
 const EXCHANGES: usize = 3;
 
-/// A linear inequality, `gradient`'x >= `least`, or, held, the equation.
+/// Linear inequality, `gradient`'x >= `least`; as a held row, the equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// One entry per joint; further ones do not count.
+    /// Gradient g, one entry per joint; further entries are ignored.
     pub gradient: [f64; MAX_DOF],
-    /// What the row keeps at least.
+    /// Lower bound b of g'x >= b.
     pub least: f64,
-    /// In use it gives way by this fraction of the way that its multiplier moves the point along it.
+    /// Compliance of an active row: its bound is relaxed by this fraction of the displacement along g that its multiplier
+    /// causes.
     pub softness: f64,
 }
 
-/// A step of damped least squares in a box, beside rows.
+/// Damped least-squares step in a box with linear inequalities.
 #[derive(Debug, Clone, Copy)]
 pub struct RowStep<'a> {
-    /// Jacobians and residuals to be removed by the step; J has their rows one after another.
+    /// Jacobians and residuals to be removed by the step; J stacks their rows.
     pub tasks: &'a [TaskRows<'a>],
-    /// The damping, positive.
+    /// Damping factor, positive.
     pub lambda: f64,
-    /// The current point.
+    /// Current point.
     pub start: &'a [f64],
     /// Lower bounds, one per entry of `start`.
     pub lower: &'a [f64],
     /// Upper bounds, one per entry of `start`.
     pub upper: &'a [f64],
-    /// The inequalities.
+    /// Inequality constraints.
     pub rows: &'a [Row],
-    /// The equations.
+    /// Equality constraints.
     pub held: &'a [Row],
 }
 
-/// A constraint in use.
+/// Reference to a bound or a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Constraint {
     Lower(usize),
@@ -57,25 +59,25 @@ enum Constraint {
     Held(usize),
 }
 
-/// A constraint of the active set.
+/// Member of the active set.
 #[derive(Debug, Clone)]
 struct Active {
     constraint: Constraint,
     multiplier: f64,
-    /// H^-1 a, where the constraint is a'x >= b.
+    /// Step H^-1 a per unit multiplier of the constraint a'x >= b.
     along: [f64; MAX_DOF],
 }
 
-/// Solves row steps; owns its scratch.
+/// Active-set solver for row steps; owns its scratch memory.
 #[derive(Debug, Default)]
 pub struct RowSolver {
-    /// Lower Cholesky factor of H = J'J + lambda I, by rows of n.
+    /// Lower Cholesky factor of H = J'J + lambda I, stored by rows of length n.
     factor: Vec<f64>,
     active: Vec<Active>,
-    /// Rows of the system of the multipliers, then its right-hand side.
+    /// System matrix of the multipliers, by rows, overwritten by its Cholesky factor.
     system: Vec<f64>,
     trial: Vec<f64>,
-    /// The minimum without constraints.
+    /// Unconstrained minimum.
     free: Vec<f64>,
 }
 
@@ -89,7 +91,7 @@ impl RowStep<'_> {
         }
     }
 
-    /// a'x of a constraint a'x >= b.
+    /// Returns a'x for a constraint a'x >= b.
     fn product(&self, constraint: Constraint, x: &[f64]) -> f64 {
         match constraint {
             Constraint::Lower(j) => x[j],
@@ -99,7 +101,7 @@ impl RowStep<'_> {
         }
     }
 
-    /// The constraint that `x` violates most, of those not in use.
+    /// Returns the inactive constraint that `x` violates most.
     fn most_violated(&self, x: &[f64], active: &[Active]) -> Option<Constraint> {
         let bounds = (0..x.len()).flat_map(|j| [Constraint::Lower(j), Constraint::Upper(j)]);
         let constraints = bounds.chain((0..self.rows.len()).map(Constraint::Row));
@@ -115,7 +117,7 @@ impl RowStep<'_> {
 }
 
 impl RowSolver {
-    /// With room for steps of `n` entries and this many rows.
+    /// Allocates for steps of `n` entries and this many rows.
     pub fn with_room(n: usize, rows: usize) -> Self {
         let most = n + rows;
         Self {
@@ -127,7 +129,7 @@ impl RowSolver {
         }
     }
 
-    /// Writes the point after the step into `out`. Returns whether a row holds it back.
+    /// Writes the point after the step into `out`. Returns whether a row is active.
     pub fn write(&mut self, step: &RowStep<'_>, out: &mut [f64]) -> bool {
         let n = step.start.len();
         self.factorize(step);
@@ -159,7 +161,7 @@ impl RowSolver {
         self.active.iter().any(|active| matches!(active.constraint, Constraint::Row(_)))
     }
 
-    /// Writes the point of the multipliers.
+    /// Writes the point given by the current multipliers.
     fn write_point(&self, out: &mut [f64]) {
         out.copy_from_slice(&self.free);
         for Active { multiplier, along, .. } in &self.active {
@@ -167,7 +169,7 @@ impl RowSolver {
         }
     }
 
-    /// H = L L'.
+    /// Computes the Cholesky factorization H = L L'.
     fn factorize(&mut self, step: &RowStep<'_>) {
         let n = step.start.len();
         self.factor.clear();
@@ -195,11 +197,12 @@ impl RowSolver {
         self.active.push(Active { constraint, multiplier: 0.0, along });
     }
 
-    /// Moves the multipliers to where all constraints in use hold exactly; those that would become negative leave, but held ones.
+    /// Moves the multipliers until all active constraints hold exactly; constraints whose multiplier would become negative
+    /// leave the active set, except held rows.
     fn settle(&mut self, step: &RowStep<'_>) {
         while !self.active.is_empty() {
             self.solve_for_multipliers(step);
-            // The first that would become negative, and the fraction of the way until it does.
+            // First multiplier to become negative, and the fraction of the step at which it does.
             let mut first = (1.0, None);
             for (i, (active, trial)) in self.active.iter().zip(&self.trial).enumerate() {
                 let fraction = active.multiplier / (active.multiplier - trial).max(f64::MIN_POSITIVE);
@@ -219,7 +222,7 @@ impl RowSolver {
         }
     }
 
-    /// Sets `trial` to the multipliers with which all constraints in use hold exactly.
+    /// Sets `trial` to the multipliers with which all active constraints hold exactly.
     fn solve_for_multipliers(&mut self, step: &RowStep<'_>) {
         let (m, n) = (self.active.len(), step.start.len());
         self.system.clear();
@@ -307,7 +310,7 @@ mod tests {
             residual.map(|r| r * r).sum::<f64>() + LAMBDA * x.iter().map(|x| x * x).sum::<f64>()
         }
 
-        /// All constraints as a'x >= b.
+        /// Returns all inequality constraints as a'x >= b.
         fn constraints(&self) -> Vec<(Vec<f64>, f64)> {
             let n = self.columns.len();
             let unit = |j: usize, sign: f64| (0..n).map(|k| if k == j { sign } else { 0.0 }).collect::<Vec<f64>>();
@@ -317,7 +320,8 @@ mod tests {
             all
         }
 
-        /// The least cost over all points at which the held rows and some set of constraints are met exactly: tries each set of up to n.
+        /// Returns the least cost over all points at which the held rows and a subset of the constraints hold exactly; tries
+        /// every subset of up to n constraints.
         fn by_enumeration(&self) -> Option<f64> {
             let n = self.columns.len();
             let (all, held) = (self.constraints(), self.held.iter().map(|row| (row.gradient[..n].to_vec(), row.least)));
@@ -346,7 +350,7 @@ mod tests {
                 }
                 let Some(solution) = kkt.lu().solve(&right) else { continue };
                 let x: Vec<f64> = solution.iter().take(n).copied().collect();
-                // Of constraints that contradict each other the factors are rounding.
+                // Contradictory constraints yield multipliers that are pure rounding.
                 let met = held.iter().all(|(a, b)| (dot(a, &x) - b).abs() < 1e-9);
                 if met && all.iter().all(|(a, b)| dot(a, &x) >= b - 1e-9) {
                     let cost = self.cost(&x);
@@ -394,7 +398,7 @@ mod tests {
                 for Row { gradient, least, .. } in &case.held {
                     prop_assert!((dot(gradient, &x) - least).abs() < 1e-5, "{x:?} {gradient:?} {least}");
                 }
-                // Rows that hardly leave a point give way a little, which costs less.
+                // Compliant rows that barely constrain a point give way slightly, which lowers the cost.
                 let excess = (case.cost(&x) - least) / (1.0 + least);
                 prop_assert!(-1e-4 < excess && excess < 1e-5, "{} {least}", case.cost(&x));
             }

@@ -2,15 +2,15 @@
 
 use std::f64::consts::TAU;
 
-/// A position limit beyond this many turns counts as none: angles that large have lost the digits a tip needs.
+/// Position limit (rad, m) beyond which a joint counts as unlimited: angles that large have lost the digits that a tip needs.
 pub const UNLIMITED: f64 = 1e6 * TAU;
 
-/// The range with limits beyond [`UNLIMITED`] (rad, m) left open.
+/// Opens limits beyond [`UNLIMITED`] (rad, m).
 pub fn opened(lower: f64, upper: f64) -> (f64, f64) {
     (if lower < -UNLIMITED { f64::NEG_INFINITY } else { lower }, if upper > UNLIMITED { f64::INFINITY } else { upper })
 }
 
-/// The range itself if it is finite; an unbounded side ends 2 `reach` from the other bound, or `reach` from zero.
+/// Returns a finite range: an unbounded side ends 2 `reach` from the other bound, or `reach` from zero if both are unbounded.
 pub fn finite(lower: f64, upper: f64, reach: f64) -> (f64, f64) {
     match (lower.is_finite(), upper.is_finite()) {
         (true, true) => (lower, upper),

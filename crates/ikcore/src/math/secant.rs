@@ -1,4 +1,4 @@
-//! A Jacobian estimated from differences: columns from antennae, then a rank-one update after every step.
+//! Jacobian estimated from differences: its columns from probing steps (antennae), then a rank-one update after every step.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -7,10 +7,10 @@ use super::block_step::{BlockStep, TaskRows};
 use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
 
-/// Shorter steps measure only rounding.
+/// Step length below which a difference measures only rounding.
 const SHORTEST: f64 = 1e-12;
 
-/// An estimate of dr/dx, by columns.
+/// Estimate of the Jacobian dr/dx, by columns.
 #[derive(Debug, Clone, Default)]
 pub struct Secant {
     columns: Columns,
@@ -23,7 +23,7 @@ impl Secant {
         self.columns[j] = difference.map(|change| change / length);
     }
 
-    /// The predicted change of the first `R` rows of r by a step dx: J dx.
+    /// Predicts the change J dx of the first `R` rows of r by a step dx.
     pub fn predict<const R: usize>(&self, dx: impl Iterator<Item = f64>) -> [f64; R] {
         let mut sum = [0.0; R];
         for (column, dx) in self.columns.iter().zip(dx) {
@@ -32,8 +32,8 @@ impl Secant {
         sum
     }
 
-    /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2,
-    /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `fraction` of it if r is noisy.
+    /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + fraction surprise dx' / |dx|^2. With
+    /// fraction 1 it is the smallest change of J that explains the step (Broyden 1965, eq. 4.5); a noisy r takes less.
     pub fn learn<const R: usize>(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], fraction: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
@@ -46,7 +46,7 @@ impl Secant {
         }
     }
 
-    /// The squared size of the first `n` columns.
+    /// Returns the squared Frobenius norm of the first `n` columns.
     pub fn size(&self, n: usize) -> f64 {
         squared_size(&self.columns[..n])
     }
@@ -58,12 +58,12 @@ impl Secant {
     }
 }
 
-/// Jacobians of several tasks, estimated together.
+/// Jacobian estimates of several tasks.
 #[derive(Debug, Clone, Default)]
 pub struct Secants(SmallVec<[Secant; 1]>);
 
 impl Secants {
-    /// Of this many tasks, with Jacobians of zero.
+    /// Creates zero Jacobians for this many tasks.
     pub fn new(tasks: usize) -> Self {
         Self(smallvec![Secant::default(); tasks])
     }
@@ -103,8 +103,8 @@ impl Secants {
     }
 }
 
-/// Signed length of an antenna from `x` in \[`lower`, `upper`\]: `length` to a side that has room for it, else up to
-/// the farther bound; zero if there is no room on either side.
+/// Returns the signed length of an antenna from `x` in \[`lower`, `upper`\]: `length` towards a side with enough room, else
+/// up to the farther bound; zero if there is no room on either side.
 pub fn antenna(x: f64, length: f64, lower: f64, upper: f64) -> f64 {
     let (below, above) = ((x - lower).max(0.0), (upper - x).max(0.0));
     if above >= length || above >= below { length.min(above) } else { -length.min(below) }

@@ -1,14 +1,15 @@
-//! Sine and cosine of a whole array at once, without branches so that the compiler vectorises it.
+//! Branch-free sine and cosine of whole arrays, which the compiler vectorises.
 //!
-//! Reduction to [-pi/4, pi/4] by Cody and Waite (pi/2 in three parts), then minimax polynomials fitted for this file by
-//! Remez exchange; relative error of the polynomials 4e-18, of the results at most 1 ulp beyond rounding.
+//! Angles are reduced to [-pi/4, pi/4] by the method of Cody and Waite (pi/2 in three parts); the minimax polynomials were
+//! fitted for this file by Remez exchange. The relative error of the polynomials is 4e-18, that of the results at most 1 ulp
+//! beyond rounding.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
 
 use super::arithmetic::Arithmetic;
 use super::real::{Eight, Real};
 
-/// sin x = x + x^3 S(x^2).
+/// Polynomial S of sin x = x + x^3 S(x^2).
 const S: [f64; 6] = [
     -0.16666666666666632,
     0.008333333333322413,
@@ -17,7 +18,7 @@ const S: [f64; 6] = [
     -2.5050758092068576e-08,
     1.5896794445879583e-10,
 ];
-/// cos x = 1 - x^2/2 + x^4 C(x^2).
+/// Polynomial C of cos x = 1 - x^2/2 + x^4 C(x^2).
 const C: [f64; 6] = [
     0.0416666666666666,
     -0.0013888888888874125,
@@ -26,11 +27,11 @@ const C: [f64; 6] = [
     2.0875723290374855e-09,
     -1.1359648615922363e-11,
 ];
-/// pi/2 in three parts; the first two have 33 bits, so that their products with a quadrant below 2^19 are exact.
+/// Three parts of pi/2; the first two have 33 bits, so that their products with a quadrant below 2^19 are exact.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
-/// Largest angle (rad) for which that holds; beyond it the standard library is used.
+/// Largest angle (rad) for which these products are exact; larger angles use the standard library.
 const LARGEST: f64 = 8e5;
-/// 1.5 * 2^52: adding it rounds to an integer, which is then in the lowest bits.
+/// Constant 1.5 * 2^52: adding it rounds to an integer, which is then in the lowest bits.
 const ROUNDER: f64 = 6755399441055744.0;
 
 /// Writes sines and cosines of `angles` (rad); all three have the same length.
@@ -39,7 +40,7 @@ pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f
     let mut all_small = true;
     for i in 0..angles.len() {
         (sines[i], cosines[i]) = sincos_one::<A>(angles[i]);
-        // False for NaN too; the standard library returns NaN for it.
+        // False for NaN too; the standard library then returns NaN.
         all_small &= angles[i].abs() <= LARGEST;
     }
     if !all_small {
@@ -49,7 +50,7 @@ pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f
     }
 }
 
-/// [`sincos`] for W columns of angles side by side, bit-identical to each column alone.
+/// Computes [`sincos`] for W columns of angles, bit-identical to each column alone.
 #[inline(always)]
 pub fn sincos_by_column<A: Arithmetic, const W: usize>(
     angles: &[[f64; W]],
@@ -97,18 +98,18 @@ fn horner<A: Arithmetic>(coefficients: &[f64; 6], u: f64) -> f64 {
     rest.iter().rev().fold(*last, |sum, c| A::mul_add(sum, u, *c))
 }
 
-/// 2 pi in two parts; the first has few bits, so that its products with small integers are exact in single precision.
+/// Two parts of 2 pi; the first has few bits, so that its products with small integers are exact in single precision.
 const TURN: [f64; 2] = [6.28125, 0.001_935_307_179_586_232];
-/// 1.5 * 2^23: adding it rounds a number of single precision to an integer.
+/// Constant 1.5 * 2^23: adding it rounds a single-precision number to an integer.
 const SINGLE_ROUNDER: f64 = 12_582_912.0;
 
-/// Sine and cosine of angles of a few turns (rad) to 1e-6, in single precision.
+/// Returns sine and cosine of angles of a few turns (rad), to 1e-6 in single precision.
 #[inline(always)]
 pub fn sincos_eight<A: Arithmetic>(x: Eight<A>) -> (Eight<A>, Eight<A>) {
     let splat = Eight::<A>::splat;
     let turns = x.mul_add(splat(0.5 * FRAC_1_PI), splat(SINGLE_ROUNDER)) - splat(SINGLE_ROUNDER);
     let r = turns.mul_add(splat(-TURN[1]), turns.mul_add(splat(-TURN[0]), x));
-    // Of half the angle, which is at most a quarter turn, by Taylor's series.
+    // Taylor series at half the angle, which is at most a quarter turn.
     let t = r * splat(0.5);
     let u = t * t;
     let mut sine = splat(1.0 / 6_227_020_800.0);
@@ -122,7 +123,7 @@ pub fn sincos_eight<A: Arithmetic>(x: Eight<A>) -> (Eight<A>, Eight<A>) {
     (doubled * cosine, (-doubled).mul_add(sine, splat(1.0)))
 }
 
-/// Coefficients of sin(x) / x and cos(x) below the leading ones, in powers of x^2.
+/// Taylor coefficients of sin(x) / x and cos(x) after the leading one, in descending powers of x^2.
 const SERIES: [(f64, f64); 6] = [
     (-1.0 / 39_916_800.0, -1.0 / 3_628_800.0),
     (1.0 / 362_880.0, 1.0 / 40_320.0),

@@ -1,25 +1,25 @@
-//! Singular values of a matrix of at most six rows, without allocation: one-sided Jacobi rotations (Hestenes 1958) make
-//! its rows orthogonal. Small values keep their relative accuracy, which squaring the matrix would lose.
+//! Singular values of a matrix with at most six rows, without allocation: one-sided Jacobi rotations (Hestenes 1958) make its
+//! rows orthogonal. Small values keep their relative accuracy, which squaring the matrix would lose.
 
 use super::MAX_DOF;
 use super::box_step::ROWS;
 use super::vector::dot;
 
-/// Rows whose cosine is below this count as orthogonal.
+/// Cosine below which two rows count as orthogonal.
 const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
 
-/// Rows shorter than this fraction of the longest count as rounding.
+/// Length below which a row counts as rounding, relative to the longest row.
 const NOTHING: f64 = 1e-14;
 
 /// Maximum number of sweeps. Convergence is quadratic; six sweeps are typical.
 const SWEEPS: usize = 30;
 
-/// J = sum of length\[i\] left\[i\] right\[i\]', largest first.
+/// Decomposition J = sum of length\[i\] left\[i\] right\[i\]', largest first.
 #[derive(Debug, Clone)]
 pub struct SingularValues {
-    /// The singular values; zero beyond the rank.
+    /// Singular values; zero beyond the rank.
     pub lengths: [f64; ROWS],
-    /// Left singular vectors, one entry per row of the matrix, orthogonal to each other.
+    /// Left singular vectors, one entry per row of the matrix, mutually orthogonal.
     pub left: [[f64; ROWS]; ROWS],
     /// Right singular vectors, one entry per column of the matrix; zero for zero singular values.
     pub right: [[f64; MAX_DOF]; ROWS],
@@ -77,7 +77,7 @@ fn turn_apart(rows: &mut [[f64; MAX_DOF]; ROWS], left: &mut [[f64; ROWS]; ROWS],
     if shorter <= NOTHING * NOTHING * longer || product.abs() <= ORTHOGONAL * (shorter * longer).sqrt() {
         return false;
     }
-    // The smaller root of t^2 + 2 zeta t - 1 = 0: the rotation by less than 45 degrees.
+    // Smaller root of t^2 + 2 zeta t - 1 = 0: the rotation by less than 45 degrees.
     let zeta = (squared_q - squared_p) / (2.0 * product);
     let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
     let cosine = 1.0 / tangent.hypot(1.0);
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn a_value_ten_decades_below_the_largest_keeps_its_digits() {
         let tiny = 3.25e-10;
-        // Rows e1 + e2 and (1 - tiny) of the same plus what makes the second singular value tiny.
+        // Matrix with a second singular value equal to `tiny`.
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, tiny, 0.0, 0.0, 0.0, 0.0]];
         let found = SingularValues::of(&columns);
         assert_eq!(found.lengths[..3], [1.0, tiny, 0.0]);

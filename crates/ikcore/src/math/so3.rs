@@ -1,4 +1,4 @@
-//! Rotations: the logarithm and its Jacobian, accurate from zero to half a turn.
+//! Logarithm of rotations and its Jacobian, accurate from zero to half a turn.
 
 use super::Frame;
 use super::arctangent::angle_of;
@@ -6,23 +6,23 @@ use super::arithmetic::NoFma;
 use super::real::{One, Real};
 use super::vec3::Vec3;
 
-/// Below this angle (rad), series replace quotients that would lose digits.
+/// Angle (rad) below which series replace quotients that would lose digits.
 const SMALL: f64 = 1e-4;
 
-/// Below this cosine a rotation counts as near half a turn.
+/// Cosine below which a rotation counts as near half a turn.
 const NEAR_HALF_TURN: f64 = -0.9;
 
-/// The columns of rotations: their axes in base coordinates.
+/// Columns of rotations: their axes in base coordinates.
 pub type Axes<R> = [Vec3<R>; 3];
 
-/// The axes of `frame`.
+/// Returns the axes of `frame`.
 #[inline(always)]
 pub fn axes_of(frame: &Frame) -> Axes<One<NoFma>> {
     let [x, y, z] = &frame.axes;
     [Vec3::of(x), Vec3::of(y), Vec3::of(z)]
 }
 
-/// Returns the rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the rotation
+/// Returns the rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d the axes of `target`: the rotation
 /// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
@@ -30,7 +30,7 @@ pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
     Turn::between(&target, &frame).vector(&target, &frame).stored()
 }
 
-/// [`rotation_between`], and its derivative with respect to a small rotation applied on the left.
+/// Returns [`rotation_between`], and its derivative with respect to a small rotation applied on the left.
 #[inline(always)]
 pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec3<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
@@ -38,9 +38,9 @@ pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec
     (phi, InverseLeftJacobian::at(phi, turn.half_cotangent()))
 }
 
-/// R R_d', given by sine and cosine of its angle theta.
+/// Rotation R R_d', given by sine and cosine of its angle theta.
 struct Turn<R> {
-    /// sin(theta), times the axis.
+    /// Vector sin(theta) times the axis.
     sine_axis: Vec3<R>,
     sine: R,
     cosine: R,
@@ -49,7 +49,7 @@ struct Turn<R> {
 impl<R: Real> Turn<R> {
     #[inline(always)]
     fn between(target: &Axes<R>, frame: &Axes<R>) -> Self {
-        // With R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
+        // Identities for R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
         // antisymmetric part, sin(theta) axis, is half the sum of d_k x r_k.
         let half = R::splat(0.5);
         let ([dx, dy, dz], [rx, ry, rz]) = (target, frame);
@@ -76,7 +76,7 @@ impl<R: Real> Turn<R> {
         vector
     }
 
-    /// cot(theta/2), by the quotient without cancellation; infinite for the identity.
+    /// Returns cot(theta/2), by the quotient without cancellation; infinite for the identity.
     #[inline(always)]
     fn half_cotangent(&self) -> R {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -85,8 +85,8 @@ impl<R: Real> Turn<R> {
     }
 }
 
-/// Near half a turn the antisymmetric part vanishes: the axis comes from the symmetric part,
-/// (R R_d' + R_d R')/2 = cos I + (1 - cos) a a'.
+/// Computes the rotation vector near half a turn, where the antisymmetric part vanishes: the axis comes from the symmetric
+/// part, (R R_d' + R_d R')/2 = cos I + (1 - cos) a a'.
 #[cold]
 fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sine_axis: &[f64; 3]) -> [f64; 3] {
     let entry = |i: usize, j: usize| -> f64 { (0..3).map(|k| frame[k][i] * target[k][j]).sum() };
@@ -103,15 +103,16 @@ fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sin
     axis
 }
 
-/// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small
-/// rotation applied on the left.
+/// Inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small rotation
+/// applied on the left.
 #[derive(Debug, Clone, Copy)]
 pub struct InverseLeftJacobian<R> {
     columns: [Vec3<R>; 3],
 }
 
 impl<R: Real> InverseLeftJacobian<R> {
-    /// I - \[phi\]/2 + quadratic \[phi\]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
+    /// Computes I - \[phi\]/2 + quadratic \[phi\]^2 at the rotation vector `phi` (rad), given the cotangent of half its
+    /// length.
     #[inline(always)]
     fn at(phi: Vec3<R>, half_cotangent: R) -> Self {
         let (half, one) = (R::splat(0.5), R::splat(1.0));
@@ -120,7 +121,7 @@ impl<R: Real> InverseLeftJacobian<R> {
         let series = R::splat(1.0 / 12.0) + squared * (R::splat(1.0 / 720.0) + squared / R::splat(30240.0));
         let quotient = (one - half * squared.sqrt() * half_cotangent) / squared;
         let quadratic = squared.choose_below(R::splat(SMALL), series, quotient);
-        // [phi]^2 = phi phi' - |phi|^2 I
+        // Identity [phi]^2 = phi phi' - |phi|^2 I.
         let diagonal = one - quadratic * squared;
         let [qx, qy, qz] = [quadratic * x, quadratic * y, quadratic * z];
         let [xy, yz, zx] = [qx * y, qy * z, qz * x];
@@ -142,11 +143,11 @@ impl<R: Real> InverseLeftJacobian<R> {
     }
 }
 
-/// `v` rotated by the rotation vector `phi` (rad): Rodrigues' formula.
+/// Rotates `v` by the rotation vector `phi` (rad), by Rodrigues' formula.
 #[inline]
 pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
     let squared = dot(phi, phi);
-    // sin(x) / x and (1 - cos x) / x^2.
+    // Coefficients sin(x) / x and (1 - cos x) / x^2.
     let (first, second) = if squared < SMALL {
         (1.0 - squared / 6.0 * (1.0 - squared / 20.0), 0.5 - squared / 24.0 * (1.0 - squared / 30.0))
     } else {
@@ -156,10 +157,10 @@ pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
     turned_twice(v, phi, [first, second])
 }
 
-/// Columns of the left Jacobian of SO(3) at `phi` (rad): the angular velocity per rate of each entry of phi.
+/// Returns the columns of the left Jacobian of SO(3) at `phi` (rad): the angular velocity per rate of each entry of phi.
 pub fn left_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
     let squared = dot(phi, phi);
-    // (1 - cos x) / x^2 and (x - sin x) / x^3.
+    // Coefficients (1 - cos x) / x^2 and (x - sin x) / x^3.
     let by = if squared < SMALL {
         [0.5 - squared / 24.0 * (1.0 - squared / 30.0), 1.0 / 6.0 - squared / 120.0 * (1.0 - squared / 42.0)]
     } else {
@@ -169,7 +170,7 @@ pub fn left_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
     Frame::IDENTITY.axes.map(|axis| turned_twice(&axis, phi, by))
 }
 
-/// Columns of the inverse of the right Jacobian of SO(3) at `phi` (rad), which has to be shorter than 2 pi.
+/// Returns the columns of the inverse of the right Jacobian of SO(3) at `phi` (rad), which must be shorter than 2 pi.
 pub fn inverse_right_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
     let squared = dot(phi, phi);
     let quadratic = if squared < SMALL {
@@ -181,7 +182,7 @@ pub fn inverse_right_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
     Frame::IDENTITY.axes.map(|axis| turned_twice(&axis, phi, [0.5, quadratic]))
 }
 
-/// v + a phi x v + b phi x (phi x v).
+/// Returns v + a phi x v + b phi x (phi x v).
 #[inline]
 fn turned_twice(v: &[f64; 3], phi: &[f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
     let once = cross(phi, v);
@@ -195,13 +196,13 @@ pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Euclidean length.
+/// Returns the Euclidean length.
 #[inline(always)]
 pub fn norm(v: &[f64; 3]) -> f64 {
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
-/// a x b.
+/// Returns the cross product a x b.
 #[inline(always)]
 pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -2,11 +2,11 @@
 
 use crate::error::{Error, Result, require_positive};
 
-/// More ticks than this count as a mistake in `dt` (2.7 hours at 1 kHz).
+/// Largest number of ticks; more indicate a mistake in `dt` (2.7 hours at 1 kHz).
 const MAX_TICKS: f64 = 1e7;
 
-/// Number of ticks of `dt` (s) that cover `duration` (s): the ceiling of their ratio, where a remainder below 1e-9 of a
-/// tick counts as rounding.
+/// Returns the number of ticks of `dt` (s) that cover `duration` (s): the ceiling of their ratio, where a remainder below
+/// 1e-9 of a tick counts as rounding.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] if `dt` is not positive, or so small that more than 10 million ticks would result.
@@ -20,7 +20,7 @@ pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     Ok(count as usize)
 }
 
-/// [`ticks`] for a path; a tick longer than the path would sample only its ends.
+/// Returns the number of [`ticks`] of a path; a tick longer than the path is rejected, since it would sample only the ends.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] as [`ticks`], and if `dt` is longer than `duration`.

@@ -1,11 +1,11 @@
-//! Vectors of three [`Real`]s for kernels. Operations are written out entry by entry: closures over arrays would be
-//! compiled without the instructions of the calling kernel.
+//! Three-vectors of [`Real`]s for kernels. Operations are unrolled by hand: closures over arrays would be compiled without
+//! the instructions of the calling kernel.
 
 use std::ops::{Add, Mul, Sub};
 
 use super::real::Real;
 
-/// A vector, or one per lane.
+/// Three-vector, or several in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct Vec3<R> {
     /// First entry.
@@ -17,40 +17,40 @@ pub struct Vec3<R> {
 }
 
 impl<R: Real> Vec3<R> {
-    /// From its stored form.
+    /// Loads from storage.
     #[inline(always)]
     pub fn of(stored: &[R::Stored; 3]) -> Self {
         let [x, y, z] = *stored;
         Self { x: R::of(x), y: R::of(y), z: R::of(z) }
     }
 
-    /// Its stored form.
+    /// Returns the storage form.
     #[inline(always)]
     pub fn stored(self) -> [R::Stored; 3] {
         [self.x.stored(), self.y.stored(), self.z.stored()]
     }
 
-    /// The same vector in all lanes.
+    /// Broadcasts a vector to all lanes.
     #[inline(always)]
     pub fn splat(vector: &[f64; 3]) -> Self {
         let [x, y, z] = *vector;
         Self { x: R::splat(x), y: R::splat(y), z: R::splat(z) }
     }
 
-    /// The vector in lane `lane`.
+    /// Returns the vector in lane `lane`.
     #[inline(always)]
     pub fn lane(self, lane: usize) -> [f64; 3] {
         [self.x.lane(lane), self.y.lane(lane), self.z.lane(lane)]
     }
 
-    /// The same with another vector in lane `lane`.
+    /// Replaces the vector in lane `lane`.
     #[inline(always)]
     pub fn with_lane(self, lane: usize, vector: &[f64; 3]) -> Self {
         let [x, y, z] = *vector;
         Self { x: self.x.with_lane(lane, x), y: self.y.with_lane(lane, y), z: self.z.with_lane(lane, z) }
     }
 
-    /// self * factor + addend.
+    /// Returns self * factor + addend.
     #[inline(always)]
     pub fn mul_add(self, factor: R, addend: Self) -> Self {
         Self {
@@ -60,13 +60,13 @@ impl<R: Real> Vec3<R> {
         }
     }
 
-    /// The scalar product, without FMA.
+    /// Returns the scalar product, without FMA.
     #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The cross product, without FMA.
+    /// Returns the cross product, without FMA.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl<R: Real> Vec3<R> {
         }
     }
 
-    /// The cross product, with FMA if the arithmetic has it.
+    /// Returns the cross product, with FMA if the arithmetic has it.
     #[inline(always)]
     pub fn cross_fma(self, other: Self) -> Self {
         Self {

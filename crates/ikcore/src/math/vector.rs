@@ -1,30 +1,30 @@
-//! Products and norms of vectors of any length; for vectors of three in hot code see [`so3`](super::so3).
+//! Products and norms of vectors of any length. Hot code with three-vectors uses [`so3`](super::so3).
 
-/// a'b.
+/// Returns the dot product a'b.
 #[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// |v|.
+/// Returns the Euclidean norm |v|.
 #[inline]
 pub fn norm(v: &[f64]) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// |a - b|^2.
+/// Returns |a - b|^2.
 #[inline]
 pub fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// |a - b|.
+/// Returns the Euclidean distance |a - b|.
 #[inline]
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
-/// The largest difference of two entries.
+/// Returns the largest absolute difference of two entries.
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
@@ -55,7 +55,7 @@ pub fn write_within(from: &[f64], to: &[f64], fraction: f64, out: &mut [f64]) {
     }
 }
 
-/// The sum of the squared entries of all columns. Each row has its own sum, so that additions do not wait for one
+/// Returns the squared Frobenius norm of all columns. Each row has its own sum, so that additions do not wait for one
 /// another.
 #[inline]
 pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {
@@ -66,7 +66,7 @@ pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {
     rows.iter().sum()
 }
 
-/// The middle one of three.
+/// Returns the median of three numbers.
 #[inline]
 pub fn median(a: f64, b: f64, c: f64) -> f64 {
     a.max(b).min(a.min(b).max(c))

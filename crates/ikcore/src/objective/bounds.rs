@@ -1,4 +1,4 @@
-//! The box of a search.
+//! Box of a search.
 
 use crate::error::{Error, Result};
 use crate::math::comparison::{larger, smaller};
@@ -7,7 +7,7 @@ use crate::rng::LazyRng;
 
 use super::point::Point;
 
-/// A box, entry by entry: lower <= upper; infinite bounds are allowed.
+/// Box with lower <= upper in every entry; infinite bounds are allowed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     lower: Point,
@@ -18,6 +18,8 @@ pub struct Bounds {
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
+    /// Box between these bounds.
+    ///
     /// # Errors
     /// [`Error::WrongLength`] for unequal lengths, [`Error::OutOfRange`] for NaN or lower > upper.
     pub fn new(lower: &[f64], upper: &[f64]) -> Result<Self> {
@@ -33,7 +35,7 @@ impl Bounds {
         }
     }
 
-    /// The box of these (lower, upper) pairs, without checks.
+    /// Box of these (lower, upper) pairs, without checks.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut bounds = Self { lower: Point::new(), upper: Point::new() };
         for (lower, upper) in ranges {
@@ -92,17 +94,17 @@ impl Bounds {
         }
     }
 
-    /// Whether `x` lies in the box, bounds included.
+    /// Whether `x` is in the box, bounds included.
     pub fn contains(&self, x: &[f64]) -> bool {
         x.iter().zip(&self.lower).zip(&self.upper).all(|((x, lower), upper)| lower <= x && x <= upper)
     }
 
-    /// The ranges to draw from; an unbounded side ends one turn from the other bound, or half a turn from zero.
+    /// Finite ranges for sampling; an unbounded side ends one turn from the other bound, or half a turn from zero.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
         self.lower.iter().zip(&self.upper).map(|(lower, upper)| sampling_range::finite(*lower, *upper, HALF_TURN))
     }
 
-    /// A uniform draw from the [`ranges`](Self::ranges).
+    /// Draws `x` uniformly from the [`ranges`](Self::ranges).
     pub fn sample(&self, rng: &mut LazyRng, x: &mut [f64]) {
         for (x, (from, to)) in x.iter_mut().zip(self.ranges()) {
             *x = rng.uniform_in(from, to);

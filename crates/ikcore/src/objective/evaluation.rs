@@ -1,18 +1,18 @@
-//! Objectives: values and scores of points.
+//! Objective functions and the scores of points.
 
 use super::bounds::Bounds;
 use crate::rng::LazyRng;
 
-/// The value of an objective at a point, and whether the point solves the problem.
+/// Value of an objective at a point, and whether the point solves the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
-    /// The weighted sum of squares r'r.
+    /// Weighted sum of squares r'r.
     pub value: f64,
-    /// The problem's own test, for example that distance and angle are both within their tolerances.
+    /// Whether the problem's own test is passed, for example that distance and angle are both within their tolerances.
     pub solved: bool,
 }
 
-/// How to evaluate an objective efficiently.
+/// Preferred batching and polling of evaluations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CallPattern {
     /// Number of points to evaluate together, if a solver has as many.
@@ -22,39 +22,40 @@ pub struct CallPattern {
 }
 
 impl Default for CallPattern {
-    /// For evaluations of tens of nanoseconds: one poll every ten microseconds.
+    /// Default for evaluations of tens of nanoseconds: one poll every ten microseconds.
     fn default() -> Self {
         Self { batch_size: 8, poll_interval: 256 }
     }
 }
 
-/// A function to minimise. It owns its scratch and is cloned per thread.
+/// Objective function to minimise. It owns its scratch and is cloned per thread.
 pub trait Objective {
     /// Number of entries of a point.
     fn dimension(&self) -> usize;
 
-    /// The score of `x`, which lies inside the box.
+    /// Evaluates `x`, a point in the box.
     fn evaluate(&mut self, x: &[f64]) -> Score;
 
-    /// Writes the scores of many points, stored consecutively in `xs`.
+    /// Evaluates many points, stored consecutively in `xs`.
     fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
         for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
             *score = self.evaluate(x);
         }
     }
 
-    /// How to evaluate it efficiently; read once per run.
+    /// Preferred batching and polling; read once per run.
     fn call_pattern(&self) -> CallPattern {
         CallPattern::default()
     }
 
-    /// Writes the start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
+    /// Writes the start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default it is uniform in the
+    /// box.
     fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
         let _ = attempt;
         bounds.sample(rng, x);
     }
 
-    /// The period of entry `entry` of a point, if it has one: 2 pi for an angle whose full turns do not matter.
+    /// Period of entry `entry` of a point, if it has one: 2 pi for an angle whose full turns do not matter.
     fn period(&self, entry: usize) -> Option<f64> {
         let _ = entry;
         None

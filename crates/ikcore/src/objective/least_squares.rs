@@ -1,4 +1,4 @@
-//! Objectives that are sums of squares: residuals and Jacobians, in blocks of six rows, one a task.
+//! Sums of squares as objectives: residuals and Jacobians, in one block of six rows per task.
 
 use smallvec::SmallVec;
 
@@ -18,37 +18,37 @@ pub struct TaskBlock {
     pub columns: Columns,
 }
 
-/// TaskResiduals and Jacobians of all tasks at a point: one block for most objectives.
+/// Residuals and Jacobians of all tasks at a point; most objectives have one task.
 #[derive(Debug, Clone, Default)]
 pub struct Linearization {
-    /// That of the first task.
+    /// Block of the first task.
     pub first: TaskBlock,
-    /// Those of further tasks, as of several tips.
+    /// Blocks of further tasks.
     pub more: Vec<TaskBlock>,
 }
 
-/// Weighted residuals, one for each task.
+/// Weighted residual of each task.
 pub type TaskResiduals = SmallVec<[[f64; ROWS]; 1]>;
 
-/// An objective that is a sum of squares, six for each task.
+/// Objective that is a sum of squares, six for each task.
 pub trait Residual: Objective {
     /// Writes the weighted residuals at `x`, actual minus target, and returns the score; rows that a task does not use are zero.
     fn residual(&mut self, x: &[f64], out: &mut TaskResiduals) -> Score;
 }
 
-/// A residual with its Jacobian.
+/// Sum of squares with a Jacobian.
 pub trait LeastSquares: Residual {
-    /// TaskResiduals and Jacobians at `x` in one pass, and the score.
+    /// Writes residuals and Jacobians at `x` in one pass, and returns the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
 }
 
 impl Linearization {
-    /// The blocks of all tasks.
+    /// Iterates over the blocks of all tasks.
     pub fn blocks(&self) -> impl Iterator<Item = &TaskBlock> + Clone {
         std::iter::once(&self.first).chain(&self.more)
     }
 
-    /// The blocks of all tasks, writable.
+    /// Iterates over the blocks of all tasks, writable.
     pub fn blocks_mut(&mut self) -> impl Iterator<Item = &mut TaskBlock> {
         std::iter::once(&mut self.first).chain(&mut self.more)
     }
@@ -115,7 +115,7 @@ impl Linearization {
         false
     }
 
-    /// The damping that keeps a singular system of `n` unknowns solvable and has no effect otherwise.
+    /// Smallest damping that keeps a singular system of `n` unknowns solvable; it has no effect otherwise.
     pub fn least_damping(&self, n: usize) -> f64 {
         LEAST_DAMPING * self.blocks().map(|block| squared_size(&block.columns[..n])).sum::<f64>()
     }

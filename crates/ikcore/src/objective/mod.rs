@@ -1,4 +1,4 @@
-//! The interface between the robot side and the solver side: objectives and the box of the search.
+//! Interface between robots and solvers: objectives and the box of the search.
 //!
 //! An objective implements the traits that apply to it: [`Objective`] (values), [`Residual`], [`Gradient`],
 //! [`LeastSquares`] (residual and Jacobian). A solver requires the traits it needs, and the compiler checks that the

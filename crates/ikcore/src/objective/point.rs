@@ -4,6 +4,6 @@ use smallvec::SmallVec;
 
 use crate::math::STACK_DOF;
 
-/// A point of the search space; on the stack up to [`STACK_DOF`] entries. `clone` copies entry by entry, so hot paths use
-/// `from_slice`, which copies all at once.
+/// Point of the search space; on the stack up to [`STACK_DOF`] entries. `clone` copies entry by entry, so hot paths use
+/// `from_slice`, which copies all entries at once.
 pub type Point = SmallVec<[f64; STACK_DOF]>;

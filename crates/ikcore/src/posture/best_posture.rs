@@ -1,5 +1,5 @@
-//! The best posture of a planar arm, by the published swarm or by differential evolution over the headings of all links
-//! but the last two, which close the linkage on either side.
+//! Best posture of a planar arm, by the published swarm or by differential evolution over the headings of all links but the
+//! last two, which close the linkage on either side.
 
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -20,37 +20,37 @@ use crate::task::{Target, TipError};
 /// Options of [`best_posture`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PostureOptions {
-    /// The measure of a posture.
+    /// Measure of a posture.
     pub measure: Measure,
-    /// The region of joint points. `None` means anywhere.
+    /// Region of the joint points. `None` means unrestricted.
     pub region: Option<Rectangle>,
-    /// The published swarm, instead of our own search.
+    /// Options of the published swarm. `None` means differential evolution.
     pub swarm: Option<CircleSwarm>,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
-/// The best posture found.
+/// Best posture found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
-    /// The configuration (n,) (rad); if there is no posture, one with the tip as near as possible.
+    /// Configuration (n,) (rad); without a posture, one with the tip as near as possible.
     pub q: Vec<f64>,
-    /// The index of the posture; NaN if there is none.
+    /// Index of the posture; NaN if there is none.
     pub index: f64,
-    /// The best index after each generation of a swarm; empty for our own search.
+    /// Best index after each generation of the swarm; empty for differential evolution.
     pub history: Vec<f64>,
-    /// [`Status::Solved`]; [`Status::Interrupted`] with the best so far; or why there is no posture.
+    /// Status: [`Status::Solved`]; [`Status::Interrupted`] with the best posture so far; or the reason for having none.
     pub status: Status,
     /// Errors of the tip at `q`.
     pub error: TipError,
-    /// Postures whose index was computed.
+    /// Number of postures whose index was computed.
     pub evaluations: usize,
     /// Time taken.
     pub elapsed: Duration,
 }
 
 impl Posture {
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         match self.status {
             Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index),
@@ -61,10 +61,10 @@ impl Posture {
     }
 }
 
-/// Evaluations of our own search per link.
+/// Evaluations of differential evolution per link.
 const EVALUATIONS_A_LINK: usize = 2500;
 
-/// The best posture of the planar arm `robot` with its tip at `target` (m).
+/// Finds the best posture of the planar arm `robot` with its tip at `target` (m).
 ///
 /// # Errors
 /// As [`Linkage::new`] and [`CircleSwarm::validate`]; [`Error::NotFinite`](crate::Error::NotFinite) for the target. A
@@ -100,7 +100,7 @@ pub fn best_posture(
     Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
 }
 
-/// Our own search; `None` if no posture was found.
+/// Searches by differential evolution; `None` if no posture was found.
 fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
     let links = linkage.links();
     let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };
@@ -117,7 +117,7 @@ fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<Fou
     best.map(|(index, q)| FoundPosture { q, index, history: vec![], evaluations, status })
 }
 
-/// Minus the index as a function of the headings of all links but the last two, which close the linkage on the better side.
+/// Negative index as a function of the headings of all links but the last two, which close the linkage on the better side.
 struct ClosedLinkage<'a> {
     linkage: &'a Linkage,
     q: Vec<f64>,

@@ -12,18 +12,18 @@ const MOST: usize = 1_000_000;
 /// Options of the published swarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CircleSwarm {
-    /// Particles; published 5.
+    /// Number of particles; published 5.
     pub population: usize,
-    /// Generations, the first draw included; published 10.
+    /// Number of generations, the first draw included; published 10.
     pub generations: usize,
     /// Attraction to the best position of the particle. phi = c1 + c2 must be above 4: below that eq. (18) has no root,
     /// although the paper says "phi > 3".
     pub c1: f64,
     /// Attraction to the best position of the swarm; eq. (17) prints the particle's own.
     pub c2: f64,
-    /// Vm: largest velocity of a coordinate (m per generation); not published.
+    /// Velocity limit Vm of a coordinate (m per generation); not published.
     pub velocity_limit: f64,
-    /// Random factors in [-1, 1], as printed, instead of [0, 1].
+    /// Whether random factors are in [-1, 1], as printed, instead of [0, 1].
     pub signed: bool,
 }
 
@@ -33,21 +33,21 @@ impl Default for CircleSwarm {
     }
 }
 
-/// Number of draws of a particle after which no posture is assumed to exist.
+/// Draws of a particle after which no posture is assumed to exist.
 const DRAWS: usize = 10_000;
 
-/// The result of a search.
+/// Posture found by a search.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FoundPosture {
-    /// The best posture (n,).
+    /// Best posture (n,).
     pub q: Vec<f64>,
-    /// Its index.
+    /// Index of the posture.
     pub index: f64,
-    /// The best index after each generation.
+    /// Best index after each generation.
     pub history: Vec<f64>,
-    /// Postures whose index was computed.
+    /// Number of postures whose index was computed.
     pub evaluations: usize,
-    /// [`Status::Solved`], or [`Status::Interrupted`] before the search was over.
+    /// Status [`Status::Solved`], or [`Status::Interrupted`] before the end of the search.
     pub status: Status,
 }
 
@@ -63,7 +63,7 @@ struct Swarm<'a> {
     rng: &'a mut LazyRng,
     monitor: &'a mut dyn Monitor,
     q: Vec<f64>,
-    /// Index, points and configuration.
+    /// Index, points and configuration of the best posture.
     best: (f64, Vec<Point2>, Vec<f64>),
     evaluations: usize,
 }
@@ -89,13 +89,13 @@ impl CircleSwarm {
         if phi > 4.0 { Ok(()) } else { Err(Error::out_of_range("c1 + c2", "above 4", phi)) }
     }
 
-    /// chi of eq. (18), where the printed equation lacks the absolute value.
+    /// Constriction factor chi of eq. (18), where the printed equation lacks the absolute value.
     fn constriction(&self) -> f64 {
         let phi = self.c1 + self.c2;
         2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
-    /// The best posture of `linkage` that the swarm finds; `None` if it finds none.
+    /// Searches for the best posture of `linkage`; `None` if the swarm finds none.
     pub(super) fn search(
         &self,
         linkage: &Linkage,
@@ -136,7 +136,7 @@ impl Swarm<'_> {
         Some(Status::Solved)
     }
 
-    /// A random particle on the circles: steps (1) and (2) of the paper.
+    /// Draws a random particle on the circles: steps (1) and (2) of the paper.
     fn draw(&mut self) -> Option<Particle> {
         let links = self.linkage.links();
         for _ in 0..DRAWS {
@@ -152,7 +152,7 @@ impl Swarm<'_> {
         None
     }
 
-    /// One generation of a particle: eq. (17), then projection onto the circles; redrawn if that fails (step 5).
+    /// Moves a particle by one generation: eq. (17), then projection onto the circles; redrawn if that fails (step 5).
     fn advance(&mut self, particle: &mut Particle) -> Option<()> {
         let CircleSwarm { c1, c2, velocity_limit, signed, .. } = *self.options;
         let chi = self.options.constriction();

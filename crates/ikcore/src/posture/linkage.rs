@@ -1,5 +1,5 @@
-//! A planar arm with a fixed tip: joint points on circles. `planning::planar_arm` has the same arm
-//! with link orientations as unknowns, and explains why each measures the link lengths itself.
+//! Planar arm with a fixed tip: joint points on circles. `plan::planar_arm` describes the same arm with link orientations
+//! as unknowns, and explains why each measures the link lengths itself.
 
 use std::f64::consts::TAU;
 
@@ -9,22 +9,22 @@ use crate::math::turns::without_turns;
 use crate::robot::Robot;
 use crate::wording::words;
 
-/// A point of the plane (m).
+/// Point of the plane (m).
 pub type Point2 = [f64; 2];
 
-/// The measure of a posture.
+/// Measure of a posture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
     /// Yoshikawa's index of the tip; multiplied by k_m it is the paper's SM_n, eq. (15).
     #[default]
     Tip,
-    /// The sum of the indices of all links, SM of eq. (16).
+    /// Sum of the indices of all links, SM of eq. (16).
     Overall,
 }
 
 words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
-/// A rectangle that contains all joint points.
+/// Rectangle that contains all joint points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
     /// Smallest x and y (m).
@@ -42,7 +42,7 @@ impl Rectangle {
     }
 }
 
-/// A planar arm with a fixed tip.
+/// Planar arm with a fixed tip.
 #[derive(Debug, Clone)]
 pub struct Linkage {
     robot: Robot,
@@ -57,7 +57,7 @@ pub struct Linkage {
 }
 
 impl Linkage {
-    /// `robot` with its tip at `target` (m).
+    /// Linkage of `robot` with its tip at `target` (m).
     ///
     /// # Errors
     /// [`Error::InvalidRobot`] unless the robot has at least three joints, all turning about z in one plane;
@@ -104,7 +104,7 @@ impl Linkage {
         self.lengths.len()
     }
 
-    /// The robot.
+    /// Robot that forms the linkage.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
@@ -140,7 +140,7 @@ impl Linkage {
         Some(())
     }
 
-    /// The intersection of the circles about `from` and about the target, to the left or the right of the line between.
+    /// Intersection of the circles about `from` and about the target, to the left or the right of the line between.
     fn last_point(&self, from: &Point2, side: f64) -> Option<Point2> {
         let n = self.links();
         let (a, b) = (self.lengths[n - 2], self.lengths[n - 1]);
@@ -174,7 +174,7 @@ impl Linkage {
         })
     }
 
-    /// `angle` shifted by whole turns into the limits of joint `j`, nearest to zero.
+    /// Shifts `angle` by whole turns into the limits of joint `j`, as near to zero as possible.
     fn within_limits(&self, j: usize, angle: f64) -> Option<f64> {
         let joint = &self.robot.joints()[j];
         let nearest = without_turns(angle);

@@ -1,4 +1,4 @@
-//! A robot and a target as an objective.
+//! Inverse kinematics as an objective: a robot, tasks and targets.
 
 use smallvec::SmallVec;
 
@@ -13,56 +13,56 @@ use crate::starts::Starts;
 use crate::task::residual::entrywise;
 use crate::task::{Aims, Assessment, Criterion, Subject, Target};
 
-/// The inverse kinematics problem. It borrows everything, so building one per tick costs nothing.
+/// Inverse kinematics problem. It borrows everything, so building one per tick costs nothing.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     robot: &'a Robot,
     aims: Aims<'a>,
-    /// Looked up when the first start is needed.
+    /// Indexed starts, looked up when the first is needed.
     seeds: Option<Starts<'a>>,
-    /// Where attempts for several tips begin.
+    /// Starts of attempts for several tips.
     tip_starts: Option<Box<TipStarts>>,
     turns: Turns,
-    /// What a solution must keep clear of, for solvers that need values alone.
+    /// Clear space, whose violation is penalised for derivative-free solvers.
     space: Option<&'a ClearSpace<'a>>,
 }
 
-/// Whether configurations that differ by whole turns count as different.
+/// Equivalence of configurations that differ by whole turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turns {
-    /// Different, as in tracking, where the arm would have to make the turns.
+    /// Distinct, as in tracking, where the arm would have to make the turns.
     Distinct,
     /// Equivalent, as for a single configuration.
     Equivalent,
 }
 
 impl<'a> Problem<'a> {
-    /// The problem of moving the tips of `robot` on to their targets.
+    /// Problem of moving the tips of `robot` onto their targets.
     pub fn new(robot: &'a Robot, aims: Aims<'a>) -> Self {
         Self { robot, aims, seeds: None, tip_starts: None, turns: Turns::Distinct, space: None }
     }
 
-    /// The same problem, in which full turns of a joint do not matter.
+    /// Treats full turns of a joint as equivalent.
     pub fn disregarding_turns(self) -> Self {
         Self { turns: Turns::Equivalent, ..self }
     }
 
-    /// The problem of a single configuration, in which full turns do not matter, with a penalty on its values outside `space`, where
-    /// no configuration is a solution.
+    /// Problem of a single configuration, with full turns equivalent, and a penalty on configurations outside `space`, none of
+    /// which is a solution.
     #[inline]
     pub(crate) fn of_configuration(robot: &'a Robot, aims: Aims<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
-        // In one go: copies of a problem take longer than many a solve by closed form may.
+        // Built in one expression: copying a problem takes longer than many a closed-form solve.
         let tip_starts = (robot.tip_count() > 1).then(Box::default);
         Self { robot, aims, seeds: None, tip_starts, turns: Turns::Equivalent, space }
     }
 
-    /// The target of the only tip, and its criterion; None for several tips.
+    /// Target and criterion of the only tip; `None` for several tips.
     #[inline]
     pub(crate) fn only_target(&self) -> Option<(&'a Target, &'a Criterion)> {
         self.aims.only(self.robot)
     }
 
-    /// Numbers of the frames of the tips whose whole poses are given.
+    /// Frame numbers of the tips with targets that fix the whole pose.
     pub(crate) fn fixed_frames(&self) -> SmallVec<[usize; 2]> {
         let fixed = self.aims.iter().filter_map(|(task, target)| match task.subject {
             Subject::Tip(tip) if task.criterion.fixes_pose(target) => Some(self.robot.frame_of_tip(tip)),
@@ -79,7 +79,7 @@ impl<'a> Problem<'a> {
         self.robot
     }
 
-    /// The assessment of `q`, by forward kinematics.
+    /// Assesses `q` by forward kinematics.
     #[inline]
     pub fn assess(&self, q: &[f64]) -> Assessment {
         match self.only_target() {
@@ -123,8 +123,8 @@ impl Objective for Problem<'_> {
         repeats.then_some(std::f64::consts::TAU)
     }
 
-    /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box; unlimited sides
-    /// end at the joint's sampling range. The indexed configurations also follow a start given by the caller. For several tips see
+    /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box; an unlimited side ends at
+    /// the joint's sampling range. The indexed configurations also follow a start given by the caller. For several tips see
     /// `tip_starts`.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         let Some((target, criterion)) = self.only_target() else {
@@ -151,7 +151,7 @@ impl Objective for Problem<'_> {
     }
 }
 
-/// The score of `q` with the penalty: squares of distances, beside the squares of errors of position.
+/// Score of `q` with a penalty outside `space`: squared distances, added to the squared errors of position.
 fn kept_clear(score: Score, space: &ClearSpace<'_>, q: &[f64]) -> Score {
     if space.holds(q) {
         return score;
@@ -167,7 +167,8 @@ impl Residual for Problem<'_> {
 }
 
 impl Gradient for Problem<'_> {
-    /// E of eq. (11) of Yuan et al. 2016; with component weights, a region or several tips, half the weighted sum of squares.
+    /// Computes E of eq. (11) of Yuan et al. 2016; with component weights, a region or several tips, half the weighted sum of
+    /// squares.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
         let plain = |criterion: &Criterion| criterion.components.is_none() && criterion.region.is_none();
@@ -186,7 +187,7 @@ impl Gradient for Problem<'_> {
 impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
-        // Which tasks are solved tells where the next start is.
+        // Records solved tasks, on which the next start builds.
         let note = |task: usize| {
             if let Some(starts) = &mut self.tip_starts {
                 starts.note(task, q);
@@ -196,7 +197,7 @@ impl LeastSquares for Problem<'_> {
     }
 }
 
-// Kept out of line: inlined, it would make that of one tip slower.
+// Kept out of line: inlining would slow down the case of one tip.
 #[cold]
 #[inline(never)]
 fn assess_several(aims: Aims<'_>, robot: &Robot, q: &[f64]) -> Assessment {

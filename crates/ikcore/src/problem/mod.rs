@@ -1,6 +1,7 @@
-//! The inverse kinematics problem: a robot and a target as an [objective](crate::objective).
+//! Inverse kinematics problem: a robot and a target as an [objective](crate::objective).
 //!
-//! `inverse_kinematics` is the objective that solvers minimise; `tip_starts` says where searches for several tips begin. `obstruction` explains why a target was missed.
+//! `inverse_kinematics` is the objective that solvers minimise; `tip_starts` proposes starts for several tips; `obstruction`
+//! explains why a target was missed.
 
 mod inverse_kinematics;
 mod obstruction;

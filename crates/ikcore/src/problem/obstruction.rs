@@ -1,24 +1,24 @@
-//! Explains why a target was missed: out of reach, blocked by its region, or joints at their limits.
+//! Reasons for a miss: target out of reach, tip blocked by its region, or joints at their limits.
 
 use super::inverse_kinematics::Problem;
 use crate::kinematics::ReachShortfall;
 use crate::objective::Bounds;
 use crate::task::{Criterion, Subject, Target};
 
-/// Largest number of joints that a message names; the others are counted.
+/// Largest number of joints that a message names; further ones are counted.
 const MOST_NAMED: usize = 3;
 
 impl Problem<'_> {
-    /// How far the target is beyond the reach within `bounds`; `None` unless that is certain.
+    /// Distance of the target beyond the reach within `bounds`; `None` unless it is certain.
     pub(crate) fn reach_shortfall(&self, bounds: &Bounds) -> Option<ReachShortfall> {
         self.first_shortfall(bounds).map(|(_, shortfall)| shortfall)
     }
 
-    /// That of the first tip whose target is beyond its reach, and the number of the tip.
+    /// Shortfall and number of the first tip whose target is beyond its reach.
     fn first_shortfall(&self, bounds: &Bounds) -> Option<(usize, ReachShortfall)> {
         let is_only = self.only_target().is_some();
         self.aims().iter().find_map(|(task, target)| match task.subject {
-            // Of several tips, the tool of a task hides where the tip itself is to be, unless the target is a pose.
+            // The tool of a task for several tips hides the target of the tip itself, unless the target is a pose.
             Subject::Tip(tip) if is_only || task.criterion.fixes_pose(target) => {
                 let target = task.without_tool(target);
                 Some((tip, self.shortfall_of(tip, &target, &task.criterion, bounds)?))
@@ -47,7 +47,7 @@ impl Problem<'_> {
         reach.shortfall(aim.position().as_ref(), orientation, tolerance)
     }
 
-    /// Describes the obstruction between the tip and the target at `q`; empty if nothing is known.
+    /// Describes the obstruction between the tip and the target at `q`; empty if none is known.
     pub(crate) fn obstruction(&self, bounds: &Bounds, q: &[f64]) -> String {
         let reach = self.first_shortfall(bounds).map(|(tip, shortfall)| match self.only_target() {
             Some(_) => shortfall.to_string(),

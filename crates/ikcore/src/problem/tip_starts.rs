@@ -1,5 +1,5 @@
-//! Starts for several tips: the joints they share first, then each arm from its own closed form or index, given those. Arms that
-//! reached their targets in an earlier attempt stay where they did.
+//! Starts for several tips: first the shared joints, then each arm by its own closed form or index, given the shared ones. Arms
+//! that reached their targets in an earlier attempt keep their configuration.
 
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -8,18 +8,18 @@ use crate::rng::LazyRng;
 use crate::robot::{Choice, Robot};
 use crate::task::{Aims, Subject, Target};
 
-/// What the attempts so far have shown.
+/// Starts for several tips, with the tasks solved so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct TipStarts {
     attempts: usize,
-    /// For each task the last configuration that solved it.
+    /// Last configuration that solved each task.
     solved: Vec<Option<Point>>,
-    /// The task that was solved last.
+    /// Task solved last.
     last: Option<usize>,
 }
 
 impl TipStarts {
-    /// Notes that `q` solves task number `task`.
+    /// Records that `q` solves task number `task`.
     pub fn note(&mut self, task: usize, q: &[f64]) {
         if self.solved.len() <= task {
             self.solved.resize(task + 1, None);
@@ -28,7 +28,8 @@ impl TipStarts {
         self.last = Some(task);
     }
 
-    /// Writes the next start into `q`. The first one has the shared joints in the middle of their ranges, later ones anywhere.
+    /// Writes the next start into `q`: the first with the shared joints in the middle of their ranges, later ones with random
+    /// shared joints.
     pub fn propose(&mut self, robot: &Robot, aims: &Aims<'_>, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         let attempt = self.attempts;
         self.attempts += 1;
@@ -60,19 +61,19 @@ impl TipStarts {
         }
     }
 
-    /// Puts arms where they solved their tasks; says for each tip whether its arm is there. Where tips share joints, that is the arm of
-    /// the last task solved, in every other attempt: other arms may not reach their targets from there.
+    /// Restores solved arms in `q`, and returns for each tip whether its arm is restored. With shared joints, only the arm of
+    /// the task solved last is restored, in every other attempt: other arms may not reach their targets from there.
     fn kept(&self, robot: &Robot, aims: &Aims<'_>, q: &mut [f64]) -> Vec<bool> {
         let mut settled = vec![false; robot.tip_count()];
         let arms = (0..robot.tip_count()).filter_map(|tip| robot.arm(tip)).map(|arm| arm.joints.len());
-        let fractions_joints = arms.sum::<usize>() < robot.dof();
-        if fractions_joints && self.attempts.is_multiple_of(2) {
+        let shares_joints = arms.sum::<usize>() < robot.dof();
+        if shares_joints && self.attempts.is_multiple_of(2) {
             return settled;
         }
         for (i, (task, _)) in aims.iter().enumerate() {
             let Subject::Tip(tip) = task.subject else { continue };
             let (Some(Some(known)), Some(arm)) = (self.solved.get(i), robot.arm(tip)) else { continue };
-            if !fractions_joints {
+            if !shares_joints {
                 arm.joints.iter().for_each(|joint| q[*joint] = known[*joint]);
                 settled[tip] = true;
             } else if self.last == Some(i) {
@@ -84,7 +85,7 @@ impl TipStarts {
     }
 }
 
-/// Puts tip number `tip` at or near `target` by its own joints.
+/// Moves tip number `tip` to or near `target` by its own joints.
 fn place(robot: &Robot, tip: usize, target: &Target, choice: &mut Choice<'_>, q: &mut [f64]) -> bool {
     let (Some(arm), Some(stem)) = (robot.arm(tip), robot.stem_of(tip, q)) else { return false };
     match (seen_from_base(&stem.inverse(), target), target.position()) {
@@ -94,7 +95,7 @@ fn place(robot: &Robot, tip: usize, target: &Target, choice: &mut Choice<'_>, q:
     }
 }
 
-/// A target given in the frame `base`, in the axes of that frame's own base.
+/// Transforms a target from the frame `base` to the axes of the robot's base.
 fn seen_from_base(base: &Frame, target: &Target) -> Target {
     match target {
         Target::Position(position) => Target::Position(base.place::<NoFma>(position)),

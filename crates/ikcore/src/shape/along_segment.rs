@@ -1,30 +1,30 @@
-//! The lowest signed distance along a segment.
+//! Minimum signed distance along a segment.
 //!
-//! Along a segment the signed distance of a convex shape is a convex function of one variable, which lies above all its
+//! The signed distance of a convex shape along a segment is a convex function of one variable, which lies above all its
 //! tangents and below all its chords.
 
 use nalgebra::Vector3;
 
 use super::tangent::Tangent;
 
-/// A segment between two points (m).
+/// Line segment between two points (m).
 pub(crate) type LineSegment = [Vector3<f64>; 2];
 
-/// How far below the true distance an answer by tangents may lie (m).
+/// Accuracy of the lower bound given by tangents (m).
 const ACCURACY: f64 = 1e-9;
-/// Far more steps than the search for the minimum takes, but for degenerate numbers.
+/// Step limit, far beyond the usual number of steps, for degenerate input.
 const MOST_STEPS: usize = 60;
 
-/// Where a segment is nearest to a shape.
+/// Minimum of the signed distance along a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SegmentDistance {
     /// Signed distance (m).
     pub distance: f64,
-    /// Fraction of the way along the segment.
+    /// Fraction of the segment's length.
     pub fraction: f64,
 }
 
-/// One tangent of the signed distance along the segment: value and slope at `fraction` of its length.
+/// Tangent of the signed distance along the segment: value and slope at `fraction` of its length.
 #[derive(Clone, Copy)]
 struct Touch {
     fraction: f64,
@@ -32,8 +32,8 @@ struct Touch {
     slope: f64,
 }
 
-/// Where the signed distance of a convex set with these tangents is lowest: never more than the truth, and at most
-/// [`ACCURACY`] less unless it is at least `enough`.
+/// Minimises the signed distance of a convex set with these tangents. The result is a lower bound, at most [`ACCURACY`] below
+/// the true distance unless it is at least `enough`.
 pub(super) fn by_tangents(
     [a, b]: &LineSegment,
     tangent: impl Fn(&Vector3<f64>) -> Tangent,
@@ -54,7 +54,7 @@ pub(super) fn by_tangents(
     }
     let mut lowest_seen = left.value.min(right.value);
     for _ in 0..MOST_STEPS {
-        // Where the two tangents meet is the lowest that the distance can be.
+        // Intersection of the two tangents: a lower bound of the distance between them.
         let meeting = (right.value - left.value + left.slope * left.fraction - right.slope * right.fraction)
             / (left.slope - right.slope);
         let bound = left.value + left.slope * (meeting - left.fraction);

@@ -1,4 +1,4 @@
-//! "Nearer than m?" for four bodies at once, one in each lane of the registers: capsules of one robot, or one capsule at four
+//! Clearance test "nearer than m?" for four bodies in SIMD lanes: capsules of one robot, or one capsule at four
 //! configurations.
 
 use nalgebra::Vector3;
@@ -16,13 +16,13 @@ use crate::math::vec3::Vec3;
 /// Four capsules, one per lane (m).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BodyBlock {
-    /// Start of each axis.
+    /// Start of each capsule axis.
     pub start: [F64x4; 3],
-    /// From the start of each axis to its end.
+    /// Vector from start to end of each axis.
     pub along: [F64x4; 3],
-    /// Radius of each.
+    /// Radius of each capsule.
     pub radius: F64x4,
-    /// Whether all four are spheres: `along` is zero.
+    /// True if all four are spheres, with zero `along`.
     pub spheres: bool,
 }
 
@@ -31,7 +31,7 @@ impl BodyBlock {
     pub const SPHERES: Self =
         Self { start: [F64x4::ZERO; 3], along: [F64x4::ZERO; 3], radius: F64x4::ZERO, spheres: true };
 
-    /// The same capsules, given in `frame`.
+    /// Moves the capsules by `frame`.
     #[inline(always)]
     pub fn placed<A: Arithmetic>(&self, frame: &Frame) -> Self {
         let [x, y, z] = [0, 1, 2].map(|k| Vec3::<Four<A>>::splat(&frame.axes[k]));
@@ -41,7 +41,7 @@ impl BodyBlock {
         Self { start: start.stored(), along: along.stored(), radius: self.radius, spheres: self.spheres }
     }
 
-    /// The body in lane `lane` in all lanes.
+    /// Broadcasts the body in lane `lane` to all lanes.
     #[inline(always)]
     pub fn repeated(&self, lane: usize) -> Self {
         let [[x, y, z], [u, v, w]] = [&self.start, &self.along];
@@ -50,14 +50,14 @@ impl BodyBlock {
         Self { start, along, radius: F64x4::splat(self.radius.0[lane]), spheres: self.spheres }
     }
 
-    /// Whether two lanes hold the same capsule, as do those that fill a block up.
+    /// Whether two lanes hold the same capsule, which happens where a block is padded.
     fn is_same(&self, lane: usize, other: usize) -> bool {
         (0..3)
             .all(|k| self.start[k].0[lane] == self.start[k].0[other] && self.along[k].0[lane] == self.along[k].0[other])
             && self.radius.0[lane] == self.radius.0[other]
     }
 
-    /// The capsule in lane `lane`.
+    /// Returns the axis of the capsule in lane `lane`.
     fn segment(&self, lane: usize) -> [Vector3<f64>; 2] {
         let start = Vector3::from(self.start.map(|x| x.0[lane]));
         [start, start + Vector3::from(self.along.map(|x| x.0[lane]))]
@@ -65,7 +65,8 @@ impl BodyBlock {
 }
 
 impl Shape {
-    /// In each lane 1 if the body stays at least `margin` >= 0 (m) away, else 0. Never 1 for a body that is nearer.
+    /// Returns 1 in each lane whose body stays at least `margin` >= 0 (m) away, else 0. Conservative: never 1 for a nearer
+    /// body.
     #[inline(always)]
     pub(crate) fn clear_lanes<A: Arithmetic>(&self, block: &BodyBlock, margin: f64) -> F64x4 {
         let start = Vec3::<Four<A>>::of(&block.start);
@@ -78,7 +79,7 @@ impl Shape {
         }
         let bounds = self.bounding_ball();
         if block.spheres {
-            // Most bodies are clear of the ball around the shape.
+            // Most bodies are clear of the bounding ball.
             let offset = start - Vec3::splat(&bounds.center);
             let clear = beyond_square(offset.dot(offset), enough + Four::splat(bounds.radius));
             if clear.0[0] + clear.0[1] + clear.0[2] + clear.0[3] == 4.0 {
@@ -111,13 +112,13 @@ impl Shape {
         }
     }
 
-    /// Whether [`clear_lanes`](Self::clear_lanes) takes four bodies at once.
+    /// Whether [`clear_lanes`](Self::clear_lanes) tests four bodies at once for this shape.
     pub(crate) fn has_lanes(&self) -> bool {
         use Geometry::{Box, Capsule, Cylinder, HalfSpace, Sphere};
         matches!(self.geometry(), Sphere { .. } | Capsule { .. } | HalfSpace { .. } | Box { .. } | Cylinder { .. })
     }
 
-    /// [`clear_lanes`](Self::clear_lanes) for shapes whose distances are found one by one.
+    /// Implements [`clear_lanes`](Self::clear_lanes) lane by lane, for shapes without a SIMD distance.
     #[inline(never)]
     fn clear_one_by_one(&self, block: &BodyBlock, enough: &F64x4) -> F64x4 {
         let mut clear = F64x4::ZERO;
@@ -135,7 +136,7 @@ impl Shape {
     }
 }
 
-/// In each lane 1 if the bodies of both blocks stay at least `margin` >= 0 (m) apart, else 0.
+/// Returns 1 in each lane in which the bodies of both blocks stay at least `margin` >= 0 (m) apart, else 0.
 #[inline(always)]
 pub(crate) fn clear_of_each_other<A: Arithmetic>(one: &BodyBlock, other: &BodyBlock, margin: f64) -> F64x4 {
     let [p, q] = [Vec3::<Four<A>>::of(&one.start), Vec3::of(&other.start)];
@@ -160,7 +161,7 @@ fn solid_clear<A: Arithmetic, S: SolidLanes<Four<A>>>(
     at_least(segment_bound(solid, start, solid.turned(along), enough), enough)
 }
 
-/// 1 where the square root of `squared` is at least `enough`, else 0.
+/// Returns 1 where the square root of `squared` is at least `enough`, else 0.
 #[inline(always)]
 fn beyond_square<A: Arithmetic>(squared: Four<A>, enough: Four<A>) -> F64x4 {
     at_least(squared, enough * enough)
@@ -169,18 +170,18 @@ fn beyond_square<A: Arithmetic>(squared: Four<A>, enough: Four<A>) -> F64x4 {
 #[inline(always)]
 fn at_least<A: Arithmetic>(value: Four<A>, enough: Four<A>) -> F64x4 {
     let clear = value.choose_below(enough, Four::splat(0.0), Four::splat(1.0));
-    // What is no finite number counts as too near.
+    // Non-finite values count as too near.
     value.choose_below(Four::splat(f64::INFINITY), clear, Four::splat(0.0)).stored()
 }
 
-/// What distances lose to rounding, for coordinates up to `largest`; infinite if products of them would overflow.
+/// Returns the rounding error of distances for coordinates up to `largest`; infinite if their products would overflow.
 #[inline(always)]
 fn rounded<A: Arithmetic>(largest: Four<A>) -> Four<A> {
     let infinite = Four::splat(f64::INFINITY);
     largest.choose_below(Four::splat(LARGEST), largest * Four::splat(ROUNDING), infinite)
 }
 
-/// The largest coordinate, without its sign.
+/// Returns the largest absolute coordinate.
 #[inline(always)]
 fn largest<A: Arithmetic>(v: Vec3<Four<A>>) -> Four<A> {
     v.x.larger(-v.x).larger(v.y.larger(-v.y)).larger(v.z.larger(-v.z))
@@ -234,7 +235,7 @@ mod tests {
                 for lane in 0..4 {
                     let radius = block.radius.0[lane];
                     let gap = shape.distance_to_segment(&block.segment(lane), f64::INFINITY) - radius - margin;
-                    // Within rounding of the decision both answers are right.
+                    // Either answer is right within rounding of the threshold.
                     assert!(gap.abs() < 3e-9 || (gap > 0.0) == (clear[lane] == 1.0), "{}: {gap}", shape.name());
                     *(if gap > 0.0 { &mut far } else { &mut near }) += 1;
                 }

@@ -1,10 +1,10 @@
-//! A ball that holds a shape.
+//! Bounding ball of a shape.
 
-/// A ball that holds a shape (m); its radius is infinite for a half-space.
+/// Bounding ball of a shape (m); its radius is infinite for a half-space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundingBall {
-    /// Its centre.
+    /// Centre.
     pub center: [f64; 3],
-    /// Its radius.
+    /// Radius.
     pub radius: f64,
 }

@@ -1,5 +1,5 @@
-//! A tree of boxes over many pieces of a shape. Each node holds four boxes, one per lane of the registers; each leaf holds
-//! four pieces.
+//! Bounding volume hierarchy over the pieces of a shape. Each node holds four boxes, one per SIMD lane; each leaf holds four
+//! pieces.
 
 use nalgebra::Vector3;
 
@@ -8,7 +8,7 @@ use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
 
-/// An axis-parallel box (m).
+/// Axis-aligned box (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Aabb {
     pub lower: Vector3<f64>,
@@ -16,7 +16,7 @@ pub(super) struct Aabb {
 }
 
 impl Aabb {
-    /// The smallest box around `points`.
+    /// Returns the smallest box around `points`.
     pub fn around(points: impl IntoIterator<Item = Vector3<f64>>) -> Self {
         let empty = Self { lower: Vector3::repeat(f64::INFINITY), upper: Vector3::repeat(f64::NEG_INFINITY) };
         points.into_iter().fold(empty, |all, p| Self { lower: all.lower.inf(&p), upper: all.upper.sup(&p) })
@@ -27,19 +27,19 @@ impl Aabb {
     }
 }
 
-/// Four pieces of a leaf: their indices, or [`NONE`].
+/// Indices of the four pieces of a leaf, or [`NONE`].
 pub(super) type Block = [u32; 4];
-/// No piece.
+/// Marker of an empty lane.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// This bit of a child marks a leaf.
+/// Bit of a child index that marks a leaf.
 const LEAF: u32 = 1 << 31;
-/// Shorter segments (m) have no direction.
+/// Length (m) below which a segment has no direction.
 const SHORTEST: f64 = 1e-100;
-/// Three children per level wait, and a tree of 2^31 pieces has at most 16 levels.
+/// Stack size of a search: each level leaves three children waiting, and a tree of 2^31 pieces has at most 16 levels.
 const STACK: usize = 64;
 
-/// Four boxes and what they hold.
+/// Node with four boxes and their children.
 #[derive(Debug, Clone)]
 struct Node {
     center: [F64x4; 3],
@@ -47,7 +47,7 @@ struct Node {
     child: [u32; 4],
 }
 
-/// A tree over pieces, each in a box.
+/// Bounding volume hierarchy.
 #[derive(Debug, Clone)]
 pub(super) struct BoundingTree {
     nodes: Vec<Node>,
@@ -55,17 +55,17 @@ pub(super) struct BoundingTree {
     bounds: Aabb,
 }
 
-/// A segment, as the tree compares it with its boxes.
+/// Segment, prepared for comparison with boxes.
 pub(super) struct SegmentQuery {
     center: [f64; 3],
     half: [f64; 3],
-    /// Directions of unit length at right angles to the segment and to one axis; zero for a segment along that axis.
+    /// Unit vectors perpendicular to the segment and to one coordinate axis; zero if the segment is along that axis.
     across: [[f64; 3]; 3],
-    /// A point has no direction, and its distance from a box is exact without the above.
+    /// True for a point, whose distance from a box is exact without the vectors above.
     is_point: bool,
 }
 
-/// The bound of a search for pieces nearer than `enough` (m). Its square root is at least `enough`.
+/// Returns the squared search radius for pieces nearer than `enough` (m), rounded up so that its root is at least `enough`.
 pub(super) fn squared_bound(enough: f64) -> f64 {
     let enough = enough.max(0.0) * (1.0 + 4.0 * f64::EPSILON);
     enough * enough
@@ -79,13 +79,13 @@ impl SegmentQuery {
             normal.try_normalize(1e-9 * along.norm()).unwrap_or_default().into()
         });
         let center = (0.5 * (a + b)).into();
-        // A direction from lengths that vanish when squared would be anything.
+        // Directions from lengths whose squares underflow would be arbitrary.
         Self { center, half: (0.5 * along.abs()).into(), across, is_point: along.amax() < SHORTEST }
     }
 }
 
 impl BoundingTree {
-    /// A tree over these boxes, at least one, and the pieces of its leaves.
+    /// Builds a tree over at least one box; also returns the pieces of its leaves.
     pub fn new(boxes: &[Aabb]) -> (Self, Vec<Block>) {
         let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut build = Build { boxes, nodes: vec![], blocks: vec![] };
@@ -93,13 +93,13 @@ impl BoundingTree {
         (Self { nodes: build.nodes, root, bounds }, build.blocks)
     }
 
-    /// The box around everything.
+    /// Returns the bounding box of the whole tree.
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
     }
 
     /// Visits leaves that may hold pieces within the square root of `bound` of the segment, nearest boxes first. `visit`
-    /// gets the index of a block and returns the new bound. Returns the last bound.
+    /// takes the index of a block and returns the new bound. Returns the last bound.
     #[inline(always)]
     pub fn search<A: Arithmetic>(
         &self,
@@ -113,7 +113,7 @@ impl BoundingTree {
         while waiting > 0 {
             waiting -= 1;
             let (nearest, item) = stack[waiting];
-            // Boxes at the bound may hold what is at the bound.
+            // Boxes at exactly the bound may still hold a piece at the bound.
             if nearest > bound {
                 continue;
             }
@@ -126,7 +126,7 @@ impl BoundingTree {
             let first = waiting;
             for lane in 0..4 {
                 if distances[lane] <= bound && node.child[lane] != NONE {
-                    // Kept in order, the nearest on top.
+                    // Insertion sort, nearest on top.
                     let mut place = waiting;
                     while place > first && stack[place - 1].0 < distances[lane] {
                         stack[place] = stack[place - 1];
@@ -140,7 +140,7 @@ impl BoundingTree {
         bound
     }
 
-    /// Visits the leaves whose boxes reach over `point`, seen along the x axis, at or beyond its x.
+    /// Visits the leaves whose boxes contain `point` in the projection along x, and reach at or beyond its x.
     pub fn along_x(&self, point: &Vector3<f64>, mut visit: impl FnMut(usize)) {
         let mut stack = [0_u32; STACK];
         stack[0] = self.root;
@@ -166,8 +166,8 @@ impl BoundingTree {
 }
 
 by_instructions! {
-    /// Visits the pieces in boxes within `reach` (m) of a segment, and some others; `block_of` gives the pieces of a leaf, and
-    /// `visit` returns the new reach.
+    /// Visits all pieces in boxes within `reach` (m) of a segment, and possibly others; `block_of` returns the pieces of a
+    /// leaf, and `visit` returns the new reach.
     pub(super) fn each_near(
         tree: &BoundingTree,
         block_of: &dyn Fn(usize) -> Block,
@@ -183,7 +183,7 @@ by_instructions! {
 }
 
 impl Node {
-    /// Lower bounds on the squared distances of a segment from the four boxes; exact for a point.
+    /// Returns lower bounds on the squared distances of a segment from the four boxes; exact for a point.
     #[inline(always)]
     fn squared_distances<A: Arithmetic>(&self, query: &SegmentQuery) -> F64x4 {
         let offset = Vec3::<Four<A>>::of(&self.center) - Vec3::splat(&query.center);
@@ -205,7 +205,7 @@ impl Node {
     }
 }
 
-/// Distance between intervals of this offset and half width, or 0.
+/// Returns the distance between an interval of half-width `half` and a value at `offset` from its middle, or 0 inside.
 #[inline(always)]
 fn gap<R: Real>(offset: R, half: R) -> R {
     (offset.larger(-offset) - half).larger(R::splat(0.0))
@@ -243,7 +243,7 @@ impl Build<'_> {
                 node.child[lane] = child;
                 for k in 0..3 {
                     node.center[k].0[lane] = center[k];
-                    // The centre is rounded: the half extents must still reach both sides.
+                    // Half extents are enlarged, since the rounded centre must still leave both sides covered.
                     node.half[k].0[lane] = half[k] * (1.0 + 1e-15) + 1e-15 * center[k].abs();
                 }
                 whole = whole.with(&bounds);
@@ -253,7 +253,7 @@ impl Build<'_> {
         (index as u32, whole)
     }
 
-    /// Splits at the median along the longest extent, the first half into full leaves.
+    /// Splits at the median along the longest extent; the first half fills whole leaves.
     fn halves<'i>(&self, items: &'i mut [u32]) -> (&'i mut [u32], &'i mut [u32]) {
         let middle = |i: u32| self.boxes[i as usize].lower + self.boxes[i as usize].upper;
         let spread = Aabb::around(items.iter().map(|i| middle(*i)));

@@ -1,4 +1,4 @@
-//! A validated shape at its place.
+//! Validated shape with its pose.
 
 use std::sync::Arc;
 
@@ -13,21 +13,21 @@ use super::point_cloud::PointCloud;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
-/// A validated shape at its place: an obstacle in the frame of a robot's base, or a body in the frame of its link.
-/// Copies share the data of meshes, clouds and grids.
+/// Validated shape with its pose: an obstacle in the base frame of a robot, or a body in the frame of its link. Copies share
+/// the data of meshes, clouds and grids.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     geometry: Geometry,
     bounds: BoundingBall,
-    /// Allowance for rounding in distances from points near it (m).
+    /// Allowance for rounding in distances from nearby points (m).
     rounding: f64,
-    /// Sorted names of the links that may touch it; `None`: no link.
+    /// Sorted names of the links that may touch the shape; `None` means no link.
     touch: Option<Arc<[String]>>,
 }
 
-/// What distances lose to rounding, for coordinates of 1 m (m).
+/// Rounding error of distances, for coordinates of 1 m (m).
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Coordinates beyond this (m) are not computed with: products of six of them would overflow.
+/// Largest coordinate in computations (m): products of six larger ones would overflow.
 pub(super) const LARGEST: f64 = 1e30;
 
 impl Shape {
@@ -37,7 +37,7 @@ impl Shape {
         Self { geometry, bounds, rounding: ROUNDING * scale, touch: None }
     }
 
-    /// A ball about `center` (m).
+    /// Creates a ball about `center` (m).
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a radius that is not positive.
@@ -47,7 +47,7 @@ impl Shape {
         Ok(Self::made(Geometry::Sphere { center, radius }, BoundingBall { center, radius }))
     }
 
-    /// A box about `center` with these edges (m), turned by `rotation`.
+    /// Creates a box about `center` with edges `size` (m), rotated by `rotation`.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::NotRigid`].
@@ -58,7 +58,7 @@ impl Shape {
         Ok(Self::made(Geometry::Box { pose, size }, bounds))
     }
 
-    /// All points within `radius` of the segment from `a` to `b` (m).
+    /// Creates a capsule: all points within `radius` of the segment from `a` to `b` (m).
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a radius that is not positive.
@@ -71,8 +71,8 @@ impl Shape {
         Ok(Self::made(Geometry::Capsule { a, b, radius }, bounds))
     }
 
-    /// All points within `radius` >= 0 of the segment from `a` to `b` (m): a sphere if they are equal, else a capsule. A radius
-    /// of zero makes a rod or a point, for bodies of robots.
+    /// Creates the set of points within `radius` >= 0 of the segment from `a` to `b` (m): a sphere if the ends are equal,
+    /// else a capsule. A radius of zero makes a rod or a point, for bodies of robots.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
@@ -91,7 +91,7 @@ impl Shape {
         Ok(Self::made(geometry, bounds))
     }
 
-    /// A cylinder of this radius and length (m) about `center`, along `axis` (of any length).
+    /// Creates a cylinder of this radius and length (m) about `center`, along `axis` (of any length).
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for an axis of length zero, or a radius or length that is not positive.
@@ -104,8 +104,8 @@ impl Shape {
         Ok(Self::made(Geometry::Cylinder { center, axis, radius, length }, bounds))
     }
 
-    /// All points x with normal . x <= offset (m): a floor is `half_space([0, 0, 1], height)`. The normal may have any
-    /// length; `offset` counts along the normal of unit length.
+    /// Creates a half-space: all points x with normal . x <= offset (m). A floor is `half_space([0, 0, 1], height)`. The
+    /// normal may have any length; `offset` refers to the unit normal.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a normal of length zero.
@@ -117,7 +117,7 @@ impl Shape {
         Ok(Self::made(Geometry::HalfSpace { normal, offset }, bounds))
     }
 
-    /// An ellipsoid about `center` with these semi-axes (m), turned by `rotation`.
+    /// Creates an ellipsoid about `center` with these semi-axes (m), rotated by `rotation`.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a semi-axis that is not positive, [`Error::NotRigid`].
@@ -128,7 +128,7 @@ impl Shape {
         Ok(Self::made(Geometry::Ellipsoid { pose, semi_axes }, bounds))
     }
 
-    /// An ellipse in the plane z = 0 about `center` with these semi-axes (m), its first axis at `angle` (rad).
+    /// Creates an ellipse in the plane z = 0 about `center` with these semi-axes (m), its first axis at `angle` (rad).
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a semi-axis that is not positive.
@@ -140,7 +140,7 @@ impl Shape {
         Ok(Self::made(Geometry::Ellipse { center, semi_axes, angle }, bounds))
     }
 
-    /// The convex hull of `points` (m), at least four that do not lie in a plane.
+    /// Creates the convex hull of `points` (m), at least four that do not lie in a plane.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for fewer points or a flat body.
@@ -151,8 +151,9 @@ impl Shape {
         Ok(Self::made(Geometry::ConvexMesh(Arc::new(hull)), bounds))
     }
 
-    /// A mesh of triangles, each given by three indices of `vertices` (m). It need not be convex. What a connected part without
-    /// boundary encloses counts too, whatever the orientation of its triangles; see [`Mesh::is_closed`].
+    /// Creates a mesh of triangles, each given by three indices of `vertices` (m). The mesh may be non-convex. The interior
+    /// of each connected part without boundary belongs to the shape, whatever the orientation of its triangles; see
+    /// [`Mesh::is_closed`].
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for no triangles, or an index that is not of a vertex.
@@ -163,7 +164,7 @@ impl Shape {
         Ok(Self::made(Geometry::Mesh(Arc::new(mesh)), bounds))
     }
 
-    /// Balls of one `radius` about `points` (m), such as from a depth camera.
+    /// Creates a point cloud: balls of one `radius` about `points` (m), for example from a depth camera.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius, [`Error::InvalidObstacle`] for no points.
@@ -179,8 +180,8 @@ impl Shape {
         Ok(Self::made(Geometry::PointCloud(Arc::new(PointCloud::new(points, radius))), bounds))
     }
 
-    /// The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin`.
-    /// `occupied` has `counts[0] * counts[1] * counts[2]` entries, with z running fastest.
+    /// Creates a voxel grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin`. `occupied` has
+    /// `counts[0] * counts[1] * counts[2]` entries, with z running fastest.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::WrongLength`],
@@ -207,7 +208,7 @@ impl Shape {
         Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
     }
 
-    /// The same shape as an obstacle that the links of these names may touch.
+    /// Returns the shape as an obstacle that the links of these names may touch.
     pub fn with_touch(mut self, mut links: Vec<String>) -> Self {
         links.sort_unstable();
         links.dedup();
@@ -215,48 +216,48 @@ impl Shape {
         self
     }
 
-    /// Names of the links that may touch it, sorted.
+    /// Returns the names of the links that may touch the shape, sorted.
     pub fn touch(&self) -> &[String] {
         self.touch.as_deref().unwrap_or_default()
     }
 
-    /// The geometry.
+    /// Returns the geometry.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// The name of its kind, such as "Sphere".
+    /// Returns the name of the kind, for example "Sphere".
     pub fn name(&self) -> &'static str {
         self.geometry.name()
     }
 
-    /// A ball that holds it.
+    /// Returns a ball that contains the shape.
     pub fn bounding_ball(&self) -> BoundingBall {
         self.bounds
     }
 
-    /// Taken off each computed distance of it from something at most `reach` (m) from the origin, so that no rounding makes
-    /// the result larger than the truth.
+    /// Returns the allowance for rounding of a distance to something at most `reach` (m) from the origin. It is subtracted
+    /// from each computed distance, so that the result stays a lower bound.
     pub(super) fn rounding(&self, reach: f64) -> f64 {
         self.rounding.max(ROUNDING * reach)
     }
 
-    /// Whether its coordinates are too large for products of them. It counts as near to all that a ball around it does not exclude.
+    /// Whether the coordinates are too large for their products. Distances are then bounded by the bounding ball alone.
     pub(crate) fn is_huge(&self) -> bool {
         !(self.rounding <= ROUNDING * LARGEST || matches!(self.geometry, Geometry::HalfSpace { .. }))
     }
 
-    /// Whether it is flat, in the plane z = 0, and so undefined for an arm that leaves that plane.
+    /// Whether the shape is flat, in the plane z = 0, and so undefined for an arm that leaves that plane.
     pub fn is_flat(&self) -> bool {
         matches!(self.geometry, Geometry::Ellipse { .. })
     }
 
-    /// Whether it is a mesh that is not closed: not all of its inside is known.
+    /// Whether the shape is a mesh that is not closed, so that part of its interior is unknown.
     pub fn is_open_mesh(&self) -> bool {
         matches!(&self.geometry, Geometry::Mesh(mesh) if !mesh.is_closed())
     }
 
-    /// Whether it can be a body of a robot: convex and bounded, in space.
+    /// Whether the shape can be a body of a robot: convex, bounded and three-dimensional.
     pub fn can_be_carried(&self) -> bool {
         use Geometry::{Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Sphere};
         matches!(
@@ -266,7 +267,7 @@ impl Shape {
     }
 }
 
-/// A ball about the middle of the box around `points` that holds this box, each point with `margin` (m) around it.
+/// Returns a ball about the middle of the bounding box of `points` that contains the box, enlarged by `margin` (m).
 fn ball_about(points: &[[f64; 3]], margin: f64) -> BoundingBall {
     let (mut lower, mut upper) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for point in points {
@@ -288,11 +289,11 @@ fn checked_pose(center: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Pose
 fn checked_direction(what: &str, direction: [f64; 3]) -> Result<Vector3<f64>> {
     require_point(what, &direction)?;
     let direction = Vector3::from(direction);
-    // Squares of very large or small entries would overflow or vanish.
+    // Normalized in two steps, since squares of very large or small entries would overflow or vanish.
     let largest = direction.amax();
     let length = largest * direction.unscale(if largest > 0.0 { largest } else { 1.0 }).norm();
     require_positive(&format!("length of the {what}"), length)?;
-    // A direction of unit length keeps its bits when a shape is made again from its parts.
+    // Unit vectors keep their bits, so that a shape can be rebuilt from its parts.
     let is_unit = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
     Ok(if is_unit { direction } else { direction.unscale(largest).normalize() })
 }

@@ -1,4 +1,4 @@
-//! The collision crate (parry): the only file that uses its types.
+//! Interface to the collision crate (parry); no other file uses its types.
 
 use std::collections::HashMap;
 
@@ -9,13 +9,14 @@ use parry3d_f64::query::epa::EPA;
 use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
 use parry3d_f64::shape::{ConvexPolyhedron, SupportMap};
 
-/// A convex polyhedron.
+/// Convex polyhedron.
 #[derive(Debug, Clone)]
 pub(super) struct Polyhedron(ConvexPolyhedron);
 
 impl Polyhedron {
-    /// The convex hull of `points`; `None` if they lie in a plane. The crate takes bodies thinner than a three-thousandth for flat,
-    /// so `stretch` makes them about as wide in all directions before it sees them; it keeps their orientation.
+    /// Returns the convex hull of `points`; `None` if they lie in a plane. The crate takes bodies thinner than a
+    /// three-thousandth for flat, so `stretch` first makes them about equally wide in all directions; it must keep their
+    /// orientation.
     pub fn hull_of(points: &[[f64; 3]], stretch: &Matrix3<f64>) -> Option<Self> {
         let stretched: Vec<Vector> = points.iter().map(|point| to_crate(&(stretch * Vector3::from(*point)))).collect();
         let bits = |point: &Vector| <[f64; 3]>::from(*point).map(f64::to_bits);
@@ -26,40 +27,40 @@ impl Polyhedron {
         ConvexPolyhedron::from_convex_mesh(corners, &triangles).map(Self)
     }
 
-    /// Its corners.
+    /// Returns the corners.
     pub fn corners(&self) -> Vec<Vector3<f64>> {
         self.0.points().iter().copied().map(from_crate).collect()
     }
 
-    /// Outward normals of its faces.
+    /// Returns the outward normals of the faces.
     pub fn normals(&self) -> Vec<Vector3<f64>> {
         self.0.faces().iter().map(|face| from_crate(face.normal)).collect()
     }
 
-    /// Corners of its triangles.
+    /// Returns the corners of the triangles.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
         let (corners, triangles) = self.0.to_trimesh();
         let corner = |i: u32| <[f64; 3]>::from(corners[i as usize]);
         triangles.into_iter().map(|triangle| triangle.map(corner)).collect()
     }
 
-    /// The point of the polyhedron nearest to `point`.
+    /// Returns the point of the polyhedron nearest to `point`.
     pub fn nearest_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
         from_crate(self.0.project_local_point(to_crate(point), true).point)
     }
 }
 
-/// What the crate says of two convex sets; normals are of unit length, from the other set to the own one.
+/// Result of the crate for two convex sets; normals are unit vectors from the other set to the own one.
 pub(super) enum Proposal {
-    /// They are nearest along `normal`, the own one at `point`.
+    /// Disjoint sets with this direction of smallest distance, and the nearest `point` of the own set.
     Apart { point: Vector3<f64>, normal: Vector3<f64> },
-    /// They seem to be farther apart than asked, along this normal.
+    /// Sets that appear to be farther apart than `enough`, along this normal.
     Beyond(Vector3<f64>),
-    /// They overlap.
+    /// Overlapping sets.
     Overlapping,
 }
 
-/// Where two convex sets are nearest, if they are within `enough`; each gives its farthest point along a direction.
+/// Finds the nearest points of two convex sets if they are within `enough`; each set is given by its support function.
 pub(super) fn nearest(
     own: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
     other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
@@ -78,7 +79,8 @@ pub(super) fn nearest(
     }
 }
 
-/// The deepest point of the own set in the other, and the normal along which they part soonest; `None` if the crate finds none.
+/// Returns the deepest point of the own set inside the other, and the normal of shortest separation; `None` if the crate
+/// finds none.
 pub(super) fn deepest(
     own: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
     other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
@@ -104,7 +106,7 @@ fn searched(
     closest_points(&Pose::IDENTITY, &own, &other, enough.min(f64::MAX), true, simplex)
 }
 
-/// A convex set by its farthest point along a direction.
+/// Convex set given by its support function.
 struct SupportPoints<'a, S>(&'a S);
 
 impl<S: Fn(&Vector3<f64>) -> Vector3<f64>> SupportMap for SupportPoints<'_, S> {

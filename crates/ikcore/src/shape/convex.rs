@@ -1,4 +1,4 @@
-//! Convex sets at their place, by their support points.
+//! Convex sets with a pose, given by support points.
 
 use nalgebra::Vector3;
 
@@ -9,34 +9,35 @@ use super::signed_distance::at_right_angles;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 
-/// A bounded convex set: all points within `radius` of a core.
+/// Bounded convex set: all points within `radius` of a core.
 #[derive(Debug, Clone)]
 pub(super) struct Convex<'a> {
     core: Core<'a>,
-    /// Where the core is.
+    /// Frame of the core.
     frame: Frame,
     radius: f64,
 }
 
-/// A core in its own frame.
+/// Core in its own frame.
 #[derive(Debug, Clone)]
 enum Core<'a> {
     Segment(LineSegment),
-    /// By half its edges.
+    /// Box, by half its edges.
     Box(Vector3<f64>),
-    /// Along z.
+    /// Cylinder along z.
     Cylinder {
         radius: f64,
         half_length: f64,
     },
-    /// By its semi-axes.
+    /// Ellipsoid, by its semi-axes.
     Ellipsoid(Vector3<f64>),
-    /// The convex hull of these points.
+    /// Convex hull of these points.
     Corners(&'a [Vector3<f64>]),
 }
 
 impl<'a> Convex<'a> {
-    /// A shape given in `frame`; `None` for one that is not convex or has no end. An ellipse counts as an ellipsoid that holds it.
+    /// Returns the convex set of a shape given in `frame`; `None` if the shape is not convex or not bounded. An ellipse is
+    /// replaced by an ellipsoid that contains it.
     pub fn of(geometry: &'a Geometry, frame: &Frame) -> Option<Self> {
         let there = |core: Core<'a>, radius: f64| Some(Self { core, frame: *frame, radius });
         let turned = |core: Core<'a>, pose: Frame| Some(Self { core, frame: frame.then::<NoFma>(&pose), radius: 0.0 });
@@ -63,34 +64,34 @@ impl<'a> Convex<'a> {
         }
     }
 
-    /// All points within `radius` of a segment.
+    /// Returns all points within `radius` of a segment.
     pub fn capsule(axis: LineSegment, radius: f64) -> Self {
         Self { core: Core::Segment(axis), frame: Frame::IDENTITY, radius }
     }
 
-    /// The convex hull of `corners`, at least one.
+    /// Returns the convex hull of `corners`, at least one.
     pub fn corners(corners: &'a [Vector3<f64>]) -> Self {
         Self { core: Core::Corners(corners), frame: Frame::IDENTITY, radius: 0.0 }
     }
 
-    /// A box along the axes.
+    /// Returns an axis-aligned box.
     pub fn aligned(bounds: &Aabb) -> Self {
         let origin = (0.5 * (bounds.lower + bounds.upper)).into();
         let core = Core::Box(0.5 * (bounds.upper - bounds.lower));
         Self { core, frame: Frame { origin, ..Frame::IDENTITY }, radius: 0.0 }
     }
 
-    /// The set is all points within this distance (m) of its core.
+    /// Returns the distance (m) from the core within which all points belong to the set.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Whether its core is round, so that the normals along which it is nearest are not a few.
+    /// Whether the core is curved, so that its normals form a continuum.
     pub fn is_round(&self) -> bool {
         matches!(self.core, Core::Cylinder { .. } | Core::Ellipsoid(_))
     }
 
-    /// The point of the core that is farthest along `direction`.
+    /// Returns the point of the core farthest along `direction`.
     pub fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         let along = Vector3::from(self.frame.turn_back(&(*direction).into()));
         self.frame.place::<NoFma>(&self.core.support(&along).into()).into()

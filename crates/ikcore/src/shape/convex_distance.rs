@@ -1,8 +1,8 @@
 //! Signed distance of two convex sets.
 //!
-//! For a unit vector n the sets lie at least min n . x of one less max n . x of the other apart; the signed distance is the
-//! largest such separation, negative where they overlap: then they must be moved so far to part. The collision crate proposes
-//! n, so that the result is never more than the truth, whatever the error of the crate.
+//! A unit vector n separates the sets by min n . x over one, less max n . x over the other. The signed distance is the
+//! largest such separation; a negative one is the penetration depth, the shortest translation that parts overlapping sets.
+//! The collision crate proposes n, so the result is a lower bound whatever the error of the crate.
 
 use nalgebra::Vector3;
 
@@ -10,32 +10,32 @@ use super::checked_shape::ROUNDING;
 use super::collision_crate::{Proposal, deepest, nearest};
 use super::convex::Convex;
 
-/// Where two sets are nearest.
+/// Separation of two sets along one normal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
     /// Signed distance (m).
     pub distance: f64,
     /// Unit normal from the other set to the own one.
     pub normal: Vector3<f64>,
-    /// The nearest point of the own set (m).
+    /// Nearest point of the own set (m).
     pub point: Vector3<f64>,
 }
 
-/// Turns of the normal tried, ...
+/// Largest number of rotations of the normal.
 const CLIMBS: usize = 30;
-/// ... the first by this angle (rad).
+/// First rotation of the normal (rad).
 const FIRST_ANGLE: f64 = 1e-3;
-/// A gradient shorter than this (m) is none.
+/// Length (m) below which a gradient counts as zero.
 const SHORTEST: f64 = 1e-12;
 
 impl Gap {
-    /// Nothing within `distance`.
+    /// Returns a bound for sets at least `distance` apart.
     pub fn beyond(distance: f64) -> Self {
         Self { distance, normal: Vector3::x(), point: Vector3::zeros() }
     }
 }
 
-/// The gap between two sets: at most the truth, and exact to about 1e-7 m where it is below `enough`.
+/// Returns the gap between two sets: a lower bound, exact to about 1e-7 m where it is below `enough`.
 pub(super) fn gap(own: &Convex, other: &Convex, enough: f64) -> Gap {
     let radii = own.radius() + other.radius();
     let (here, there) = (own.support(&Vector3::x()), other.support(&Vector3::x()));
@@ -57,7 +57,7 @@ pub(super) fn gap(own: &Convex, other: &Convex, enough: f64) -> Gap {
     }
 }
 
-/// The gap along `normal`; `point` is of the core of `own`.
+/// Returns the gap along `normal`; `point` belongs to the core of `own`.
 fn separated(own: &Convex, other: &Convex, normal: &Vector3<f64>, point: Vector3<f64>) -> Gap {
     let [lowest, highest] = [own.support(&-normal), other.support(normal)];
     let rounding = ROUNDING * (1.0 + lowest.amax().max(highest.amax()) + own.radius() + other.radius());
@@ -65,17 +65,17 @@ fn separated(own: &Convex, other: &Convex, normal: &Vector3<f64>, point: Vector3
     Gap { distance, normal: *normal, point: point - own.radius() * normal }
 }
 
-/// The largest gap along some normals, and along those that climbing from the best of them finds.
+/// Returns the largest gap along the given normals, improved by gradient ascent from the best of them.
 fn overlapping(own: &Convex, other: &Convex, normals: &[Vector3<f64>], point: Vector3<f64>) -> Gap {
     let gaps = normals.iter().map(|normal| separated(own, other, normal, point));
     climbed(own, other, gaps.fold(Gap::beyond(f64::NEG_INFINITY), larger))
 }
 
-/// A gap at least as large, along a normal nearby: of round sets the crate's normal is not exact.
+/// Increases the gap by gradient ascent on the normal: for curved sets the normal of the crate is not exact.
 fn climbed(own: &Convex, other: &Convex, mut best: Gap) -> Gap {
     let mut angle = FIRST_ANGLE;
     for _ in 0..CLIMBS {
-        // The gradient of the gap by the normal is the vector between the points that are farthest along it.
+        // Gradient of the gap with respect to the normal: the vector between the two support points.
         let between = own.support(&-best.normal) - other.support(&best.normal);
         let uphill = between - between.dot(&best.normal) * best.normal;
         let Some(uphill) = uphill.try_normalize(SHORTEST) else { break };

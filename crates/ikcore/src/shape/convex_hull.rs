@@ -7,7 +7,7 @@ use super::bounding_tree::Aabb;
 use super::collision_crate::Polyhedron;
 use super::tangent::Tangent;
 
-/// The convex hull of some points.
+/// Convex hull of a set of points.
 #[derive(Debug, Clone)]
 pub struct Hull {
     points: Vec<[f64; 3]>,
@@ -18,23 +18,23 @@ pub struct Hull {
 }
 
 impl PartialEq for Hull {
-    /// The rest follows from the points.
+    /// Compares the points alone, since they determine all other fields.
     fn eq(&self, other: &Self) -> bool {
         self.points == other.points
     }
 }
 
-/// A body thinner than this, seen against its size, is flat.
+/// Thickness below which a body is flat, relative to its size.
 const THINNEST: f64 = 1e-6;
 
-/// Products of smaller or larger extents (m) would vanish or overflow.
+/// Range of extents (m) whose products neither vanish nor overflow.
 const EXTENTS: [f64; 2] = [1e-75, 1e75];
 
-/// Points outside by less than this, seen against the size, are outside by rounding.
+/// Distance by which rounding may leave a point outside, relative to the size.
 const STICKING_OUT: f64 = 1e-9;
 
 impl Hull {
-    /// Err says what is wrong with the points.
+    /// Builds the hull; the error describes the problem with the points.
     pub(super) fn new(points: &[[f64; 3]]) -> Result<Self, String> {
         let flat = || "the points of a convex mesh lie in a plane: it needs at least 4 that do not".to_string();
         if points.len() < 4 {
@@ -57,22 +57,22 @@ impl Hull {
         Ok(Self { points: points.to_vec(), faces, corners, polyhedron })
     }
 
-    /// The points as given (m).
+    /// Returns the points as given (m).
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
     }
 
-    /// Its corners (m).
+    /// Returns the corners (m).
     pub(super) fn corners(&self) -> &[Vector3<f64>] {
         &self.corners
     }
 
-    /// Corners of the hull's triangles (m), for drawing.
+    /// Returns the corners of the hull's triangles (m), for drawing.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
         self.polyhedron.triangles()
     }
 
-    /// Whether no point is outside by more than rounding.
+    /// Whether the hull contains all points up to rounding.
     pub(super) fn holds(&self, points: &[[f64; 3]]) -> bool {
         let size = self.bounding_ball().radius;
         self.faces.iter().all(|(normal, offset)| {
@@ -80,14 +80,15 @@ impl Hull {
         })
     }
 
-    /// A ball that holds it.
+    /// Returns a ball that contains the hull.
     pub(super) fn bounding_ball(&self) -> BoundingBall {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
         let radius = self.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
         BoundingBall { center: middle.into(), radius }
     }
 
-    /// The crate proposes the nearest point; the plane through the corners bounds the distance regardless of its error.
+    /// Returns the signed distance of `point` with its gradient. The crate proposes the nearest point; the plane through the
+    /// corners bounds the distance whatever the error of the crate.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let beyond =
             |(normal, offset): &(Vector3<f64>, f64)| Tangent { value: normal.dot(point) - offset, normal: *normal };
@@ -106,12 +107,12 @@ impl Hull {
     }
 }
 
-/// The farthest that the body reaches along `normal`.
+/// Returns the largest coordinate of the corners along `normal`.
 fn support(corners: &[Vector3<f64>], normal: &Vector3<f64>) -> f64 {
     corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The map that makes the points about as wide in all directions; `None` if they lie in a plane.
+/// Returns the map that makes the points about equally wide in all directions; `None` if they lie in a plane.
 fn stretch(points: &[[f64; 3]]) -> Option<Matrix3<f64>> {
     let middle = points.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / points.len() as f64;
     let spread: Matrix3<f64> = points.iter().map(|p| Vector3::from(*p) - middle).map(|v| v * v.transpose()).sum();

@@ -1,5 +1,5 @@
-//! "Nearer than m?" for one body at eight configurations, in single precision: for searches, whose results are confirmed in double
-//! precision.
+//! Clearance test "nearer than m?" for one body at eight configurations in single precision, for searches whose results are
+//! confirmed in double precision.
 
 use nalgebra::Vector3;
 
@@ -13,16 +13,17 @@ use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::math::vec3::Vec3;
 
-/// Shapes with larger coordinates (m) are left to double precision: products of four of them would overflow.
+/// Largest coordinate (m) in single precision: products of four larger ones would overflow, so larger shapes are tested in
+/// double precision.
 pub(crate) const LARGEST_IN_SINGLE: f64 = 1e8;
 
-/// A vector, the same in all lanes or one per lane.
+/// Three-vector in eight lanes, equal or one per lane.
 pub(crate) type Vectors = [F32x8; 3];
 
-/// A shape in all lanes.
+/// Shape broadcast to all lanes.
 #[derive(Debug, Clone)]
 pub(crate) struct EightShape {
-    /// A ball around it; infinite for a half-space.
+    /// Bounding ball; infinite for a half-space.
     center: Vectors,
     radius: F32x8,
     form: Form,
@@ -50,23 +51,23 @@ enum Form {
         radius: F32x8,
         half_length: F32x8,
     },
-    /// A shape whose distances are found one by one.
+    /// Shape tested lane by lane in double precision.
     Other(Shape),
 }
 
-/// A capsule at eight places, one per lane; a sphere if `along` is `None`.
+/// Capsule at eight configurations, one per lane; a sphere if `along` is `None`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EightCapsules<A> {
     /// Start of each axis (m).
     pub start: Vec3<Eight<A>>,
-    /// From the start of each axis to its end.
+    /// Vector from start to end of each axis.
     pub along: Option<Vec3<Eight<A>>>,
     /// Radius (m).
     pub radius: Eight<A>,
 }
 
 impl<A: Arithmetic> EightCapsules<A> {
-    /// Squared distance (m^2) between the axes.
+    /// Returns the squared distance (m^2) between the axes.
     #[inline(always)]
     pub fn squared_distance(&self, other: &Self) -> Eight<A> {
         if self.along.is_none() && other.along.is_none() {
@@ -79,20 +80,20 @@ impl<A: Arithmetic> EightCapsules<A> {
 }
 
 by_instructions! {
-    /// Squared distance (m^2) between segments, each given by its start and the way to its end.
+    /// Returns the squared distance (m^2) between segments, each given by its start and the vector to its end.
     fn squared_distance(one: &[Vectors; 2], other: &[Vectors; 2]) -> F32x8 {
         let ([a, u], [b, v]) = (one, other);
         to_segment::<Eight<A>>(Vec3::of(a), Vec3::of(u), Vec3::of(b), Vec3::of(v)).squared.stored()
     }
 }
 
-/// The same vector in all lanes.
+/// Broadcasts a vector to all lanes.
 pub(crate) fn splat(vector: &[f64; 3]) -> Vectors {
     vector.map(|x| F32x8::splat(x as f32))
 }
 
 impl EightShape {
-    /// A shape in all lanes.
+    /// Broadcasts a shape to all lanes.
     pub fn new(shape: &Shape) -> Self {
         let number = |x: f64| F32x8::splat(x as f32);
         let ball = shape.bounding_ball();
@@ -122,7 +123,7 @@ impl EightShape {
         Self { center: splat(&ball.center), radius: number(ball.radius), form }
     }
 
-    /// The lanes in which the capsule may be nearer than `margin` >= 0 (m), one bit each.
+    /// Returns a bit mask of the lanes in which the capsule may be nearer than `margin` >= 0 (m).
     #[inline(always)]
     pub fn near<A: Arithmetic>(&self, body: &EightCapsules<A>, margin: Eight<A>) -> u32 {
         let (center, enough) = (body.start, body.radius + margin);
@@ -152,7 +153,8 @@ impl EightShape {
 }
 
 by_instructions! {
-    /// Of capsules that are no spheres. A function of its own: inlined into every kernel it takes minutes to compile.
+    /// Implements [`EightShape::near`] for capsules with an axis. A separate function: inlined into every kernel it takes
+    /// minutes to compile.
     fn near_capsule(shape: &EightShape, start: &Vectors, along: &Vectors, enough: F32x8) -> u32 {
         let (a, u, enough) = (Vec3::<Eight<A>>::of(start), Vec3::<Eight<A>>::of(along), Eight::<A>::of(enough));
         match &shape.form {
@@ -186,26 +188,26 @@ by_instructions! {
     }
 }
 
-/// The lanes in which a point is nearer to the ball around a shape.
+/// Returns the lanes in which a point may be nearer than `enough` to the ball around a shape.
 #[inline(always)]
 fn near_ball<A: Arithmetic>(shape: &EightShape, point: Vec3<Eight<A>>, enough: Eight<A>) -> u32 {
     let offset = point - Vec3::of(&shape.center);
     below_square(offset.dot(offset), enough + Eight::of(shape.radius))
 }
 
-/// The lanes in which a point is nearer to a solid.
+/// Returns the lanes in which a point may be nearer than `enough` to a solid.
 #[inline(always)]
 fn near_solid<A: Arithmetic, S: SolidLanes<Eight<A>>>(solid: &S, point: Vec3<Eight<A>>, enough: Eight<A>) -> u32 {
     below_square(solid.squared_distance(solid.to_local(point)), enough)
 }
 
-/// The lanes in which the square root of `squared` is not at least `enough`.
+/// Returns the lanes in which the square root of `squared` is not at least `enough`.
 #[inline(always)]
 pub(crate) fn below_square<A: Arithmetic>(squared: Eight<A>, enough: Eight<A>) -> u32 {
     squared.not_at_least(enough * enough)
 }
 
-/// Of these lanes those in which the segment is nearer than `enough`.
+/// Returns those of `lanes` in which the segment is nearer than `enough`, tested in double precision.
 #[inline(never)]
 fn near_one_by_one(shape: &Shape, start: &Vectors, along: &Vectors, enough: F32x8, lanes: u32) -> u32 {
     let near = |lane: usize| {

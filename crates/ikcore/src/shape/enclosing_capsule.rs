@@ -1,4 +1,4 @@
-//! Capsules that hold other shapes.
+//! Capsules that contain other shapes.
 
 use nalgebra::{Point3, Vector3};
 
@@ -11,7 +11,8 @@ use crate::math::Pose;
 type CapsuleParts = ([f64; 3], [f64; 3], f64);
 
 impl Shape {
-    /// A capsule that holds the shape: exact for spheres and capsules, small for other convex shapes, else the bounding ball.
+    /// Returns a capsule that contains the shape: exact for spheres and capsules, small for other convex shapes, else the
+    /// bounding ball.
     pub(crate) fn enclosing_capsule(&self) -> CapsuleParts {
         match self.geometry() {
             Geometry::Sphere { center, radius } => (*center, *center, *radius),
@@ -20,7 +21,7 @@ impl Shape {
                 let end = |side: f64| std::array::from_fn(|k| center[k] + side * length * axis[k]);
                 (end(-0.5), end(0.5), *radius)
             }
-            // Along the longest edge; the radius reaches the corners of the cross-section.
+            // Axis along the longest edge; the radius reaches the corners of the cross-section.
             Geometry::Box { pose, size } => along_longest(pose, &(0.5 * Vector3::from(*size)), |across| across.norm()),
             Geometry::Ellipsoid { pose, semi_axes } => {
                 along_longest(pose, &Vector3::from(*semi_axes), |across| across.amax())
@@ -34,7 +35,7 @@ impl Shape {
     }
 }
 
-/// The capsule along the longest of three half extents, with the radius that `reach` gives of the other two.
+/// Returns the capsule along the longest of three half extents; `reach` computes its radius from the other two.
 fn along_longest(pose: &Pose, half: &Vector3<f64>, reach: impl Fn(&Vector3<f64>) -> f64) -> CapsuleParts {
     let longest = half.imax();
     let (mut axis, mut across) = (Vector3::zeros(), *half);

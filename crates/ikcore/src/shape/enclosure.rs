@@ -1,11 +1,11 @@
-//! Orientation of each triangle of a mesh, so that winding numbers count whatever the mesh encloses.
+//! Interior of a mesh: orients every triangle so that winding numbers show what the mesh encloses.
 //!
-//! Every closed piece is turned outward: pieces that overlap add up, and one that is inside out has its inside all the same. A piece is the
-//! wall of a cavity only if it lies apart from all others, in the solid of one, and its given orientation takes that solid away; every
-//! doubt makes it a solid.
+//! Every closed piece is oriented outward, so that overlapping pieces add up and an inverted piece still has an interior. A
+//! piece is the wall of a cavity only if it lies apart from all other pieces, inside the solid of one, and its original
+//! orientation removes that solid; in doubt it is a solid.
 //!
-//! Winding numbers on both sides of its triangles say whether a piece encloses anything for certain: none is negative, and no triangle
-//! has the outside on both sides, as have two coincident layers of opposite orientation.
+//! A piece provably encloses a volume if the winding numbers on both sides of its triangles are never negative, and no
+//! triangle has the outside on both sides, as in two coincident layers of opposite orientation.
 
 use nalgebra::Vector3;
 
@@ -16,56 +16,57 @@ use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
 
-/// Triangles that can be asked for winding numbers, and for those near a place.
+/// Triangle mesh with queries for winding numbers and for nearby triangles.
 pub(super) trait TriangleSurface {
     fn vertices(&self) -> &[[f64; 3]];
 
     fn faces(&self) -> &[[u32; 3]];
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     fn triangle(&self, face: usize) -> [Vector3<f64>; 3];
 
-    /// The box around all.
+    /// Returns the bounding box.
     fn bounds(&self) -> &Aabb;
 
-    /// How often the triangles enclose `point`, if `count` says how often each counts.
+    /// Returns the winding number of the triangles about `point`, with each triangle weighted by `count`.
     fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32;
 
-    /// Visits the triangles within `reach` (m) of a segment, and some others; `visit` returns the new reach.
+    /// Visits all triangles within `reach` (m) of a segment, and possibly others; `visit` returns the new reach.
     fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64);
 }
 
-/// What a mesh encloses.
+/// Interior of a mesh.
 #[derive(Debug, Clone)]
 pub(super) struct Enclosure {
-    /// What crossing each triangle counts: +1 as given, -1 turned round, 0 if it belongs to no closed piece. Empty if all are 0.
+    /// Weight of each triangle in winding numbers: +1 as given, -1 reversed, 0 if it belongs to no closed piece. Empty if all
+    /// are 0.
     pub turns: Vec<i8>,
-    /// Whether every piece encloses something for certain.
+    /// True if every piece provably encloses a volume.
     pub certain: bool,
 }
 
-/// Layers nearer to each other than this coincide, as a fraction of the size of their mesh: they may have been rounded to single precision.
+/// Distance below which two layers coincide, as a fraction of the mesh size: they may have been rounded to single precision.
 const COINCIDENT: f64 = 1e-6;
-/// Samples of a triangle lie off it by this fraction of its height, ...
+/// Offset of a sample point from its triangle, as a fraction of the triangle's height.
 const OFF_TRIANGLE: f64 = 1e-3;
-/// ... but off by more than coordinates are rounded, as a multiple of that.
+/// Smallest offset, as a multiple of the rounding error of coordinates.
 const ROUNDINGS: f64 = 32.0;
-/// Number of triangles that are sampled, ...
+/// Number of sampled triangles of a mesh.
 const SAMPLED: usize = 2048;
-/// ... of one piece at least and at most so many.
+/// Smallest and largest number of sampled triangles of a piece.
 const OF_A_PIECE: [usize; 2] = [3, 128];
-/// Where a triangle is sampled: in its middle, and near its corners.
+/// Barycentric coordinates of the sample points: the middle of a triangle, and points near its corners.
 const SAMPLES: [[f64; 3]; 4] = [[1.0 / 3.0; 3], [0.96, 0.03, 0.01], [0.01, 0.96, 0.03], [0.03, 0.01, 0.96]];
 
 impl Enclosure {
-    /// Of a mesh without an inside.
+    /// Result for a mesh without an interior.
     pub const NOTHING: Self = Self { turns: vec![], certain: false };
 
-    /// What `mesh` encloses.
+    /// Finds the interior of `mesh`.
     pub fn of(mesh: &impl TriangleSurface) -> Self {
         let MeshPieces { pieces, mut turns, of } = MeshPieces::of(mesh.vertices(), mesh.faces());
         let mut certain = !pieces.is_empty() && pieces.iter().all(|piece| piece.closed);
-        // The orientation in which each piece was given: +1 is outward.
+        // Original orientation of each piece: +1 is outward, 0 is mixed.
         let mut given = vec![0; pieces.len()];
         for (number, (piece, given)) in pieces.iter().zip(&mut given).enumerate() {
             let is_outward = signed_volume(mesh, piece, &turns) >= 0.0;
@@ -87,7 +88,7 @@ impl Enclosure {
     }
 }
 
-/// The volume that a piece encloses (m^3); negative if its triangles are turned inward.
+/// Returns the volume enclosed by a piece (m^3); negative if its triangles point inward.
 fn signed_volume(mesh: &impl TriangleSurface, piece: &MeshPiece, turns: &[i8]) -> f64 {
     let [origin, ..] = mesh.triangle(piece.faces[0] as usize);
     let cone = |face: &u32| {
@@ -97,8 +98,8 @@ fn signed_volume(mesh: &impl TriangleSurface, piece: &MeshPiece, turns: &[i8]) -
     piece.faces.iter().map(cone).sum()
 }
 
-/// Whether the winding numbers of a piece on both sides of some of its triangles are those of a body turned outward; `own` is what each
-/// triangle of it counts.
+/// Whether sampled winding numbers on both sides of the triangles of a piece are those of a body oriented outward; `own` is
+/// the weight of each triangle of the piece.
 fn encloses_for_certain(
     mesh: &impl TriangleSurface,
     piece: &MeshPiece,
@@ -114,7 +115,7 @@ fn encloses_for_certain(
     some.peek().is_some() && some.all(|[one, other]| one >= 0 && other >= 0 && one + other > 0)
 }
 
-/// Points on both sides of a triangle near the one with these barycentric coordinates; `None` if it has no area.
+/// Returns points on both sides of a triangle at these barycentric coordinates; `None` if it has no area.
 fn both_sides(mesh: &impl TriangleSurface, face: u32, fractions: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
     let [a, b, c] = mesh.triangle(face as usize);
     let at = fractions[0] * a + fractions[1] * b + fractions[2] * c;
@@ -128,7 +129,8 @@ fn both_sides(mesh: &impl TriangleSurface, face: u32, fractions: &[f64; 3]) -> O
     Some([at + off * normal, at - off * normal])
 }
 
-/// The pieces that are walls of cavities; `of` is the number of the piece of each triangle, `given` the orientation of each piece, or 0.
+/// Returns the pieces that are walls of cavities; `of` is the piece of each triangle, `given` the original orientation of
+/// each piece, or 0.
 fn cavities(
     mesh: &impl TriangleSurface,
     (pieces, of): (&[MeshPiece], &[usize]),
@@ -156,7 +158,7 @@ fn cavities(
         .collect()
 }
 
-/// Whether a triangle touches one of another piece; `of` is the number of the piece of each.
+/// Whether a triangle touches a triangle of another piece; `of` is the piece of each triangle.
 fn touches_others(mesh: &impl TriangleSurface, of: &[usize], face: u32) -> bool {
     let own = mesh.triangle(face as usize);
     let Aabb { lower, upper } = mesh.bounds();
@@ -174,7 +176,7 @@ fn touches_others(mesh: &impl TriangleSurface, of: &[usize], face: u32) -> bool 
     touches
 }
 
-/// Whether an edge of the first triangle is nearer than `near` (m) to the other.
+/// Whether an edge of the first triangle is nearer than `near` (m) to the second.
 fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64) -> bool {
     let vector = |v: &Vector3<f64>| Vec3::<One<NoFma>>::splat(&(*v).into());
     let triangle = TriangleLanes::new(vector(p), vector(&(q - p)), vector(&(r - p)));
@@ -194,7 +196,7 @@ mod tests {
 
     type Corners = [[f64; 3]; 3];
 
-    /// A box along the axes, by its lower and upper corners.
+    /// Axis-aligned box, by its lower and upper corners.
     #[derive(Debug, Clone, Copy)]
     struct Block {
         lower: [f64; 3],
@@ -206,7 +208,7 @@ mod tests {
             Self { lower: center.map(|x| x - half), upper: center.map(|x| x + half) }
         }
 
-        /// Its triangles; the squares are halved along one diagonal or the other.
+        /// Returns the triangles of the box, whose squares are split along one diagonal or the other.
         fn triangles(&self, other_diagonal: bool) -> Vec<Corners> {
             let corner = |bits: usize| std::array::from_fn(|k| [self.lower, self.upper][bits >> k & 1][k]);
             let squares = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -222,7 +224,7 @@ mod tests {
             (0..3).all(|k| self.lower[k] - margin < p[k] && p[k] < self.upper[k] + margin)
         }
 
-        /// Whether it lies inside of `other`, apart from its walls.
+        /// Whether the box lies inside `other`, apart from its walls.
         fn is_within(&self, other: &Self) -> bool {
             (0..3).all(|k| other.lower[k] + 1e-3 < self.lower[k] && self.upper[k] < other.upper[k] - 1e-3)
         }
@@ -244,7 +246,7 @@ mod tests {
         }
     }
 
-    /// Whether the mesh is closed, and what of these points on the x axis it encloses.
+    /// Returns whether the mesh is closed, and which of these points on the x axis it encloses.
     fn judged(triangles: &[Corners], places: &[f64]) -> (bool, Vec<bool>) {
         let shape = shape(triangles);
         let mesh = as_mesh(&shape);
@@ -263,7 +265,7 @@ mod tests {
         assert_eq!(judged(&turned(unit()), &[0.0, 0.6]), inside);
         let two_sided = [unit(), turned(unit())].concat();
         assert_eq!(judged(&two_sided, &[0.0, 0.6]), inside);
-        // Its layers, each with its own corners, in any order and rounded to single precision.
+        // Two layers with separate corners, in any order and rounded to single precision.
         let mut moved: Vec<Corners> = Block::about([0.1, 0.2, 0.3], 0.5).triangles(false);
         moved.extend(
             turned(moved.clone()).into_iter().rev().map(|[a, b, c]| [c, a, b].map(|p| p.map(|x| f64::from(x as f32)))),
@@ -274,7 +276,7 @@ mod tests {
                 |(i, corners): (usize, Corners)| if some >> i & 1 == 1 { turned(vec![corners])[0] } else { corners };
             assert_eq!(judged(&unit().into_iter().enumerate().map(flip).collect::<Vec<_>>(), &[0.0, 0.6]), inside);
         }
-        // Repeated triangles, and such without area.
+        // Repeated triangles, and triangles without area.
         let mut more = [unit(), unit()[..3].to_vec()].concat();
         more.push([[0.5; 3], [0.5; 3], [-0.5; 3]]);
         assert_eq!(judged(&more, &[0.0, 0.6]), inside);
@@ -290,7 +292,7 @@ mod tests {
         assert_eq!(judged(&island, &[0.0, 0.3, 0.45]), (true, vec![true, false, true]));
         let same_orientation = [unit(), Block::about([0.0; 3], 0.4).triangles(false)].concat();
         assert_eq!(judged(&same_orientation, &[0.0, 0.45]), (true, vec![true, true]));
-        // Layers that coincide, or touch in a corner, are no walls of a cavity.
+        // Layers that coincide, or touch in a corner, are not walls of a cavity.
         let corner = Block { lower: [-0.4; 3], upper: [0.4, 0.4, 0.5] };
         for inner in [Block::about([0.0; 3], 0.5 - 1e-8), corner] {
             for diagonal in [false, true] {
@@ -312,7 +314,7 @@ mod tests {
 
     #[test]
     fn parts_that_touch_keep_their_insides() {
-        // Along a face, along an edge, at a corner.
+        // Contact along a face, along an edge, and at a corner.
         for center in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]] {
             let other = Block::about(center, 0.5);
             let both = shape(&[unit(), other.triangles(false)].concat());
@@ -339,10 +341,10 @@ mod tests {
         for surface in [pillow.clone(), slanted, without_a_side, two_sided_bin, point] {
             assert_eq!(judged(&surface, &[0.0, -0.4]), (false, vec![false, false]), "{surface:?}");
         }
-        // Two layers with other diagonals: nothing says that they are not one within the other.
+        // Two layers with different diagonals: neither is provably inside the other.
         let crossed = [unit(), turned(Block::about([0.0; 3], 0.5).triangles(true))].concat();
         assert!(!judged(&crossed, &[]).0);
-        // What is beside an open surface is enclosed all the same.
+        // A closed part beside an open surface still has an interior.
         let far = |corners: Corners| corners.map(|[x, y, z]| [x + 3.0, y, z]);
         let beside = [unit(), pillow.into_iter().map(far).collect()].concat();
         assert_eq!(judged(&beside, &[0.0, 2.6]), (false, vec![true, false]));
@@ -372,7 +374,7 @@ mod tests {
                     (lower[k], upper[k]) = (ends[0].min(ends[1]), ends[0].max(ends[1]) + if round { 1.0 } else { 0.1 });
                 }
                 if let Some((last, _)) = parts.last().filter(|_| rng.below(2) == 0) {
-                    // Within the one before.
+                    // Box inside the previous one.
                     lower = std::array::from_fn(|k| 0.8 * last.lower[k] + 0.2 * last.upper[k]);
                     upper = std::array::from_fn(|k| 0.2 * last.lower[k] + 0.8 * last.upper[k]);
                 }

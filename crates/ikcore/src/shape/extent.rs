@@ -1,4 +1,4 @@
-//! How far bodies and shapes extend along a direction: the planes that part them.
+//! Extents of bodies and shapes along a direction, which give separating planes.
 
 use nalgebra::Vector3;
 
@@ -8,12 +8,12 @@ use super::geometry::Geometry;
 use super::placed_body::PlacedBody;
 use crate::math::Frame;
 
-/// A normal may differ from that of a half-space by this much in each entry.
+/// Largest difference, in each entry, between a normal and the normal of a half-space that count as equal.
 const PARALLEL: f64 = 1e-14;
 
 impl Shape {
-    /// The largest n'x (m) over all points x of the shape, at least; `None` for shapes that are not convex, and for a half-space
-    /// along any other normal than its own.
+    /// Returns an upper bound on n'x (m) over all points x of the shape; `None` for shapes that are not convex, and for a
+    /// half-space whose normal differs from n.
     pub(crate) fn farthest_along(&self, normal: &Vector3<f64>) -> Option<f64> {
         if let Geometry::HalfSpace { normal: own, offset } = self.geometry() {
             return ((normal - Vector3::from(*own)).amax() <= PARALLEL).then(|| offset + self.rounding(offset.abs()));
@@ -25,7 +25,7 @@ impl Shape {
 }
 
 impl PlacedBody<'_> {
-    /// The smallest n'x (m) over all points x of the body.
+    /// Returns the smallest n'x (m) over all points x of the body.
     pub fn least_along(&self, normal: &Vector3<f64>) -> f64 {
         let convex = self.convex();
         normal.dot(&convex.support(&-normal)) - convex.radius() * normal.norm()

@@ -1,4 +1,4 @@
-//! The kinds of shapes.
+//! Kinds of shapes.
 
 use std::sync::Arc;
 
@@ -8,78 +8,78 @@ use super::mesh::Mesh;
 use super::point_cloud::PointCloud;
 use crate::math::Pose;
 
-/// The geometry of a shape (m, rad), in the frame in which the shape was made.
+/// Geometry of a shape (m, rad), in the frame in which the shape was made.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
-    /// A ball.
+    /// Ball.
     Sphere {
-        /// Its centre.
+        /// Centre.
         center: [f64; 3],
-        /// Its radius.
+        /// Radius.
         radius: f64,
     },
-    /// A box.
+    /// Box.
     Box {
-        /// Its centre and axes.
+        /// Centre and axes.
         pose: Pose,
-        /// Its edges along those axes.
+        /// Edge lengths along the axes of `pose`.
         size: [f64; 3],
     },
-    /// All points within `radius` of the segment from `a` to `b`.
+    /// Capsule: all points within `radius` of the segment from `a` to `b`.
     Capsule {
-        /// One end of the axis.
+        /// First end of the axis.
         a: [f64; 3],
-        /// The other end.
+        /// Second end of the axis.
         b: [f64; 3],
-        /// Its radius.
+        /// Radius.
         radius: f64,
     },
-    /// A cylinder with flat ends.
+    /// Cylinder with flat ends.
     Cylinder {
-        /// Its centre.
+        /// Centre.
         center: [f64; 3],
-        /// Its axis, of unit length.
+        /// Unit vector along the axis.
         axis: [f64; 3],
-        /// Its radius.
+        /// Radius.
         radius: f64,
-        /// Its length along the axis.
+        /// Length along the axis.
         length: f64,
     },
-    /// All points x with normal . x <= offset, such as a floor.
+    /// Half-space of points x with normal . x <= offset, for example a floor.
     HalfSpace {
-        /// The outward normal, of unit length.
+        /// Outward unit normal.
         normal: [f64; 3],
         /// Distance of the surface from the origin along the normal.
         offset: f64,
     },
-    /// An ellipsoid.
+    /// Ellipsoid.
     Ellipsoid {
-        /// Its centre and axes.
+        /// Centre and axes.
         pose: Pose,
-        /// Half its extent along those axes.
+        /// Semi-axes along the axes of `pose`.
         semi_axes: [f64; 3],
     },
-    /// An ellipse in the plane z = 0, for planar arms.
+    /// Ellipse in the plane z = 0, for planar arms.
     Ellipse {
-        /// Its centre (x, y).
+        /// Centre (x, y).
         center: [f64; 2],
-        /// Half its extent along its own x and y axis.
+        /// Semi-axes along its own x and y axis.
         semi_axes: [f64; 2],
-        /// Angle from the x axis of the base to its own.
+        /// Angle from the x axis of the base to that of the ellipse.
         angle: f64,
     },
-    /// The convex hull of some points.
+    /// Convex hull of points.
     ConvexMesh(Arc<Hull>),
-    /// A surface of triangles, with what its closed parts enclose.
+    /// Triangle mesh, together with the interior of its closed parts.
     Mesh(Arc<Mesh>),
     /// Balls of one radius about many points.
     PointCloud(Arc<PointCloud>),
-    /// The occupied voxels of a grid.
+    /// Occupied voxels of a grid.
     Grid(Arc<Grid>),
 }
 
 impl Geometry {
-    /// The name of the kind, such as "Sphere".
+    /// Returns the name of the kind, for example "Sphere".
     pub fn name(&self) -> &'static str {
         match self {
             Self::Sphere { .. } => "Sphere",

@@ -1,4 +1,4 @@
-//! Occupied voxels, joined to blocks.
+//! Occupancy grid whose voxels are merged into blocks.
 
 use std::fmt;
 
@@ -13,9 +13,9 @@ use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
 
-/// The occupied voxels of a grid: cubes in rows along x, y and z.
+/// Occupied voxels of a grid: cubes in rows along x, y and z.
 ///
-/// Neighbours are joined to blocks as large as possible; how deep something reaches inside is measured in its block.
+/// Neighbouring voxels are merged into blocks as large as possible; penetration depth is measured within a block.
 #[derive(Clone)]
 pub struct Grid {
     origin: [f64; 3],
@@ -35,19 +35,19 @@ struct Leaf {
     blocks: Block,
 }
 
-/// The block that is nearest to a segment.
+/// Block nearest to a segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearestBlock {
     /// Squared distance (m^2).
     pub squared: f64,
-    /// Fraction of the way along the segment.
+    /// Fraction of the segment's length.
     pub fraction: f64,
     /// Index of the block; `None` if none is within the bound.
     pub block: Option<usize>,
 }
 
 impl PartialEq for Grid {
-    /// The rest follows from these.
+    /// Compares the input alone, since it determines all other fields.
     fn eq(&self, other: &Self) -> bool {
         let given = |grid: &Self| (grid.origin, grid.voxel, grid.counts);
         given(self) == given(other) && self.occupied == other.occupied
@@ -55,7 +55,7 @@ impl PartialEq for Grid {
 }
 
 impl fmt::Debug for Grid {
-    /// Without the voxels, of which there may be thousands.
+    /// Omits the voxels, which may number thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (counts, blocks) = (self.counts, self.blocks.len());
         write!(f, "Grid {{ origin: {:?}, voxel: {:?}, counts: {counts:?}, {blocks} blocks }}", self.origin, self.voxel)
@@ -63,7 +63,7 @@ impl fmt::Debug for Grid {
 }
 
 impl Grid {
-    /// `None` if nothing is occupied; z runs fastest in `occupied`, which has an entry per voxel.
+    /// Builds the grid; `None` if nothing is occupied. `occupied` has an entry per voxel, with z running fastest.
     pub(super) fn new(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Option<Self> {
         let at = |k: usize, i: usize| origin[k] + voxel * i as f64;
         let place = |range: &[[usize; 2]; 3]| Aabb {
@@ -79,32 +79,33 @@ impl Grid {
         Some(Self { origin, voxel, counts, occupied, blocks, tree, leaves })
     }
 
-    /// Lowest corner of the first voxel (m).
+    /// Returns the lowest corner of the first voxel (m).
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// Edge of a voxel (m).
+    /// Returns the edge of a voxel (m).
     pub fn voxel(&self) -> f64 {
         self.voxel
     }
 
-    /// Number of voxels along x, y and z.
+    /// Returns the number of voxels along x, y and z.
     pub fn counts(&self) -> [usize; 3] {
         self.counts
     }
 
-    /// Whether each voxel is occupied; z runs fastest.
+    /// Returns whether each voxel is occupied; z runs fastest.
     pub fn occupied(&self) -> &[bool] {
         &self.occupied
     }
 
-    /// The blocks of voxels.
+    /// Returns the blocks of voxels.
     pub(super) fn blocks(&self) -> &[Aabb] {
         &self.blocks
     }
 
-    /// The nearest block within the square root of `bound`; `overlapping` gets the blocks that it crosses.
+    /// Finds the nearest block within the square root of `bound`; calls `overlapping` with the blocks that the segment
+    /// crosses.
     pub(super) fn nearest_block(
         &self,
         segment: &[Vector3<f64>; 2],
@@ -114,12 +115,13 @@ impl Grid {
         nearest_block(self, segment, bound, overlapping)
     }
 
-    /// Visits the blocks within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    /// Visits all blocks within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
+    /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
         each_near(&self.tree, &|leaf| self.leaves[leaf].blocks, segment, reach, visit);
     }
 
-    /// Signed distance of a point to the nearest block, and its gradient.
+    /// Returns the signed distance of a point to the nearest block, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let mut deepest: Option<Tangent> = None;
         let nearest = self.nearest_block(&[*point; 2], f64::INFINITY, &mut |block| {
@@ -131,7 +133,8 @@ impl Grid {
         deepest.unwrap_or_else(|| self.blocks[nearest.block.unwrap_or(0)].tangent(point))
     }
 
-    /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth of its deepest point in a block.
+    /// Returns the signed distance of a segment, exact up to `enough`: inside it is minus the depth of the deepest point in a
+    /// block.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let mut deepest: Option<SegmentDistance> = None;
         let nearest = self.nearest_block(segment, squared_bound(enough).max(TOUCHING), &mut |block| {
@@ -146,7 +149,7 @@ impl Grid {
 
 impl Leaf {
     fn new(block: Block, blocks: &[Aabb]) -> Self {
-        // A lane without a block repeats the first.
+        // An empty lane repeats the first block.
         let aabb = |lane: usize| &blocks[block[if block[lane] == NONE { 0 } else { lane }] as usize];
         let lanes = |value: &dyn Fn(&Aabb, usize) -> f64| {
             std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| value(aabb(lane), k))))
@@ -189,8 +192,7 @@ by_instructions! {
     }
 }
 
-/// Ranges of voxels that together are the occupied ones: each grown along z, then y, then x as far as all are occupied and
-/// not yet taken.
+/// Merges occupied voxels into ranges: each grows along z, then y, then x as long as all its voxels are occupied and unused.
 fn joined([nx, ny, nz]: [usize; 3], occupied: &[bool]) -> Vec<[[usize; 2]; 3]> {
     let index = |x: usize, y: usize, z: usize| (x * ny + y) * nz + z;
     let mut free = occupied.to_vec();
@@ -264,7 +266,7 @@ mod tests {
             let exact = cubes.iter().map(|cube| cube.distance_to_segment(&segment, f64::INFINITY));
             let exact = exact.fold(f64::INFINITY, f64::min);
             let found = grid.distance_to_segment(&segment, f64::INFINITY);
-            // Inside, blocks may be deeper than their voxels.
+            // Blocks may be deeper than their voxels.
             let right = if exact > 0.0 { (found - exact).abs() < 1e-11 } else { found <= exact + 2e-9 };
             assert!(right, "{found} for {exact}");
         }

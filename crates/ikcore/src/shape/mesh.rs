@@ -1,4 +1,4 @@
-//! Triangle meshes that need not be convex.
+//! Triangle meshes, not necessarily convex.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
 
-/// A triangle mesh, with what its closed pieces enclose.
+/// Triangle mesh, together with the interior of its closed pieces.
 #[derive(Clone)]
 pub struct Mesh {
     vertices: Vec<[f64; 3]>,
@@ -34,33 +34,33 @@ struct Leaf {
     faces: Block,
 }
 
-/// The point of a mesh that is nearest to a segment.
+/// Triangle nearest to a segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearestFace {
     /// Squared distance (m^2).
     pub squared: f64,
-    /// Fraction of the way along the segment.
+    /// Fraction of the segment's length.
     pub fraction: f64,
     /// Index of the triangle; `None` if none is within the bound.
     pub face: Option<usize>,
 }
 
-/// Inside a closed mesh the depth of a segment is found to this fraction of it, ...
+/// Accuracy of the depth of a segment inside a closed mesh, relative to the depth.
 const DEPTH_ACCURACY: f64 = 0.01;
-/// ... or to this length (m), ...
+/// Absolute accuracy of the depth of a segment (m).
 const SMALLEST_DEPTH_ACCURACY: f64 = 1e-4;
-/// ... with at most this many points of the segment.
+/// Largest number of points evaluated for the depth of a segment.
 const MOST_DEPTHS: usize = 400;
 
 impl PartialEq for Mesh {
-    /// The rest follows from these.
+    /// Compares vertices and faces alone, since they determine all other fields.
     fn eq(&self, other: &Self) -> bool {
         self.vertices == other.vertices && self.faces == other.faces
     }
 }
 
 impl fmt::Debug for Mesh {
-    /// Without the pieces, of which there may be thousands.
+    /// Omits the pieces, which may number thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (vertices, faces) = (self.vertices.len(), self.faces.len());
         write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.is_closed())
@@ -68,7 +68,7 @@ impl fmt::Debug for Mesh {
 }
 
 impl Mesh {
-    /// Err says what is wrong.
+    /// Builds the mesh; the error describes the problem with the triangles.
     pub(super) fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, String> {
         if faces.is_empty() {
             return Err("a mesh needs at least one triangle, got none".into());
@@ -88,23 +88,23 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Corners of the triangles (m).
+    /// Returns the corners of the triangles (m).
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
     }
 
-    /// Indices of the corners of each triangle.
+    /// Returns the corner indices of each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// Whether all that the mesh encloses is known: it has no boundary, and no two layers of it coincide. A triangle may have either
-    /// orientation where each edge belongs to two.
+    /// Whether the interior is fully known: the mesh has no boundary, and no two layers coincide. Triangles may have either
+    /// orientation where each edge belongs to exactly two.
     pub fn is_closed(&self) -> bool {
         self.enclosure.certain
     }
 
-    /// The volume of what its closed pieces enclose (m^3); where they overlap it counts for each.
+    /// Returns the volume enclosed by the closed pieces (m^3); overlaps count once per piece.
     pub fn volume(&self) -> f64 {
         let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
         let cone = |(i, turn): (usize, &i8)| {
@@ -114,7 +114,7 @@ impl Mesh {
         self.enclosure.turns.iter().enumerate().map(cone).sum()
     }
 
-    /// The corners of face `i`.
+    /// Returns the corners of face `i`.
     pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
         self.faces[i].map(|corner| self.vertices[corner as usize].into())
     }
@@ -125,17 +125,18 @@ impl Mesh {
         !turns.is_empty() && self.winding_number(point, |face| turns[face].into()) != 0
     }
 
-    /// The nearest point of the surface within the square root of `bound`.
+    /// Finds the nearest triangle within the square root of `bound`.
     pub(super) fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
         nearest_face(self, segment, bound)
     }
 
-    /// Visits the triangles within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    /// Visits all triangles within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
+    /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
         each_near(&self.tree, &|leaf| self.leaves[leaf].faces, segment, reach, visit);
     }
 
-    /// Signed distance of a point, and its gradient.
+    /// Returns the signed distance of a point, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let nearest = self.nearest_face(&[*point; 2], f64::INFINITY);
         let [a, b, c] = self.triangle(nearest.face.unwrap_or(0));
@@ -147,8 +148,8 @@ impl Mesh {
         Tangent { value: sign * distance, normal }
     }
 
-    /// Signed distance of a segment: negative by the depth of its deepest point in a closed piece. Outside exact up to
-    /// `enough`, inside at most the truth.
+    /// Returns the signed distance of a segment: inside a closed piece it is minus the depth of the deepest point. Exact up
+    /// to `enough` outside, a lower bound inside.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
         let touches = surface.face.is_some() && surface.squared <= TOUCHING;
@@ -158,8 +159,8 @@ impl Mesh {
         SegmentDistance { distance: surface.squared.sqrt(), fraction: surface.fraction }
     }
 
-    /// A lower bound of the signed distance of the points of a segment. The signed distance changes along it no faster than
-    /// its length: between two points it lies above a wedge.
+    /// Returns a lower bound on the signed distance along a segment, by branch and bound: the distance changes no faster than
+    /// the length along the segment, so between two points it lies above a wedge.
     fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> SegmentDistance {
         let length = (b - a).norm();
         let at =
@@ -226,7 +227,7 @@ impl TriangleSurface for Mesh {
     }
 }
 
-/// A piece of a segment, with a lower bound of the signed distance in it.
+/// Part of a segment, with a lower bound on the signed distance in it.
 #[derive(Clone, Copy)]
 struct Wedge {
     left: SegmentDistance,
@@ -245,7 +246,7 @@ impl Leaf {
     fn new(block: Block, vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
         let mut leaf = Self { corner: [F64x4::ZERO; 3], edges: [[F64x4::ZERO; 3]; 2], faces: block };
         for lane in 0..4 {
-            // A lane without a triangle repeats the first.
+            // An empty lane repeats the first triangle.
             let face = if block[lane] == NONE { block[0] } else { block[lane] };
             let [a, b, c] = faces[face as usize].map(|i| vertices[i as usize]);
             for k in 0..3 {
@@ -307,7 +308,7 @@ mod tests {
         Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
     }
 
-    /// The triangles of `shape` as a mesh, each with its own corners.
+    /// Returns the triangles of `shape` as a mesh, with separate corners for each.
     fn mesh_of(shape: &Shape) -> Shape {
         let triangles = shape.triangles();
         let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -347,7 +348,7 @@ mod tests {
             let slack = if exact > 0.0 { 2e-12 } else { 2.0 * SMALLEST_DEPTH_ACCURACY.max(-DEPTH_ACCURACY * exact) };
             inside += usize::from(exact < 0.0);
             assert!(found <= exact + 2e-9 && found >= exact - slack, "case {case}: {found} for {exact}");
-            // Whatever is enough for the caller, the answer is on the same side of it.
+            // The result lies on the same side of `enough` as the distance.
             let enough = rng.uniform_in(-0.2, 0.6);
             let short = mesh.distance_to_segment(&segment, enough);
             assert!(short <= exact + 2e-9 && (short >= enough) == (found >= enough), "{short} {found} {enough}");
@@ -371,7 +372,7 @@ mod tests {
         }
     }
 
-    /// Distance of the triangle from points of the segment.
+    /// Returns the distance of the triangle from sampled points of the segment.
     fn sampled([a, b]: &[Vector3<f64>; 2], triangle: &[Vector3<f64>; 3]) -> f64 {
         let at = |i: usize| a + i as f64 / 100.0 * (b - a);
         (0..=100).map(|i| (at(i) - nearest_on_triangle(&at(i), triangle)).norm()).fold(f64::INFINITY, f64::min)
@@ -397,7 +398,7 @@ mod tests {
         let triangles: Vec<_> = one.into_iter().chain(other).collect();
         let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let both = Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap();
-        // Just outside the first, but deep in the other.
+        // Point just outside the first box, but deep in the second.
         assert!(as_mesh(&both).encloses(&Vector3::new(0.501, 0.0, 0.0)));
         assert!(as_mesh(&both).encloses(&Vector3::zeros()) && !as_mesh(&both).encloses(&Vector3::new(1.1, 0.0, 0.0)));
     }

@@ -11,7 +11,7 @@ use super::mesh::Mesh;
 use crate::math::Pose;
 
 impl Mesh {
-    /// Its convex hull, moved to `place`; `None` if it lies in a plane, or if rounding leaves a corner outside.
+    /// Returns the convex hull, moved to `place`; `None` if it lies in a plane, or if rounding leaves a corner outside.
     pub fn convex_hull(&self, place: &Pose) -> Option<Shape> {
         let corners = (0..self.faces().len()).flat_map(|i| self.triangle(i));
         let mut points: Vec<[f64; 3]> = corners.map(|corner| (place * Point3::from(corner)).coords.into()).collect();

@@ -1,36 +1,38 @@
 //! Connected pieces of a mesh, and the orientation of their triangles.
 //!
-//! Triangles are connected along edges. If every edge of a piece belongs to two triangles, the piece is a closed surface, and the
-//! orientation of one triangle gives that of all others, however they were written. Vertices at one place count as one, because STL
-//! files repeat them; so do triangles on the same three vertices, because two-sided exports write each triangle in both orientations.
-//! At an edge of more than two triangles (bodies that share an edge or a face) the given orientations must cancel.
+//! Triangles are connected along edges. If every edge of a piece belongs to two triangles, the piece is a closed surface, and
+//! the orientation of one triangle determines that of all others, whatever their order of corners. Coincident vertices are
+//! merged, because STL files repeat them, and so are triangles on the same three vertices, because two-sided exports write
+//! each triangle in both orientations. At an edge of more than two triangles (bodies that share an edge or a face) the given
+//! orientations must cancel.
 
 use std::collections::HashMap;
 
-/// Number of no piece.
+/// Marker of a triangle without a piece.
 pub(super) const NO_PIECE: usize = usize::MAX;
 
-/// A connected part of a mesh.
+/// Connected part of a mesh.
 #[derive(Debug)]
 pub(super) struct MeshPiece {
     /// Indices of its triangles.
     pub faces: Vec<u32>,
-    /// Whether it has no boundary.
+    /// True if the piece has no boundary.
     pub closed: bool,
-    /// Whether the triangles were given in one orientation.
+    /// True if all triangles were given in one orientation.
     pub one_sided: bool,
 }
 
-/// The pieces of a mesh, and for each triangle +1 as given, -1 turned round, 0 if it repeats another one or has no boundary to close.
+/// Pieces of a mesh, and for each triangle +1 as given, -1 reversed, 0 if it repeats another triangle or belongs to a piece
+/// with boundary.
 #[derive(Debug)]
 pub(super) struct MeshPieces {
     pub pieces: Vec<MeshPiece>,
     pub turns: Vec<i8>,
-    /// Number of the piece of each triangle, or [`NO_PIECE`].
+    /// Index of the piece of each triangle, or [`NO_PIECE`].
     pub of: Vec<usize>,
 }
 
-/// An edge of a triangle; `up` if it runs from the lower vertex to the higher one.
+/// Edge of a triangle; `up` if it runs from the lower vertex index to the higher.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
     low: u32,
@@ -40,7 +42,7 @@ struct HalfEdge {
 }
 
 impl MeshPieces {
-    /// The pieces of these triangles, in the order of their first ones. Triangles that have two corners at one place belong to none.
+    /// Finds the pieces, in the order of their first triangles. Triangles with two coincident corners belong to none.
     pub fn of(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
         let faces = welded(vertices, faces);
         let is_real = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
@@ -64,33 +66,33 @@ impl MeshPieces {
     }
 }
 
-/// What is wrong along some edges.
+/// Defects of the edges of a piece.
 #[derive(Clone, Copy, Default)]
 struct Defects {
-    /// An edge of one triangle, or of more than two.
+    /// Some edge belongs to one triangle, or to more than two.
     branches: bool,
-    /// An edge along which more triangles run in one direction than in the other.
+    /// Some edge has more triangles in one direction than in the other.
     unbalanced: bool,
 }
 
-/// Faces by the first vertex at the place of each corner.
+/// Merges coincident vertices: returns the faces with the first vertex at each position.
 fn welded(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(vertices.len());
     let place: Vec<u32> = (0..vertices.len())
-        // Adding zero makes -0 the same place as 0.
+        // Adding zero maps -0 to 0.
         .map(|i| *places.entry(vertices[i].map(|x| (x + 0.0).to_bits())).or_insert(i as u32))
         .collect();
     faces.iter().map(|face| face.map(|i| place[i as usize])).collect()
 }
 
-/// For each triangle the first one on the same vertices, and whether it has the same orientation.
+/// Returns for each triangle the first one on the same vertices, and whether both have the same orientation.
 fn first_alike(faces: &[[u32; 3]]) -> Vec<(u32, bool)> {
     let sorted = |i: usize| {
         let mut corners = faces[i];
         corners.sort_unstable();
         corners
     };
-    // An even permutation keeps the orientation.
+    // Even permutations keep the orientation.
     let is_even = |[a, b, c]: [u32; 3]| [a < b, b < c, c < a].iter().filter(|rises| **rises).count() == 2;
     let mut order: Vec<([u32; 3], u32)> = (0..faces.len()).map(|i| (sorted(i), i as u32)).collect();
     order.sort_unstable();
@@ -118,7 +120,7 @@ fn sorted_edges(faces: &[[u32; 3]], is_real: impl Fn(&[u32; 3]) -> bool) -> Vec<
     edges
 }
 
-/// The pieces from the sets of connected triangles.
+/// Collects the pieces from the sets of connected triangles.
 fn gathered(
     faces: &[[u32; 3]],
     first: &[(u32, bool)],
@@ -160,7 +162,7 @@ fn gathered(
     MeshPieces { pieces, turns, of }
 }
 
-/// Disjoint sets of triangles; in each, whether a triangle is turned round against the root.
+/// Disjoint sets of triangles, with the orientation of each triangle relative to the root.
 struct OrientedSets {
     parent: Vec<(u32, bool)>,
 }
@@ -170,20 +172,20 @@ impl OrientedSets {
         Self { parent: (0..count as u32).map(|i| (i, false)).collect() }
     }
 
-    /// The root of the set of `face`, and whether `face` is turned round against it.
+    /// Returns the root of the set of `face`, and whether `face` is reversed relative to the root.
     fn root(&mut self, face: u32) -> (u32, bool) {
         let (mut at, mut turned) = (face, false);
         while self.parent[at as usize].0 != at {
             let (parent, turn) = self.parent[at as usize];
             let (above, turn_above) = self.parent[parent as usize];
-            // Halves the path.
+            // Path halving.
             self.parent[at as usize] = if parent == above { (parent, turn) } else { (above, turn != turn_above) };
             (at, turned) = (self.parent[at as usize].0, turned != self.parent[at as usize].1);
         }
         (at, turned)
     }
 
-    /// Joins two sets so that the triangles are turned round against each other or not; false if they are joined already, but not so.
+    /// Joins two sets with the given relative orientation; returns false if they are already joined with the opposite one.
     fn join(&mut self, one: u32, other: u32, turned: bool) -> bool {
         let ((one, turn), (other, turn_other)) = (self.root(one), self.root(other));
         if one == other {

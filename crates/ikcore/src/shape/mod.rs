@@ -1,34 +1,34 @@
-//! Shapes and their distances; no robots.
+//! Shapes and their distances, independent of robots.
 //!
-//! A distance is signed: outside it is the gap, inside it is negative. Every result is on the safe side: at most the true
-//! distance, with an allowance for rounding taken off (`ROUNDING` in `checked_shape`).
+//! A distance is signed: outside it is the gap, inside it is negative. Every result is a lower bound: at most the true
+//! distance, with an allowance for rounding subtracted (`ROUNDING` in `checked_shape`).
 //!
-//! | file | what |
+//! | file | contents |
 //! |---|---|
-//! | `geometry` | the kinds of shapes |
-//! | `checked_shape`, `bounding_ball` | a validated shape with a ball that holds it |
-//! | `stored_shape` | a shape as plain data, for storing |
+//! | `geometry` | kinds of shapes |
+//! | `checked_shape`, `bounding_ball` | validated shape with its bounding ball |
+//! | `stored_shape` | serialized shape |
 //! | `tangent` | signed distance of a point to a convex set, with a plane that bounds it from below |
 //! | `signed_distance` | tangents of the convex shapes |
-//! | `ellipsoid` | the nearest point of an ellipsoid |
+//! | `ellipsoid` | signed distance to an ellipsoid |
 //! | `convex_hull` | convex hulls of points |
-//! | `collision_crate` | the only file that uses the types of the collision crate |
-//! | `along_segment` | the lowest signed distance along a segment |
+//! | `collision_crate` | interface to the collision crate |
+//! | `along_segment` | minimum signed distance along a segment |
 //! | `segment_distance` | distance of a segment to a shape or another segment |
-//! | `bounding_tree` | four-way tree of boxes for thousands of pieces |
-//! | `segment_lanes`, `solid_lanes` | the same, for one number, or several in the lanes of a register |
-//! | `body_block`, `eight_shape` | "nearer than m?" for four capsules at once, and for one at eight configurations |
-//! | `shape_index` | finds the shapes near a ball, among many |
+//! | `bounding_tree` | bounding volume hierarchy for thousands of pieces |
+//! | `segment_lanes`, `solid_lanes` | distances of segments, and to boxes and cylinders, for one number or in SIMD lanes |
+//! | `body_block`, `eight_shape` | "nearer than m?" for four capsules, and for one at eight configurations |
+//! | `shape_index` | shapes near a ball, among many |
 //! | `mesh`, `triangle` | triangle meshes, closed or not |
-//! | `mesh_pieces`, `enclosure`, `winding` | connected pieces of a mesh, and what they enclose |
+//! | `mesh_pieces`, `enclosure`, `winding` | connected pieces of a mesh, and its interior |
 //! | `mesh_hull` | convex hulls of meshes |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
 //! | `cover` | covers of meshes by few spheres and capsules |
-//! | `enclosing_capsule` | capsules that hold other shapes |
-//! | `convex`, `convex_distance` | the signed distance of any two convex sets |
-//! | `placed_body` | a body of a robot, and its distances |
-//! | `extent` | how far bodies and shapes extend along a direction |
-//! | `separation` | where a capsule is nearest to a shape, and the normal there |
+//! | `enclosing_capsule` | capsules that contain other shapes |
+//! | `convex`, `convex_distance` | signed distance of any two convex sets |
+//! | `placed_body` | body of a robot with its frame, and its distances |
+//! | `extent` | extents of bodies and shapes along a direction |
+//! | `separation` | nearest point of a capsule to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
 
 mod along_segment;

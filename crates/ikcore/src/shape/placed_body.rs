@@ -1,4 +1,4 @@
-//! A body of a robot at its place, and its distances from shapes and other bodies.
+//! Distances of a robot body, at its current frame, from shapes and other bodies.
 
 use nalgebra::Vector3;
 
@@ -11,14 +11,14 @@ use super::segment_distance::distance_between;
 use super::separation::capsules_nearest;
 use crate::math::Frame;
 
-/// A convex body at its place.
+/// Convex body at its current frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedBody<'a> {
-    /// Axis of the capsule that holds it.
+    /// Axis of the enclosing capsule.
     pub axis: &'a LineSegment,
-    /// Radius of this capsule (m).
+    /// Radius of the enclosing capsule (m).
     pub radius: f64,
-    /// Its shape and the frame in which it is given; `None` if it is the capsule.
+    /// Shape and its frame; `None` if the body is the capsule.
     pub solid: Option<(&'a Shape, Frame)>,
 }
 
@@ -28,12 +28,12 @@ impl<'a> PlacedBody<'a> {
         solid.unwrap_or_else(|| Convex::capsule(*self.axis, self.radius))
     }
 
-    /// Whether its coordinates are too large for products of them.
+    /// Whether the coordinates are too large for their products.
     fn is_huge(&self) -> bool {
         !(self.axis[0].amax().max(self.axis[1].amax()).max(self.radius) <= LARGEST)
     }
 
-    /// Signed distance (m) from another body: never more than the truth, and exact where it is below `enough`.
+    /// Returns the signed distance (m) from another body: a lower bound, exact where it is below `enough`.
     #[inline]
     pub fn distance_to(&self, other: &PlacedBody, enough: f64) -> f64 {
         let by_capsules = distance_between(other.axis, self.axis) - (other.radius + self.radius);
@@ -50,7 +50,7 @@ impl<'a> PlacedBody<'a> {
         gap(&self.convex(), &other.convex(), enough)
     }
 
-    /// The point that is nearest to another body (m), and the unit normal from the other.
+    /// Returns the point nearest to another body (m), and the unit normal from that body.
     pub fn nearest_to(&self, other: &PlacedBody) -> (Vector3<f64>, Vector3<f64>) {
         if self.solid.is_none() && other.solid.is_none() {
             return capsules_nearest((self.axis, self.radius), (other.axis, other.radius));
@@ -61,9 +61,9 @@ impl<'a> PlacedBody<'a> {
 }
 
 impl Shape {
-    /// Signed distance (m) of a body, never more than the truth. Where it is below `enough` it is exact: for a capsule as
-    /// [`distance_to_segment`](Self::distance_to_segment), for others to about 1e-7 m. Of others that overlap the shape, it
-    /// is how far they must be moved to part; of those inside a closed mesh, how deep the capsule around them is.
+    /// Returns the signed distance (m) of a body: a lower bound. Below `enough` it is exact for a capsule, as
+    /// [`distance_to_segment`](Self::distance_to_segment), and exact to about 1e-7 m for other bodies. For overlap it is
+    /// minus the shortest translation that parts them; inside a closed mesh it is minus the depth of the enclosing capsule.
     #[inline]
     pub(crate) fn distance_to_body(&self, body: &PlacedBody, enough: f64) -> f64 {
         let by_capsule = self.distance_to_segment(body.axis, enough + body.radius) - body.radius;
@@ -73,8 +73,8 @@ impl Shape {
         self.gap_to(body, enough).distance
     }
 
-    /// The point of a body that is nearest to the shape (m), and the derivative of the distance by the place of the body, as
-    /// [`nearest_to_capsule`](Self::nearest_to_capsule).
+    /// Returns the point of a body nearest to the shape (m), and the gradient of the distance with respect to the body's
+    /// position, as [`nearest_to_capsule`](Self::nearest_to_capsule) does.
     pub(crate) fn nearest_to_body(&self, body: &PlacedBody) -> (Vector3<f64>, Vector3<f64>) {
         if body.solid.is_none() {
             return self.nearest_to_capsule(body.axis, body.radius);
@@ -89,10 +89,10 @@ impl Shape {
         }
         let own = body.convex();
         let mut nearest = Gap::beyond(enough);
-        // The boxes of a cloud hold its points, not the balls about them.
+        // Boxes of a point cloud contain its points, not the balls about them.
         let ball = if let Geometry::PointCloud(cloud) = self.geometry() { cloud.radius() } else { 0.0 };
         let around = body.radius + ball;
-        // Keeps the nearest piece; returns how far from the axis of the capsule nearer ones are at most.
+        // Keeps the nearest piece; returns the largest distance from the capsule axis at which a nearer piece can lie.
         let mut compare = |piece: &Convex| {
             let next = gap(&own, piece, nearest.distance);
             if next.distance < nearest.distance {
@@ -129,7 +129,7 @@ impl Shape {
         nearest
     }
 
-    /// The gap of the capsule around a body that lies inside.
+    /// Returns the gap of the enclosing capsule, for a body inside a mesh.
     fn depth_of(&self, body: &PlacedBody) -> Gap {
         let distance = self.distance_to_segment(body.axis, f64::INFINITY) - body.radius;
         let (point, normal) = self.nearest_to_capsule(body.axis, body.radius);
@@ -167,7 +167,7 @@ mod tests {
         solids.into_iter().map(Result::unwrap).collect()
     }
 
-    /// Calls `check` with a body of each kind of shape at random places.
+    /// Calls `check` with a body of each kind of shape at random poses.
     fn for_bodies(seed: u64, rounds: usize, mut check: impl FnMut(&mut LazyRng, &PlacedBody)) {
         let mut rng = rng::stream(seed, 0);
         for _ in 0..rounds {
@@ -199,7 +199,7 @@ mod tests {
             } else {
                 assert!(found < 0.0, "{name}: {found} for {exact}");
             }
-            // A caller to whom less is enough gets the same answer below that, and no more beyond.
+            // A smaller `enough` leaves distances below it unchanged, and never raises those above it.
             let short = obstacle.distance_to_body(body, 0.1);
             assert!(short <= exact + 2e-9 && (short < 0.1) == (found < 0.1), "{name}: {short} for {found}");
         });
@@ -215,7 +215,7 @@ mod tests {
                 *(if gap.distance < 0.0 { &mut inside } else { &mut outside }) += 1;
                 let own = body.convex();
                 let fixed = Convex::of(other.geometry(), &Frame::IDENTITY).unwrap();
-                // No direction parts them sooner.
+                // No direction separates the two sets by more.
                 for _ in 0..100 {
                     let normal = Vector3::from(point(rng, 1.0)).normalize();
                     let along = normal.dot(&own.support(&-normal)) - normal.dot(&fixed.support(&normal));
@@ -256,7 +256,7 @@ mod tests {
             }
             for (shape, exact) in cases {
                 let found = shape.distance_to_body(body, f64::INFINITY);
-                // Voxels are joined to blocks, in which a body is deeper.
+                // Merged voxels form blocks, in which a body is deeper.
                 let same = (found - exact).abs() < 1e-6 || (exact < 0.0 && found <= exact + 1e-4);
                 assert!(same, "{}: {found} for {exact}", shape.name());
                 assert!((shape.distance_to_body(body, 0.05) < 0.05) == (found < 0.05));

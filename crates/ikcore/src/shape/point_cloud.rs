@@ -1,4 +1,4 @@
-//! Balls of one radius about many points.
+//! Point cloud with a radius: balls about many points.
 
 use std::fmt;
 
@@ -22,38 +22,38 @@ pub struct PointCloud {
     leaves: Vec<([F64x4; 3], Block)>,
 }
 
-/// The point of a cloud that is nearest to a segment.
+/// Point of a cloud nearest to a segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearestPoint {
     /// Squared distance (m^2).
     pub squared: f64,
-    /// Fraction of the way along the segment.
+    /// Fraction of the segment's length.
     pub fraction: f64,
     /// Index of the point; `None` if none is within the bound.
     pub index: Option<usize>,
 }
 
 impl PartialEq for PointCloud {
-    /// The rest follows from these.
+    /// Compares points and radius alone, since they determine all other fields.
     fn eq(&self, other: &Self) -> bool {
         self.points == other.points && self.radius == other.radius
     }
 }
 
 impl fmt::Debug for PointCloud {
-    /// Without the points, of which there may be thousands.
+    /// Omits the points, which may number thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "PointCloud {{ {} points, radius: {:?} }}", self.points.len(), self.radius)
     }
 }
 
 impl PointCloud {
-    /// Balls about `points`, at least one.
+    /// Builds the cloud of balls about `points`, at least one.
     pub(super) fn new(points: Vec<[f64; 3]>, radius: f64) -> Self {
         let boxes: Vec<Aabb> = points.iter().map(|point| Aabb::around([Vector3::from(*point)])).collect();
         let (tree, blocks) = BoundingTree::new(&boxes);
         let lanes = |block: &Block| {
-            // A lane without a point repeats the first.
+            // An empty lane repeats the first point.
             let point = |lane: usize| points[block[if block[lane] == NONE { 0 } else { lane }] as usize];
             std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| point(lane)[k])))
         };
@@ -61,34 +61,36 @@ impl PointCloud {
         Self { points, radius, tree, leaves }
     }
 
-    /// The points (m).
+    /// Returns the points (m).
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
     }
 
-    /// Radius of the ball about each point (m).
+    /// Returns the radius of the ball about each point (m).
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The nearest point within the square root of `bound`.
+    /// Finds the nearest point within the square root of `bound`.
     pub(super) fn nearest_point(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
         nearest_point(self, segment, bound)
     }
 
-    /// Visits the points within `reach` (m) of a segment, and some others, by their indices; `visit` returns the new reach.
+    /// Visits all points within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
+    /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
         each_near(&self.tree, &|leaf| self.leaves[leaf].1, segment, reach, visit);
     }
 
-    /// Signed distance of a point to the nearest ball, and its gradient.
+    /// Returns the signed distance of a point to the nearest ball, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let nearest = self.nearest_point(&[*point; 2], f64::INFINITY);
         let away = point - Vector3::from(self.points[nearest.index.unwrap_or(0)]);
         Tangent { value: away.norm() - self.radius, normal: away.try_normalize(0.0).unwrap_or(Vector3::x()) }
     }
 
-    /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth in the ball it enters deepest.
+    /// Returns the signed distance of a segment, exact up to `enough`: inside it is minus the depth in the ball that it
+    /// enters deepest.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let nearest = self.nearest_point(segment, squared_bound(enough + self.radius));
         SegmentDistance { distance: nearest.squared.sqrt() - self.radius, fraction: nearest.fraction }

@@ -1,4 +1,4 @@
-//! Distances at every size and place, from subnormal lengths to the largest numbers.
+//! Tests of distances at every scale, from subnormal lengths to the largest numbers.
 
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ by_instructions! {
     }
 }
 
-/// A length of any size (m): a power of two, of ten, or neither.
+/// Draws a length of any magnitude (m): a power of two, of ten, or neither.
 fn length(rng: &mut LazyRng) -> f64 {
     let ends = [(-322.0, 307.0), (-12.0, 100.0), (-6.0, 6.0), (25.0, 35.0)][rng.below(4)];
     let exponent = rng.uniform_in(ends.0, ends.1);
@@ -34,7 +34,7 @@ fn corners(center: [f64; 3], half: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Shapes about `center` that reach to `half` (m) from it along x on both sides.
+/// Returns bounded shapes about `center` that extend by `half` (m) along x on both sides.
 fn bounded(center: [f64; 3], half: f64) -> Vec<Result<Shape>> {
     let at = |k: usize, by: f64| {
         let mut end = center;
@@ -53,7 +53,7 @@ fn bounded(center: [f64; 3], half: f64) -> Vec<Result<Shape>> {
     ]
 }
 
-/// The same, and what only an obstacle can be: a mesh, a cloud, a grid, a half-space on the far side.
+/// Returns the same shapes and those that only obstacles can have: a mesh, a cloud, a grid, a half-space on the far side.
 fn obstacles(center: [f64; 3], half: f64) -> Vec<Shape> {
     let squares = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let faces = squares.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
@@ -64,11 +64,11 @@ fn obstacles(center: [f64; 3], half: f64) -> Vec<Shape> {
         Shape::grid(center.map(|x| x - half), 2.0 * half, [1; 3], vec![true]),
         Shape::half_space([-half, 0.0, 0.0], half - center[0]),
     ]);
-    // Sizes that no shape can have are refused.
+    // Invalid sizes are rejected.
     all.into_iter().filter_map(Result::ok).collect()
 }
 
-/// Calls `visit` with bodies about `center` that reach to `half` from it along x.
+/// Calls `visit` with bodies about `center` that extend by `half` along x.
 fn for_bodies(center: [f64; 3], half: f64, mut visit: impl FnMut(&PlacedBody, &str)) {
     for shape in bounded(center, half).into_iter().filter_map(Result::ok) {
         let (a, b, radius) = shape.enclosing_capsule();
@@ -79,7 +79,7 @@ fn for_bodies(center: [f64; 3], half: f64, mut visit: impl FnMut(&PlacedBody, &s
     }
 }
 
-/// The capsule of a body in four lanes.
+/// Returns the capsule of a body in four lanes.
 fn block(body: &PlacedBody) -> BodyBlock {
     let [a, b] = body.axis;
     BodyBlock {
@@ -130,7 +130,7 @@ fn no_distance_is_above_the_true_one_at_any_scale() {
         let aside = if case % 2 == 0 { 0.0 } else { length(&mut rng) };
         let (half, own, gap) = (length(&mut rng), length(&mut rng), length(&mut rng));
         let center = [half + own + gap, aside, -aside];
-        // The coordinate of the centre is rounded.
+        // Allowance for the rounding of the centre's coordinate.
         let exact = center[0] - half - own + 4.0 * f64::EPSILON * center[0];
         if !exact.is_finite() {
             continue;

@@ -12,8 +12,9 @@ use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
 
 impl Shape {
-    /// Signed distance (m) of the segment, negative by the depth of its deepest point. Never more than the truth; where it is
-    /// below `enough` it is exact to 1e-9 m, inside a closed mesh to 0.1 mm or 1 %; beyond [`LARGEST`] it is only a bound.
+    /// Returns the signed distance (m) of the segment: negative by the depth of its deepest point, and always a lower bound.
+    /// Where it is below `enough` it is exact to 1e-9 m, inside a closed mesh to 0.1 mm or 1 %; beyond [`LARGEST`] it is only
+    /// a bound.
     pub(crate) fn distance_to_segment(&self, segment: &LineSegment, enough: f64) -> f64 {
         let [a, b] = segment;
         let bounds = self.bounding_ball();
@@ -21,24 +22,24 @@ impl Shape {
         let reach = a.amax().max(b.amax());
         let rounding = self.rounding(reach);
         if self.is_huge() || !(reach <= LARGEST) {
-            // Along one axis nothing overflows.
+            // Single coordinates do not overflow.
             let beyond = (0..3).map(|k| (a[k].min(b[k]) - center[k]).max(center[k] - a[k].max(b[k])));
             let distance = beyond.fold(f64::NEG_INFINITY, f64::max) - bounds.radius - rounding;
             return if distance > 0.0 && distance.is_finite() { distance } else { f64::NEG_INFINITY };
         }
-        // A little more, so that what is enough is still enough after rounding.
+        // Margin, so that a distance is still at least `enough` after rounding is subtracted.
         let enough = enough + 1.01 * rounding + 4.0 * f64::EPSILON * enough.abs();
         let from_ball = (nearest_on_segment(a, b, &center) - center).norm() - bounds.radius;
         if from_ball >= enough {
             return from_ball - rounding;
         }
-        // What is not a number is as near as can be.
+        // NaN becomes the smallest distance.
         (self.geometry().approach(segment, enough).distance - rounding).max(f64::NEG_INFINITY)
     }
 }
 
 impl Geometry {
-    /// Where a segment is nearest: exact only below `enough`.
+    /// Returns the minimum along a segment, exact only below `enough`.
     pub(super) fn approach(&self, segment: &LineSegment, enough: f64) -> SegmentDistance {
         let [a, b] = segment;
         match self {
@@ -80,7 +81,7 @@ impl Geometry {
     }
 }
 
-/// Distance between two segments, less an allowance for rounding.
+/// Returns the distance between two segments, less an allowance for rounding.
 pub(crate) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     let reach = [one, other].into_iter().flatten().fold(1.0, |reach, end| f64::max(reach, end.amax()));
     if !(reach <= LARGEST) {
@@ -89,7 +90,7 @@ pub(crate) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     (between(one, other).distance - ROUNDING * reach).max(f64::NEG_INFINITY)
 }
 
-/// Where `one` is nearest to `other`.
+/// Finds the point of `one` that is nearest to `other`.
 pub(super) fn between(one: &LineSegment, other: &LineSegment) -> SegmentDistance {
     let ([p, p_end], [q, q_end]) = (one, other);
     let (u, v, w) = (p_end - p, q_end - q, p - q);
@@ -97,13 +98,14 @@ pub(super) fn between(one: &LineSegment, other: &LineSegment) -> SegmentDistance
     let fraction_of = |numerator: f64, denominator: f64| {
         if denominator > 0.0 { (numerator / denominator).clamp(0.0, 1.0) } else { 0.0 }
     };
-    // The best point of one for the best point of the other, clamped; the second pass settles the clamps.
+    // Alternating projection: the best point of one for the best point of the other, clamped; the second pass settles the
+    // clamps.
     let mut s = fraction_of(uv * vw - vv * uw, uu * vv - uv * uv);
     let mut t = fraction_of(uv * s + vw, vv);
     s = fraction_of(uv * t - uw, uu);
     t = fraction_of(uv * s + vw, vv);
     let crossing = SegmentDistance { distance: (w + s * u - t * v).norm(), fraction: s };
-    // Nearly parallel segments are nearest at an end, where the division above says little.
+    // Nearly parallel segments are nearest at an end, where the division above is inaccurate.
     let to_one = |end: &Vector3<f64>| {
         let fraction = nearest_fraction(p, p_end, end);
         SegmentDistance { distance: (p + fraction * u - end).norm(), fraction }
@@ -125,7 +127,7 @@ mod tests {
         [(); 2].map(|()| Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0)))
     }
 
-    /// The smallest distance between points at `steps` + 1 points of each segment.
+    /// Returns the smallest distance between sampled points, `steps` + 1 on each segment.
     fn sampled([a, b]: &LineSegment, [c, d]: &LineSegment, steps: usize) -> f64 {
         let places = || (0..=steps).map(|i| i as f64 / steps as f64);
         let distance = |(s, t): (f64, f64)| (a + s * (b - a) - c - t * (d - c)).norm();
@@ -175,7 +177,7 @@ mod tests {
             let at = |i: usize| egg.geometry().tangent(&point_between(&a, &b, i as f64 / 2000.0)).value;
             let nearest = (0..=2000).map(at).fold(f64::INFINITY, f64::min);
             assert!(found <= nearest + 1e-9 && nearest - found < 2e-3, "{found}, sampled {nearest}");
-            // A caller to whom 0.1 m is enough may get less than the distance, but never less than 0.1 m for more.
+            // Search with `enough` = 0.1 m: larger distances may be underestimated, but stay at least 0.1 m.
             let enough = egg.distance_to_segment(&[a, b], 0.1);
             assert!(enough <= found + 1e-9 && (enough >= 0.1) == (found >= 0.1), "{enough} for {found}");
         }

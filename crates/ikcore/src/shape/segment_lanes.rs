@@ -1,22 +1,22 @@
-//! Distances of segments, for one number or four in the lanes of a register.
+//! Distances of segments, for one number or in SIMD lanes.
 
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
 
-/// Squared distance (m^2) below which a segment may cross a surface: zero but for rounding.
+/// Squared distance (m^2) below which a segment may cross a surface: zero up to rounding.
 pub(super) const TOUCHING: f64 = 1e-24;
 
-/// A segment and where on it something is nearest.
+/// Nearest point of a segment, by its fraction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearestFraction<R> {
     /// Squared distance (m^2).
     pub squared: R,
-    /// Fraction of the way along the segment.
+    /// Fraction of the segment's length.
     pub fraction: R,
 }
 
 impl<R: Real> NearestFraction<R> {
-    /// The nearer of the two.
+    /// Returns the nearer of two results.
     #[inline(always)]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -31,7 +31,7 @@ pub(super) fn clamp_fraction<R: Real>(fraction: R) -> R {
     fraction.larger(R::splat(0.0)).smaller(R::splat(1.0))
 }
 
-/// numerator / denominator, or 0 where the denominator is not positive.
+/// Returns numerator / denominator, or 0 where the denominator is not positive.
 #[inline(always)]
 fn fraction_of<R: Real>(numerator: R, denominator: R) -> R {
     let zero = R::splat(0.0);
@@ -39,7 +39,7 @@ fn fraction_of<R: Real>(numerator: R, denominator: R) -> R {
     clamp_fraction(zero.choose_below(denominator, numerator / safe, zero))
 }
 
-/// Of the segment from `a` along `u` and a point.
+/// Finds the point of the segment from `a` along `u` nearest to a point.
 #[inline(always)]
 pub(super) fn to_point<R: Real>(a: Vec3<R>, u: Vec3<R>, point: Vec3<R>) -> NearestFraction<R> {
     let w = point - a;
@@ -48,38 +48,40 @@ pub(super) fn to_point<R: Real>(a: Vec3<R>, u: Vec3<R>, point: Vec3<R>) -> Neare
     NearestFraction { squared: apart.dot(apart), fraction }
 }
 
-/// Of the segments from `p` along `u` and from `q` along `v`; the fraction is of the first.
+/// Finds the point of the segment from `p` along `u` nearest to the segment from `q` along `v`.
 #[inline(always)]
 pub(super) fn to_segment<R: Real>(p: Vec3<R>, u: Vec3<R>, q: Vec3<R>, v: Vec3<R>) -> NearestFraction<R> {
     let w = p - q;
     let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
-    // The best point of one for the best point of the other, clamped; the second pass settles the clamps.
+    // Alternating projection: the best point of one for the best point of the other, clamped; the second pass settles the
+    // clamps.
     let s = fraction_of(uv * vw - vv * uw, uu * vv - uv * uv);
     let t = fraction_of(uv * s + vw, vv);
     let s = fraction_of(uv * t - uw, uu);
     let t = fraction_of(uv * s + vw, vv);
     let apart = v.mul_add(-t, u.mul_add(s, w));
     let crossing = NearestFraction { squared: apart.dot(apart), fraction: s };
-    // Nearly parallel segments are nearest at an end, where the division above says little.
+    // Nearly parallel segments are nearest at an end, where the division above is inaccurate.
     let start = NearestFraction { squared: to_point(q, v, p).squared, fraction: R::splat(0.0) };
     let end = NearestFraction { squared: to_point(q, v, p + u).squared, fraction: R::splat(1.0) };
     crossing.or(start).or(end).or(to_point(p, u, q)).or(to_point(p, u, q + v))
 }
 
-/// By how much `x` exceeds [-h, h], with its sign.
+/// Returns the signed distance by which `x` exceeds the interval [-h, h].
 #[inline(always)]
 pub(super) fn excess<R: Real>(x: R, h: R) -> R {
     (x - h).larger(R::splat(0.0)) + (x + h).smaller(R::splat(0.0))
 }
 
-/// The vector from the nearest point of the box to the point at `fraction` of the segment.
+/// Returns the vector from the nearest point of the box to the point at `fraction` of the segment.
 #[inline(always)]
 fn beyond_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>, fraction: R) -> Vec3<R> {
     let at = u.mul_add(fraction, a);
     Vec3 { x: excess(at.x, half.x), y: excess(at.y, half.y), z: excess(at.z, half.z) }
 }
 
-/// Where the squared distance along a segment still falls, where it rises, and half its slopes there.
+/// Bracket of the minimum of the squared distance along a segment: the ends where it falls and rises, and half its slopes
+/// there.
 #[derive(Clone, Copy)]
 struct Bracket<R> {
     left: R,
@@ -89,11 +91,11 @@ struct Bracket<R> {
 }
 
 impl<R: Real> Bracket<R> {
-    /// The bracket narrowed by the slope at `fraction`.
+    /// Narrows the bracket by the slope at `fraction`.
     #[inline(always)]
     fn narrowed(self, fraction: R, slope: R) -> Self {
         let zero = R::splat(0.0);
-        // Larger than any fraction, or below all: no change.
+        // Values outside the unit interval leave the bracket unchanged.
         let falls = slope.choose_below(zero, fraction, R::splat(-1.0));
         let rises = slope.choose_below(zero, R::splat(2.0), fraction);
         Self {
@@ -105,8 +107,8 @@ impl<R: Real> Bracket<R> {
     }
 }
 
-/// Of the segment from `a` along `u` and a box about the origin, along the axes, with these half edges: exact, since the
-/// squared distance is a parabola between the places where the segment crosses a plane of the box.
+/// Finds the point of the segment from `a` along `u` nearest to an axis-aligned box about the origin with these half edges.
+/// Exact, since the squared distance is a parabola between the points where the segment crosses a plane of the box.
 #[inline(always)]
 pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestFraction<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -133,7 +135,7 @@ pub(super) fn to_box<R: Real>(a: Vec3<R>, u: Vec3<R>, half: Vec3<R>) -> NearestF
     NearestFraction { squared: beyond.dot(beyond), fraction }
 }
 
-/// A triangle, ready for distances.
+/// Triangle, prepared for distances.
 #[derive(Clone, Copy)]
 pub(super) struct TriangleLanes<R> {
     corner: Vec3<R>,
@@ -144,14 +146,15 @@ pub(super) struct TriangleLanes<R> {
 }
 
 impl<R: Real> TriangleLanes<R> {
-    /// With a corner at `corner` and edges `ab` and `ac` from there.
+    /// Prepares the triangle with a corner at `corner` and edges `ab` and `ac` from there.
     #[inline(always)]
     pub fn new(corner: Vec3<R>, ab: Vec3<R>, ac: Vec3<R>) -> Self {
         let normal = ab.cross(ac);
         Self { corner, edges: [ab, ac], normal, squared: normal.dot(normal) }
     }
 
-    /// Squared distance of the point p + share u from the plane if it projects into the triangle, else `otherwise`.
+    /// Returns the squared distance of the point p + fraction u from the plane if it projects into the triangle, else
+    /// `otherwise`.
     #[inline(always)]
     fn faced(&self, p: Vec3<R>, u: Vec3<R>, fraction: R, otherwise: R) -> R {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -167,14 +170,14 @@ impl<R: Real> TriangleLanes<R> {
     }
 }
 
-/// Of the segment from `p` along `u` and a triangle: at an end of the segment, at an edge of the triangle, or zero where
-/// they cross.
+/// Finds the point of the segment from `p` along `u` nearest to a triangle: an end of the segment, a point near an edge of
+/// the triangle, or the intersection.
 #[inline(always)]
 pub(super) fn to_triangle<R: Real>(p: Vec3<R>, u: Vec3<R>, triangle: &TriangleLanes<R>) -> NearestFraction<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let (a, [ab, ac]) = (triangle.corner, triangle.edges);
     let edges = to_segment(p, u, a, ab).or(to_segment(p, u, a, ac)).or(to_segment(p, u, a + ab, ac - ab));
-    // Where the segment passes through the plane.
+    // Intersection of the segment with the plane.
     let (start, end) = ((p - a).dot(triangle.normal), (p + u - a).dot(triangle.normal));
     let fall = start - end;
     let through = clamp_fraction(start / fall.choose_equal(zero, one, fall));
@@ -186,7 +189,7 @@ pub(super) fn to_triangle<R: Real>(p: Vec3<R>, u: Vec3<R>, triangle: &TriangleLa
     nearest
 }
 
-/// Of a point and a triangle.
+/// Returns the squared distance of a point from a triangle.
 #[inline(always)]
 pub(super) fn point_to_triangle<R: Real>(p: Vec3<R>, triangle: &TriangleLanes<R>) -> R {
     let (a, [ab, ac]) = (triangle.corner, triangle.edges);

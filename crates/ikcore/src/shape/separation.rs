@@ -1,4 +1,4 @@
-//! Witness of a distance: where a capsule is nearest to a shape, and along which normal.
+//! Witness points and normals of the distance of a capsule.
 
 use nalgebra::Vector3;
 
@@ -7,16 +7,17 @@ use super::checked_shape::Shape;
 use super::segment_distance::between;
 use super::tangent::{Tangent, nearest_on_segment, point_between};
 
-/// So far from the deepest point of an axis (as a fraction of its length) other faces are looked for.
+/// Distance from the deepest point of an axis, as a fraction of its length, at which other faces are looked for.
 const BESIDE: f64 = 1e-6;
 
-/// Normals with less than this in common are of opposite faces: either leads out.
+/// Length of the combined normal below which two normals belong to opposite faces, so that either leads out.
 const LEAST_IN_COMMON: f64 = 0.05;
 
 impl Shape {
-    /// The point of a capsule that is nearest to the shape (m), and the derivative of the distance by the place of the capsule: the unit
-    /// normal there, out of the shape. Where faces on both sides of the deepest point of the axis are equally near, it is what their
-    /// normals have in common, and shorter.
+    /// Returns the point of a capsule nearest to the shape (m), and the gradient of the distance with respect to the
+    /// capsule's position: the unit normal there, out of the shape. If faces on both sides of the deepest point of the axis
+    /// are equally near, the gradient is the convex combination of their normals with zero slope along the axis, which is
+    /// shorter.
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [a, b] = segment;
         let fraction = self.geometry().approach(segment, f64::INFINITY).fraction;
@@ -35,7 +36,7 @@ impl Shape {
     }
 }
 
-/// The point of the first capsule (axis and radius) that is nearest to the other (m), and the unit normal from the other.
+/// Returns the point of the first capsule (axis and radius) nearest to the second (m), and the unit normal from the second.
 pub(crate) fn capsules_nearest(
     (own, radius): (&LineSegment, f64),
     (other, _): (&LineSegment, f64),
@@ -43,7 +44,7 @@ pub(crate) fn capsules_nearest(
     let [a, b] = own;
     let on_axis = point_between(a, b, between(own, other).fraction);
     let away = on_axis - nearest_on_segment(&other[0], &other[1], &on_axis);
-    // Axes that meet have no direction: at right angles to both.
+    // Intersecting axes have no direction of separation; use the normal of both.
     let across = (b - a).cross(&(other[1] - other[0]));
     let normal = away.try_normalize(0.0).or_else(|| across.try_normalize(0.0)).unwrap_or(Vector3::z());
     (on_axis - radius * normal, normal)

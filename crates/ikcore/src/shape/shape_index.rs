@@ -1,26 +1,26 @@
-//! Finds the shapes near a ball, among many.
+//! Spatial index that finds the shapes near a ball.
 
 use nalgebra::Vector3;
 
 use super::bounding_tree::{Aabb, Block, BoundingTree, each_near};
 use super::checked_shape::Shape;
 
-/// A tree over the bounding balls of shapes.
+/// Bounding volume hierarchy over the bounding balls of shapes.
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeIndex {
     tree: BoundingTree,
     blocks: Vec<Block>,
-    /// Shapes without bounds, near to everything.
+    /// Unbounded shapes, which are always near.
     unbounded: Vec<usize>,
     /// Index of each bounded shape.
     bounded: Vec<usize>,
 }
 
-/// With fewer shapes a look at each is as fast.
+/// Number of shapes below which a linear scan is as fast.
 const FEW: usize = 24;
 
 impl ShapeIndex {
-    /// `None` for few shapes.
+    /// Builds the index; `None` for few shapes.
     pub fn of_many(shapes: &[Shape]) -> Option<Self> {
         let (bounded, unbounded): (Vec<usize>, Vec<usize>) =
             (0..shapes.len()).partition(|i| shapes[*i].bounding_ball().radius.is_finite() && !shapes[*i].is_huge());
@@ -37,7 +37,7 @@ impl ShapeIndex {
         Some(Self { tree, blocks, unbounded, bounded })
     }
 
-    /// Visits all shapes that may be within `reach` (m) of `center`, and some others.
+    /// Visits all shapes within `reach` (m) of `center`, and possibly others.
     pub fn near_ball(&self, center: &Vector3<f64>, reach: f64, mut visit: impl FnMut(usize)) {
         self.unbounded.iter().for_each(|i| visit(*i));
         each_near(&self.tree, &|leaf| self.blocks[leaf], &[*center; 2], reach, &mut |i| {

@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::tangent::{Tangent, nearest_on_segment};
 
 impl Geometry {
-    /// Signed distance of `point` (m). For a convex shape it is a tangent: a lower bound everywhere.
+    /// Returns the signed distance of `point` (m). For a convex shape the result is a tangent: a lower bound everywhere.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         match self {
             Geometry::Sphere { center, radius } => of_ball(point - Vector3::from(*center), *radius),
@@ -25,7 +25,7 @@ impl Geometry {
                 Tangent { normal: pose.rotation * local.normal, ..local }
             }
             Geometry::Ellipse { center, semi_axes: [a, b], angle } => {
-                // In its plane z = 0 it is the section of an ellipsoid, and there their distances agree.
+                // Section of an ellipsoid: in the plane z = 0 their distances agree.
                 let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), *angle);
                 let local = turn.inverse() * (point - Vector3::new(center[0], center[1], 0.0));
                 let tangent = ellipsoid::tangent(&local, &[*a, *b, a.max(*b)]);
@@ -46,14 +46,14 @@ impl Geometry {
     }
 }
 
-/// Of a ball: `offset` is the point seen from its centre.
+/// Computes the tangent of a ball; `offset` is the point relative to its centre.
 fn of_ball(offset: Vector3<f64>, radius: f64) -> Tangent {
     let length = offset.norm();
     let normal = if length > 0.0 { offset / length } else { Vector3::x() };
     Tangent { value: length - radius, normal }
 }
 
-/// Of a box about the origin: outside the distance to its nearest point, inside that to the nearest face.
+/// Computes the tangent of a box about the origin: outside the distance to the nearest point, inside to the nearest face.
 fn of_box(point: &Vector3<f64>, half: &Vector3<f64>) -> Tangent {
     let beyond = point.abs() - half;
     let outside = beyond.map(|excess| excess.max(0.0));
@@ -68,7 +68,7 @@ fn of_box(point: &Vector3<f64>, half: &Vector3<f64>) -> Tangent {
     Tangent { value: beyond[face], normal }
 }
 
-/// Of a cylinder about the origin, along `axis`.
+/// Computes the tangent of a cylinder about the origin, along `axis`.
 fn of_cylinder(point: &Vector3<f64>, axis: &Vector3<f64>, radius: f64, half_length: f64) -> Tangent {
     let along = axis.dot(point);
     let outward = point - along * axis;
@@ -83,13 +83,13 @@ fn of_cylinder(point: &Vector3<f64>, axis: &Vector3<f64>, radius: f64, half_leng
     if beside > beyond { Tangent { value: beside, normal: radial } } else { Tangent { value: beyond, normal: axial } }
 }
 
-/// A unit vector at right angles to `axis`.
+/// Returns a unit vector perpendicular to `axis`.
 pub(super) fn at_right_angles(axis: &Vector3<f64>) -> Vector3<f64> {
     axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize()
 }
 
 impl Aabb {
-    /// Signed distance of a point to the box.
+    /// Returns the signed distance of a point to the box.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         of_box(&(point - 0.5 * (self.lower + self.upper)), &(0.5 * (self.upper - self.lower)))
     }
@@ -126,7 +126,7 @@ mod tests {
                 let at = point(&mut rng, 1.5);
                 let Tangent { value, normal } = shape.geometry().tangent(&at);
                 assert!((normal.norm() - 1.0).abs() < 1e-9, "{}", shape.name());
-                // Inside, the distance has edges where another face is nearest.
+                // Edges inside the shape, where the nearest face changes, are skipped.
                 if value < 0.05 {
                     continue;
                 }

@@ -1,22 +1,22 @@
-//! Boxes and cylinders in the registers: the nearest point to a point, and a bound for a segment.
+//! Boxes and cylinders in SIMD lanes: nearest points, and lower bounds for segments.
 
 use super::segment_lanes::excess;
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
 use crate::math::{Frame, Pose};
 
-/// A convex body with a frame of its own.
+/// Convex body with a frame of its own.
 pub(super) trait SolidLanes<R: Real> {
-    /// A point in the body's frame.
+    /// Transforms a point to the body's frame.
     fn to_local(&self, point: Vec3<R>) -> Vec3<R>;
 
-    /// A vector in the body's frame.
+    /// Rotates a vector to the body's frame.
     fn turned(&self, vector: Vec3<R>) -> Vec3<R>;
 
-    /// The vector from the body's nearest point to a point, both in its frame; zero inside.
+    /// Returns the vector from the body's nearest point to a point, both in its frame; zero inside.
     fn beyond(&self, point: Vec3<R>) -> Vec3<R>;
 
-    /// The squared distance (m^2) from a point in its frame; zero inside.
+    /// Returns the squared distance (m^2) of a point in the body's frame; zero inside.
     #[inline(always)]
     fn squared_distance(&self, point: Vec3<R>) -> R {
         let beyond = self.beyond(point);
@@ -52,7 +52,7 @@ impl<R: Real> FrameLanes<R> {
     }
 }
 
-/// A box.
+/// Box.
 pub(super) struct BoxLanes<R> {
     frame: FrameLanes<R>,
     half: Vec3<R>,
@@ -65,7 +65,7 @@ impl<R: Real> BoxLanes<R> {
         Self { frame: FrameLanes::new(pose), half: Vec3::splat(&half) }
     }
 
-    /// At `frame`, with these half edges.
+    /// Creates a box at `frame` with these half edges.
     #[inline(always)]
     pub fn of(frame: &Frame<R::Stored>, half: &[R::Stored; 3]) -> Self {
         Self { frame: FrameLanes::of(frame), half: Vec3::of(half) }
@@ -99,7 +99,7 @@ impl<R: Real> SolidLanes<R> for BoxLanes<R> {
     }
 }
 
-/// A cylinder; its frame has its origin at the centre.
+/// Cylinder; the origin of its frame is the centre.
 pub(super) struct CylinderLanes<R> {
     center: Vec3<R>,
     axis: Vec3<R>,
@@ -114,7 +114,7 @@ impl<R: Real> CylinderLanes<R> {
         Self { center, axis, radius: R::splat(radius), half_length: R::splat(0.5 * length) }
     }
 
-    /// About `center` along `axis`, with this radius and half this length.
+    /// Creates a cylinder about `center` along `axis`, with this radius and half this length.
     #[inline(always)]
     pub fn of(center: &[R::Stored; 3], axis: &[R::Stored; 3], [radius, half_length]: [R::Stored; 2]) -> Self {
         let [center, axis] = [Vec3::of(center), Vec3::of(axis)];
@@ -145,12 +145,12 @@ impl<R: Real> SolidLanes<R> for CylinderLanes<R> {
     }
 }
 
-/// Enough for every segment that is not within a hair of the decision.
+/// Number of steps that decides every segment, except very close to the threshold.
 const STEPS: usize = 24;
 
-/// A lower bound of the distance of the segment from `start` along `along`, in the frame of `solid`, which is good enough to
-/// compare the distance with `enough`. The distance is convex along the segment: where two tangents meet is the lowest
-/// that it can be between them.
+/// Returns a lower bound on the distance of the segment from `start` along `along`, in the frame of `solid`, accurate enough
+/// for a comparison with `enough`. The distance is convex along the segment, so the intersection of two tangents is a lower
+/// bound between their points of contact.
 #[inline(always)]
 pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, enough: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -164,7 +164,7 @@ pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>
         let rest = right.value - left.value + left.slope * left.fraction - right.slope * right.fraction;
         let meeting = (rest / safe).larger(left.fraction).smaller(right.fraction);
         bound = left.value + left.slope * (meeting - left.fraction);
-        // At an end where the distance rises inward, that end is the nearest.
+        // An end at which the distance rises inward is the nearest point.
         bound = left.slope.choose_below(zero, bound, left.value);
         bound = zero.choose_below(right.slope, bound, right.value.choose_below(left.value, right.value, bound));
         let open = bound.choose_below(enough, seen.choose_below(enough, zero, one), zero);
@@ -201,7 +201,7 @@ impl<R: Real> Touch<R> {
         Self { fraction, value, slope }
     }
 
-    /// `then` in lanes with value < limit, else `otherwise`.
+    /// Selects `then` in lanes with value < limit, else `otherwise`.
     #[inline(always)]
     fn where_below(self, value: R, limit: R, then: Self, otherwise: Self) -> Self {
         Self {

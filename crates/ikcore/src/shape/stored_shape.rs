@@ -1,4 +1,4 @@
-//! A shape as plain data, checked again when it is read.
+//! Serialized shape, validated when it is read.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -7,7 +7,7 @@ use super::geometry::Geometry;
 use crate::error::Error;
 use crate::math::Pose;
 
-/// What a shape was made from.
+/// Construction parameters of a shape.
 #[derive(Serialize, Deserialize)]
 enum StoredShape {
     Sphere([f64; 3], f64),

@@ -1,10 +1,10 @@
-//! The nearest point of a triangle.
+//! Nearest point of a triangle.
 
 use nalgebra::Vector3;
 
 use super::tangent::nearest_on_segment;
 
-/// The point of the triangle that is nearest to `point`; the triangle may be a line or a point.
+/// Returns the point of the triangle nearest to `point`; the triangle may degenerate to a line or a point.
 pub(super) fn nearest_on_triangle(point: &Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> Vector3<f64> {
     let (ab, ac, w) = (b - a, c - a, point - a);
     let normal = ab.cross(&ac);

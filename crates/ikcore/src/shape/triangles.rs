@@ -10,19 +10,19 @@ use super::geometry::Geometry;
 use super::signed_distance::at_right_angles;
 use crate::math::Pose;
 
-/// A triangle's corners (m).
+/// Corners of a triangle (m).
 pub(super) type Triangle = [[f64; 3]; 3];
 
-/// Edge of the square that stands for a half-space (m).
+/// Edge of the square drawn for a half-space (m).
 const SQUARE: f64 = 4.0;
-/// Number of points of a cloud that are drawn.
+/// Largest number of points of a cloud that are drawn.
 const MOST_POINTS: usize = 2000;
 /// Number of steps around a round shape; half as many from pole to pole.
 const STEPS: usize = 24;
 
 impl Shape {
-    /// Triangles of the surface (m): exact for flat faces, else with corners on the surface. Of a half-space a square; of a
-    /// point cloud octahedra about at most 2,000 of its points; of a grid its blocks.
+    /// Returns triangles of the surface (m): exact for flat faces, else with corners on the surface. A half-space is drawn as
+    /// a square, a point cloud as octahedra about at most 2,000 of its points, a grid as its blocks.
     pub fn triangles(&self) -> Vec<Triangle> {
         match self.geometry() {
             Geometry::Sphere { center, radius } => ball(|u| (Vector3::from(*center) + *radius * u).into()),
@@ -66,11 +66,11 @@ fn placed(pose: &Pose, local: Vector3<f64>) -> [f64; 3] {
     (pose * Point3::from(local)).coords.into()
 }
 
-/// Meridians and parallels of the unit sphere, each point moved by `place`.
+/// Returns the unit sphere in meridians and parallels, with each point mapped by `place`.
 fn ball(place: impl Fn(Vector3<f64>) -> [f64; 3]) -> Vec<Triangle> {
     let rows = STEPS / 2 + 1; // odd, so that no corner lies on the equator, where a capsule is cut
     let corner = |row: usize, step: usize| {
-        // Corners that meet are equal to the bit: the surface is closed.
+        // Shared corners are equal to the bit, so that the surface is closed.
         let (polar_sine, polar_cosine) = (PI * row as f64 / rows as f64).sin_cos();
         let polar_sine = if row == rows { 0.0 } else { polar_sine };
         let (sine, cosine) = (TAU * (step % STEPS) as f64 / STEPS as f64).sin_cos();
@@ -81,7 +81,7 @@ fn ball(place: impl Fn(Vector3<f64>) -> [f64; 3]) -> Vec<Triangle> {
         let [a, b, c, d] = [corner(row, step), corner(row + 1, step), corner(row + 1, step + 1), corner(row, step + 1)];
         [[a, b, c], [a, c, d]]
     });
-    // At the poles corners coincide.
+    // Corners coincide at the poles.
     halves.filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 

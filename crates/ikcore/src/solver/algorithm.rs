@@ -1,4 +1,4 @@
-//! The list of all algorithms. The binding and the contract test read it.
+//! List of all algorithms, read by the binding and by the contract test.
 
 use super::apps::Apps;
 use super::bas::{Bas, BasVariant};
@@ -14,7 +14,7 @@ use super::swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genet
 use crate::error::Result;
 use crate::objective::{Differentiable, Objective};
 
-/// Algorithms that need only values, and so minimise any function.
+/// Algorithms that need only values, and therefore minimise any function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DerivativeFree {
     /// Beetle antennae search.
@@ -35,10 +35,10 @@ pub enum DerivativeFree {
     Qpso(Qpso),
 }
 
-/// Every algorithm.
+/// All algorithms.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Algorithm {
-    /// A derivative-free algorithm.
+    /// Derivative-free algorithm.
     DerivativeFree(DerivativeFree),
     /// APPS, which needs a gradient.
     Apps(Apps),
@@ -52,7 +52,7 @@ pub enum Algorithm {
     NewtonRaphson(NewtonRaphson),
 }
 
-/// Evaluates `$body` for the derivative-free solver in use.
+/// Evaluates `$body` for the solver behind a derivative-free `$algorithm`.
 macro_rules! whichever {
     ($algorithm:expr, $solver:ident => $body:expr) => {
         match $algorithm {
@@ -86,7 +86,7 @@ macro_rules! listed {
 }
 listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
 
-/// Conversions from solvers that need more than values.
+/// Conversions from solvers that need residuals or derivatives.
 macro_rules! listed_with_more {
     ($($solver:ident),*) => {$(
         impl From<$solver> for Algorithm {
@@ -124,7 +124,7 @@ impl DerivativeFree {
         whichever!(self, solver => solver.validate())
     }
 
-    /// The schedule of a population; `None` for a single beetle.
+    /// Schedule of a population; `None` for a single beetle.
     fn schedule(&self) -> Option<Schedule> {
         match self {
             Self::Bas(_) => None,
@@ -138,7 +138,7 @@ impl DerivativeFree {
         }
     }
 
-    /// Members of a generation; `None` for a single beetle.
+    /// Number of members of a generation; `None` for a single beetle.
     pub fn population(&self) -> Option<usize> {
         self.schedule().map(|schedule| schedule.population)
     }
@@ -150,7 +150,7 @@ impl DerivativeFree {
         const BEETLE: usize = 20;
         let generations = self.schedule().map_or(BEETLE, |schedule| schedule.stall_generations);
         match self {
-            // A step is the turn of one firefly; a generation is a turn of each.
+            // A step moves one firefly; a generation moves each of them.
             Self::Firefly(firefly) => generations.saturating_mul(firefly.schedule.population),
             _ => generations,
         }
@@ -181,8 +181,7 @@ impl Algorithm {
         all
     }
 
-    /// The algorithm with restarts and a suitable patience: a descent shows within a few iterations whether it
-    /// converges.
+    /// Adds restarts with a suitable patience: a descent shows within a few iterations whether it converges.
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
             Self::DerivativeFree(solver) => solver.patience(),

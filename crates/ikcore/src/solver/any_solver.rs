@@ -1,4 +1,4 @@
-//! The solver that a caller chooses: an algorithm from one start, or from many.
+//! Choice of solver: an algorithm from one start, or from many.
 
 use super::algorithm::{Algorithm, DerivativeFree};
 use super::evaluator::Evaluator;
@@ -9,13 +9,12 @@ use super::stop::Stop;
 use crate::error::{Error, Result};
 use crate::objective::{Differentiable, Objective};
 
-/// An algorithm `A` from one start or from many: [`Algorithm`] for robots, [`DerivativeFree`] for functions that only
-/// have values.
+/// Algorithm `A` from one start or from many: [`Algorithm`] for robots, [`DerivativeFree`] for functions without derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnySolver<A = Algorithm> {
-    /// From the given start only.
+    /// Single run from the given start.
     Single(A),
-    /// From further starts, until solved or the budget is spent.
+    /// Restarts until solved or the budget is spent.
     MultiStart(MultiStart<A>),
 }
 
@@ -27,13 +26,13 @@ impl Default for AnySolver {
 }
 
 impl<A> AnySolver<A> {
-    /// The algorithm.
+    /// Algorithm that runs from each start.
     pub fn algorithm(&self) -> &A {
         let (Self::Single(algorithm) | Self::MultiStart(MultiStart { solver: algorithm, .. })) = self;
         algorithm
     }
 
-    /// The rule for restarts, if there are any.
+    /// Rule for restarts, if there are any.
     fn restarts(&self) -> Option<RestartRule> {
         match self {
             Self::Single(_) => None,
@@ -50,7 +49,7 @@ impl<A> AnySolver<A> {
 }
 
 impl AnySolver {
-    /// The same solver; `None` if the algorithm needs more than values.
+    /// Converts to a derivative-free solver; `None` if the algorithm needs more than values.
     pub fn into_derivative_free(self) -> Option<AnySolver<DerivativeFree>> {
         match self {
             Self::Single(Algorithm::DerivativeFree(solver)) => Some(AnySolver::Single(solver)),
@@ -69,7 +68,7 @@ impl AnySolver {
         self.validate_restarts().and(self.algorithm().validate())
     }
 
-    /// Whether it needs only the values of an objective.
+    /// Whether the solver needs only the values of an objective.
     pub(crate) fn needs_values_alone(&self) -> bool {
         matches!(self.algorithm(), Algorithm::DerivativeFree(_))
     }
@@ -80,7 +79,7 @@ impl AnySolver {
         self.needs_values_alone()
     }
 
-    /// Whether it ends by itself even without a budget.
+    /// Whether the solver ends by itself even without a budget.
     pub(crate) fn ends_by_itself(&self) -> bool {
         matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
     }

@@ -1,5 +1,5 @@
-//! The autonomous path planning solution (APPS) of Yuan et al. 2016: gradient descent on the smooth error E, with
-//! limited joint steps. Equation numbers are those of the paper.
+//! Autonomous path planning solution (APPS) of Yuan et al. 2016: gradient descent on the smooth error E, with limited joint
+//! steps. Equation numbers refer to the paper.
 //!
 //! The search is unconstrained, as published: a joint may leave its limits, and eq. (12) brings it back by whole turns.
 
@@ -10,41 +10,41 @@ use super::status::Status;
 use crate::error::{Result, require_positive};
 use crate::objective::{Gradient, Point};
 
-/// eta of eq. (13) (rad per unit of E's derivative).
+/// Learning rate eta of eq. (13) (rad per unit of E's derivative).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LearningRate {
-    /// From the curvature of E along the last step, estimated from the gradients at both ends (Barzilai and Borwein
-    /// 1988, Two-point step size gradient methods). From random starts to 2000 random targets of the paper's robot it
+    /// Adaptive rate from the curvature of E along the last step, estimated from the gradients at both ends (Barzilai and
+    /// Borwein 1988, Two-point step size gradient methods). From random starts to 2000 random targets of the paper's robot it
     /// converges on 85 % in 1000 iterations and on 86 % in 20 000, the best of five fixed rates on 51 and 79 %.
     Auto,
-    /// A constant rate.
+    /// Constant rate.
     Fixed(f64),
 }
 
-/// APPS.
+/// Options of APPS.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Apps {
-    /// eta of eq. (13).
+    /// Learning rate eta of eq. (13).
     pub learning_rate: LearningRate,
     /// Largest change of a joint in an iteration (rad or m): d theta_th of eq. (20).
     pub step_limit: f64,
-    /// E_0: the search ends after the first update that starts at an E of at most this, solved or not. `None` ends it
+    /// Threshold E_0: the search ends after the first update that starts at an E of at most this, solved or not. `None` ends it
     /// when solved.
     pub error_threshold: Option<f64>,
 }
 
 impl Default for Apps {
-    /// A longer step than the paper's one degree: random targets need a third of the iterations.
+    /// Default options, with a longer step than the paper's one degree: random targets need a third of the iterations.
     fn default() -> Self {
         Self { learning_rate: LearningRate::Auto, step_limit: 0.2, error_threshold: None }
     }
 }
 
 impl Apps {
-    /// The parameters of the paper's experiment, in the scale of its eq. (11).
+    /// Parameters of the paper's experiment, in the scale of its eq. (11).
     ///
-    /// It prints eta = 0.01 and E_0 = 1e-8. Both match an E that is 20 times as large: with this reading, its tables
-    /// are reproduced to the last iteration.
+    /// The paper prints eta = 0.01 and E_0 = 1e-8. Both match an E that is 20 times as large: with this reading, its tables are
+    /// reproduced to the last iteration.
     pub fn paper() -> Self {
         Self {
             learning_rate: LearningRate::Fixed(0.2),
@@ -65,20 +65,20 @@ impl Apps {
         self.error_threshold.map_or(Ok(()), |threshold| require_positive("error_threshold", threshold))
     }
 
-    /// E <= E_0.
+    /// Whether E <= E_0.
     fn is_below_threshold(&self, error: f64) -> bool {
         self.error_threshold.is_some_and(|threshold| error <= threshold)
     }
 }
 
-/// The descent between updates.
+/// State of the descent between updates.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     theta: Point,
-    /// E at theta.
+    /// Error E at theta.
     error: f64,
     gradient: Point,
-    /// The step that led to theta, and the gradient at its start.
+    /// Step that led to theta, and the gradient at its start.
     step: Point,
     gradient_before: Point,
     iterations: usize,
@@ -107,8 +107,8 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         Ok(())
     }
 
-    /// The paper evaluates E, updates theta, and stops if that E was small enough: so its last update starts from
-    /// there.
+    /// Takes one update. The paper evaluates E, updates theta, and stops if that E was small enough, so a last update follows
+    /// the threshold.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.arrived {
             evaluator.check_solved_outside()?;
@@ -125,7 +125,7 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         *arrived = self.is_below_threshold(*error);
         let before = theta.clone();
         for ((theta, step), slope) in theta.iter_mut().zip(step.iter_mut()).zip(&*gradient) {
-            // (13) and (20), whose printed last case lacks the step; (21)
+            // Eq. (13) and (20), whose printed last case lacks the step; (21).
             *step = (-eta * slope).clamp(-self.step_limit, self.step_limit);
             *theta += *step;
         }
@@ -140,9 +140,9 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
 }
 
 impl State {
-    /// The long and the short rate of Barzilai and Borwein, eq. (5) and (6), alternating. If E has no positive
-    /// curvature along the last step, or there is no last step, the rate of Polyak (1969), which on a linear slope
-    /// would reach E = 0.
+    /// Learning rate by the long and the short formula of Barzilai and Borwein, eq. (5) and (6), alternating. Without positive
+    /// curvature of E along the last step, or without a last step, the rate of Polyak (1969), which on a linear slope would
+    /// reach E = 0.
     fn two_point_rate(&self) -> f64 {
         let (mut ss, mut sy, mut yy, mut gg) = (0.0, 0.0, 0.0, 0.0);
         for ((s, g), before) in self.step.iter().zip(&self.gradient).zip(&self.gradient_before) {

@@ -1,15 +1,15 @@
 //! Beetle antennae search (BAS) for motion planning, Cheng et al. (2020): Algorithm 1 and equations (8) to (13).
 //!
-//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. Line 16 is
-//! up to the caller: the driver stops in the error band or below a given value.
+//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. Line 16 belongs to
+//! the caller: the driver stops in the error band or below a given value.
 //!
-//! Our reading where the paper leaves something open: o in eq. (12) is the squared norm of the error, so that the
-//! antennae shrink in proportion to the error; it is taken at the best point so far, for the current target. Passes
-//! after the first start from the best beetle so far.
+//! Our reading of points that the paper leaves open: o in eq. (12) is the squared norm of the error, so that the antennae
+//! shrink in proportion to the error; it is taken at the best point so far, for the current target. Passes after the first
+//! start from the best beetle so far.
 //!
-//! Read literally, the paper has two consequences. With c2 = 1 a beetle moves exactly to one of its antennae, so a
-//! third of all evaluations repeat an earlier one; we repeat them too, so that counts are comparable. And the best
-//! point is kept over all evaluations, including antennae, which for c2 = 1 is the best beetle of line 15.
+//! A literal reading of the paper has two consequences. With c2 = 1 a beetle moves exactly to one of its antennae, so a third
+//! of all evaluations repeat an earlier one; we repeat them too, so that counts are comparable. The best point is kept over all
+//! evaluations, including antennae, which for c2 = 1 is the best beetle of line 15.
 
 use smallvec::SmallVec;
 
@@ -21,30 +21,29 @@ use crate::math::comparison::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
 
-/// Where the next exploration of a pass starts.
+/// Starting point of the next exploration of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BasVariant {
-    /// Always from the best point before the pass: eq. (8), (9) and (11) as printed.
+    /// Best point before the pass: eq. (8), (9) and (11) as printed.
     Star,
-    /// From the beetle's last position, better or not: the original beetle antennae search.
+    /// Last position of the beetle, better or not: the original beetle antennae search.
     Chain,
-    /// From the beetle's last position if that is better; antennae follow the error at once, and a pass ends when
-    /// solved.
+    /// Last position of the beetle if it is better; antennae follow the error at once, and a pass ends when solved.
     Greedy,
 }
 
 words!("variant": BasVariant { Star => "star", Chain => "chain", Greedy => "greedy" });
 
-/// Beetle antennae search.
+/// Options of beetle antennae search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bas {
-    /// Where explorations start.
+    /// Starting point of explorations.
     pub variant: BasVariant,
     /// Antenna length relative to the error, eq. (12): rad per unit of the error norm.
     pub c1: f64,
     /// Step length relative to the antenna length, eq. (13).
     pub c2: f64,
-    /// Explorations per pass, the paper's n.
+    /// Explorations per pass, n in the paper.
     pub explorations: usize,
     /// Passes after which the search gives up; the paper sets no limit.
     pub max_passes: usize,
@@ -57,7 +56,7 @@ impl Default for Bas {
 }
 
 impl Bas {
-    /// A variant with the options that tracked best on a 7-joint arm of about a metre.
+    /// Variant with the options that tracked best on a 7-joint arm of about a metre.
     pub fn of(variant: BasVariant) -> Self {
         let (c1, explorations) = match variant {
             BasVariant::Star => (3.0, 50),
@@ -83,7 +82,7 @@ impl Bas {
     }
 }
 
-/// The beetle between passes.
+/// State of the beetle between passes.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     /// Best position of the beetle.
@@ -93,19 +92,19 @@ pub struct State {
     group: Group,
 }
 
-/// The beetle within a pass.
+/// State of the beetle within a pass.
 struct Pass {
-    /// Where explorations start.
+    /// Starting point of explorations.
     current: Point,
     current_value: f64,
     /// Antenna length (rad).
     lambda: f64,
-    /// The best position in this pass.
+    /// Best position in this pass.
     best: Point,
     best_value: f64,
 }
 
-/// Explorations of a star are independent, so several at a time are evaluated together.
+/// Number of explorations of a star that are evaluated together, since they are independent.
 const LARGEST_GROUP: usize = 4;
 
 /// Points, stored consecutively; on the stack up to eight entries each.
@@ -129,7 +128,7 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
         Ok(())
     }
 
-    /// Lines 5 to 15 of Algorithm 1.
+    /// Runs one pass: lines 5 to 15 of Algorithm 1.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.passes == self.max_passes {
             return Err(Status::Stalled);
@@ -167,15 +166,14 @@ impl Bas {
         if self.variant == BasVariant::Star { LARGEST_GROUP } else { 1 }
     }
 
-    /// lambda = c1 sqrt(o), eq. (12); a unit antenna if the start has no finite value. The rule assumes that the
-    /// minimum is zero, as for an error. Shift any other function by its expected minimum, or antennae do not shrink
-    /// near it.
+    /// Antenna length lambda = c1 sqrt(o), eq. (12); 1 if the start has no finite value. The rule assumes that the minimum is
+    /// zero, as for an error. Shift any other function by its expected minimum, or antennae do not shrink near it.
     fn antenna_length(&self, value: f64) -> f64 {
         self.c1 * if value.is_finite() { value.abs().sqrt() } else { 1.0 }
     }
 
-    /// Steps i) to v) of `count` explorations from one point: writes the beetles' next positions to `group`, and
-    /// returns o there.
+    /// Runs steps i) to v) of `count` explorations from one point: writes the beetles' next positions to `group`, and returns o
+    /// there.
     #[inline]
     fn explore<O: Objective + ?Sized>(
         &self,
@@ -188,7 +186,7 @@ impl Bas {
         let n = x.len();
         let antennae = &mut group.antennae[..2 * count * n];
         let beetles = &mut group.beetles[..count * n];
-        // i) random directions b, ii) to iv) smell at both antennae, eq. (8) to (10)
+        // Steps i) random directions b, ii) to iv) values at both antennae, eq. (8) to (10).
         for (b, pair) in group.directions.chunks_exact_mut(n).zip(antennae.chunks_exact_mut(2 * n)) {
             evaluator.rng().direction(b);
             let (left, right) = pair.split_at_mut(n);
@@ -197,8 +195,8 @@ impl Bas {
         }
         let mut smells = [[0.0; 2]; LARGEST_GROUP];
         evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
-        // v) move towards the lower value, eq. (11) and (13); with equal values, also if neither is finite, the beetle
-        // stays
+        // Step v) move towards the lower value, eq. (11) and (13). With equal values, also if neither is finite, the beetle
+        // stays.
         let delta = self.c2 * lambda;
         for ((b, beetle), [left, right]) in
             group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
@@ -210,7 +208,7 @@ impl Bas {
         Ok(values)
     }
 
-    /// Steps vi) record and vii) update the position, for a beetle that moved to `beetle` with this `value`.
+    /// Runs steps vi) record and vii) update the position, for a beetle that moved to `beetle` with this `value`.
     #[inline]
     fn walk(&self, pass: &mut Pass, beetle: &[f64], value: f64) {
         if value < pass.best_value {
@@ -237,7 +235,7 @@ impl Group {
     }
 }
 
-/// x + distance b.
+/// Writes x + distance b.
 #[inline]
 fn place(out: &mut [f64], x: &[f64], distance: f64, b: &[f64]) {
     for ((out, x), b) in out.iter_mut().zip(x).zip(b) {

@@ -1,8 +1,8 @@
-//! Antenna differences as secants: a quasi-Newton method that needs only residuals.
+//! Quasi-Newton method with antenna differences as secants, which needs only residuals.
 //!
-//! Beetle antennae search uses only the sign of a difference r(x + lambda b) - r(x). The difference itself is a secant
-//! of the Jacobian, lambda J b: one antenna per entry of x gives a whole Jacobian, and every step then updates it
-//! (Broyden 1965). The antennae are used again when steps are predicted badly.
+//! Beetle antennae search uses only the sign of a difference r(x + lambda b) - r(x). The difference itself is a secant of the
+//! Jacobian, lambda J b: one antenna per entry of x gives a whole Jacobian, and every step then updates it (Broyden 1965). The
+//! antennae are used again when steps are predicted badly.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -12,7 +12,7 @@ use crate::math::box_step::LEAST_DAMPING;
 use crate::math::secant::{Secants, antenna};
 use crate::objective::{Point, Residual, TaskResiduals};
 
-/// Broyden's method on antenna differences.
+/// Options of Broyden's method with antenna differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BroydenBas {
     /// Length of the antennae (rad, m). The displacement of the tip should be far above the sensor noise, and the
@@ -34,8 +34,7 @@ impl Default for BroydenBas {
 /// Antenna length without sensor noise: a compromise between rounding and curvature.
 const NOISELESS_ANTENNA: f64 = 1e-6;
 
-/// Damping after a failed step, relative to the squared size of the Jacobian; each further failure multiplies it by
-/// ten.
+/// Damping after a failed step, relative to the squared norm of the Jacobian; each further failure multiplies it by ten.
 pub(crate) const FIRST_DAMPING: f64 = 1e-3;
 
 /// Damping above which steps are too short to be useful.
@@ -58,7 +57,7 @@ impl BroydenBas {
     }
 }
 
-/// Point and Jacobian estimate between steps.
+/// State between steps: point and Jacobian estimate.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
@@ -68,7 +67,7 @@ pub struct State {
     damping: f64,
     /// Steps since the last antennae that left more than half of the residual.
     slow: usize,
-    /// No step was made since the last antennae.
+    /// Whether no step was made since the last antennae.
     fresh: bool,
 }
 
@@ -102,7 +101,7 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
         if reduction < 1.0 {
             (*x, *value, *residual) = (trial, trial_value, trial_residual);
             *damping = (*damping * 0.1).max(LEAST_DAMPING);
-            // Values are squares: a quarter is half of the residual.
+            // Values are squares: a quarter corresponds to half of the residual.
             state.slow = if reduction > 0.25 { state.slow + 1 } else { 0 };
             state.fresh = false;
             return if state.slow < SLOW_STEPS { Ok(()) } else { state.put_out_antennae(evaluator) };
@@ -116,7 +115,7 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
 }
 
 impl State {
-    /// One antenna per entry of x: the Jacobian by forward differences.
+    /// Estimates the Jacobian by forward differences, with one antenna per entry of x.
     #[cold]
     fn put_out_antennae<O: Residual + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let bounds = evaluator.bounds();

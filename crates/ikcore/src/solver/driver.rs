@@ -1,4 +1,4 @@
-//! The loop that runs every solver: start, step, check.
+//! Driver loop of every solver: start, step, check.
 
 use std::convert::Infallible;
 
@@ -7,23 +7,23 @@ use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::objective::Objective;
 
-/// An algorithm: options in `self`, progress in `State`.
+/// Minimisation algorithm: options in `self`, progress in `State`.
 pub trait Solver<O: Objective + ?Sized> {
-    /// The progress of the algorithm; by default that before the first start.
+    /// Progress of the algorithm; the default is the progress before the first start.
     type State: Default;
 
-    /// Where the points may lie; by default in the box.
+    /// Domain of the points; by default the box.
     fn domain(&self) -> Domain {
         Domain::Clipped
     }
 
-    /// Whether the algorithm ends at its own threshold ([`Status::BelowThreshold`]) instead of the problem's test,
-    /// which then only decides whether the result counts as solved.
+    /// Whether the algorithm ends at its own threshold ([`Status::BelowThreshold`]) instead of the problem's test. The test
+    /// then only decides whether the result counts as solved.
     fn has_own_threshold(&self) -> bool {
         false
     }
 
-    /// Starts, or starts anew, at `x0`: evaluates it first, then makes any further initial evaluations.
+    /// Starts or restarts at `x0`: evaluates it first, then makes any further initial evaluations.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
@@ -56,8 +56,8 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
     }
 }
 
-/// Runs `solver` from `x0` until it ends, and returns how it ended. The evaluator keeps the best point and the counts.
-/// A start that is already solved is returned unchanged.
+/// Runs `solver` from `x0` to its end. Returns how it ended; the evaluator keeps the best point and the counts. A start that is
+/// already solved is returned unchanged.
 pub fn run<O, S>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Status
 where
     O: Objective + ?Sized,

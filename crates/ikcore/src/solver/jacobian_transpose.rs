@@ -1,5 +1,5 @@
-//! Jacobian transpose: steepest descent on r'r. Since it needs no inverse, singular configurations are harmless; the
-//! price is many small steps.
+//! Jacobian transpose method: steepest descent on r'r. Without an inverse, singular configurations are harmless; the price is
+//! many small steps.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -8,20 +8,20 @@ use crate::error::{Result, require_positive};
 use crate::math::vector::dot;
 use crate::objective::{LeastSquares, Linearization, Point};
 
-/// The length of a step along -J'r.
+/// Length of a step along -J'r.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepSize {
-    /// The minimiser of the linearised residual: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse
-    /// kinematics, section 6, which writes it <e, JJ'e> / <JJ'e, JJ'e>).
+    /// Minimiser of the linearised residual: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse kinematics,
+    /// section 6, which writes it <e, JJ'e> / <JJ'e, JJ'e>).
     Auto,
-    /// A constant length.
+    /// Constant length.
     Fixed(f64),
 }
 
-/// The Jacobian transpose method.
+/// Options of the Jacobian transpose method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JacobianTranspose {
-    /// The length of a step.
+    /// Length of a step.
     pub step_size: StepSize,
 }
 
@@ -60,7 +60,7 @@ impl JacobianTranspose {
     }
 }
 
-/// The descent between steps.
+/// State of the descent between steps.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,

@@ -1,5 +1,5 @@
-//! Levenberg-Marquardt in a box. The damping is proportional to the squared error, so steps are careful far from the
-//! target and converge quadratically near it. A step is accepted only if the value decreases.
+//! Levenberg-Marquardt in a box. The damping is proportional to the squared error, so steps are careful far from the target and
+//! converge quadratically near it. A step is accepted only if the value decreases.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -7,7 +7,7 @@ use super::status::Status;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{LeastSquares, Linearization, Point};
 
-/// Levenberg-Marquardt.
+/// Options of Levenberg-Marquardt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevenbergMarquardt {
     /// Damping relative to the squared error at the start: lambda = damping * r'r.
@@ -16,13 +16,13 @@ pub struct LevenbergMarquardt {
     pub increase: f64,
     /// Factor on the damping after a step that lowered the value.
     pub decrease: f64,
-    /// The descent stalls when a step lowers the value by less than this fraction.
+    /// Relative decrease of the value below which the descent stalls.
     pub min_gain: f64,
 }
 
 /// Damping above which steps are too short to be useful.
 const LARGEST_DAMPING: f64 = 1e8;
-/// Damping below which it has no effect.
+/// Damping below which there is no effect.
 const SMALLEST_DAMPING: f64 = 1e-6;
 
 impl Default for LevenbergMarquardt {
@@ -51,12 +51,12 @@ impl LevenbergMarquardt {
     }
 }
 
-/// The descent between steps.
+/// State of the descent between steps.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,
     descent: Descent,
-    /// Linearizations at the point and at the trial; `here` is the index of the point's.
+    /// Linearizations at the current point and at the trial; `here` is the index of the current one.
     linearizations: [Linearization; 2],
     here: usize,
 }
@@ -68,16 +68,16 @@ struct Descent {
     damping: f64,
 }
 
-/// The decision about a trial step.
+/// Decision about a trial step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TrialVerdict {
-    /// Accepted; the descent continues from there.
+    /// Accepted; the descent continues.
     Kept,
-    /// Accepted; the descent ends there, because the gain is negligible.
+    /// Accepted; the descent ends because the gain is negligible.
     KeptAtLast,
-    /// Refused; the next trial is shorter.
+    /// Rejected; the next trial is shorter.
     Refused,
-    /// Refused; a shorter trial would make no difference.
+    /// Rejected; the descent ends because a shorter trial would make no difference.
     RefusedAtLast,
 }
 
@@ -87,6 +87,8 @@ impl TrialVerdict {
         matches!(self, Self::Kept | Self::KeptAtLast)
     }
 
+    /// Ends the descent after a last trial.
+    ///
     /// # Errors
     /// [`Status::Stalled`] at the end of the descent.
     fn goes_on(self) -> Result<(), Status> {
@@ -98,7 +100,7 @@ impl TrialVerdict {
 }
 
 impl LevenbergMarquardt {
-    /// A descent that starts at a point with this value.
+    /// Descent from a point with this value.
     #[inline]
     fn descent_from(&self, value: f64) -> Descent {
         Descent { value, damping: self.initial_damping }
@@ -120,7 +122,7 @@ impl LevenbergMarquardt {
 }
 
 impl Descent {
-    /// The damping of the next step.
+    /// Damping of the next step.
     ///
     /// # Errors
     /// [`Status::Stalled`] if the value is not finite.
@@ -152,7 +154,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let value = evaluator.linearize(&mut trial, &mut linearizations[1 - *here])?;
         let verdict = self.judge(descent, value);
         if verdict.keeps() {
-            // Only the entries in use: a point has capacity for many more.
+            // Copies only the entries in use: a point has capacity for many more.
             x.copy_from_slice(&trial);
             *here = 1 - *here;
         }

@@ -1,8 +1,8 @@
-//! Solvers minimise an [`Objective`](crate::objective::Objective) inside a box. They do not depend on robots.
+//! Solvers, which minimise an [`Objective`](crate::objective::Objective) inside a box, independently of robots.
 //!
-//! A solver is a value of named options; its progress is another value, its `State`. `driver` owns the loop. The
-//! [`Evaluator`] counts evaluations, clips points, treats values that are not finite as the worst, and keeps the best
-//! point. So for every algorithm budgets are exact, results are in the box and the best point is never lost.
+//! A solver is a value of named options; its progress is another value, its `State`. `driver` owns the loop. The [`Evaluator`]
+//! counts evaluations, clips points, treats values that are not finite as the worst, and keeps the best point. Every algorithm
+//! therefore has exact budgets and results in the box, and never loses the best point.
 //!
 //! Read `stop` and `status` (how a run ends), `driver` (the loop), `evaluator`, then any algorithm. `algorithm` lists
 //! all of them; `any_solver` is the caller's choice: an algorithm, with or without restarts.

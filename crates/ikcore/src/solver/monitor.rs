@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-/// Lets the caller watch and interrupt a long run. It is polled from the calling thread, every few microseconds of work.
+/// Monitor of a long run, polled from the calling thread every few microseconds of work to report progress or interrupt.
 pub trait Monitor {
     /// Returns false to end the run with [`Status::Interrupted`](super::Status::Interrupted).
     fn keep_going(&mut self) -> bool;
@@ -11,7 +11,7 @@ pub trait Monitor {
     fn progress(&mut self, _done: usize, _total: usize) {}
 }
 
-/// A monitor that never interrupts.
+/// Monitor that never interrupts.
 #[derive(Debug, Clone, Copy)]
 pub struct Unattended;
 
@@ -21,9 +21,9 @@ impl Monitor for Unattended {
     }
 }
 
-/// Reports the number of evaluations to the caller's monitor.
+/// Monitor that reports the number of evaluations to the caller's monitor.
 pub(crate) struct EvaluationMonitor<'a> {
-    /// The caller's monitor.
+    /// Monitor of the caller.
     pub monitor: &'a mut dyn Monitor,
     /// Evaluations so far, counted elsewhere.
     pub done: &'a Cell<usize>,

@@ -1,4 +1,4 @@
-//! Multi-start: restarts any solver when it stalls or makes too little progress.
+//! Multi-start: restarts any solver that stalls or makes too little progress.
 
 use super::domain::Domain;
 use super::driver::Solver;
@@ -7,30 +7,30 @@ use super::status::Status;
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 
-/// When to abandon an attempt and restart.
+/// Rule for abandoning an attempt and restarting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestartRule {
     /// Total number of starts, including the caller's.
     pub max_starts: usize,
-    /// An attempt is abandoned when this many steps lower its best value by less than the factor `min_reduction`.
+    /// Number of steps that must lower the best value by the factor `min_reduction`, or the attempt is abandoned.
     pub patience: usize,
     /// Factor by which `patience` steps must lower the best value.
     pub min_reduction: f64,
 }
 
 impl RestartRule {
-    /// As many starts as the budget allows; each is abandoned if `patience` steps do not halve its best value.
+    /// Rule with as many starts as the budget allows, each abandoned if `patience` steps do not halve its best value.
     pub fn with_patience(patience: usize) -> Self {
         Self { max_starts: usize::MAX, patience, min_reduction: 2.0 }
     }
 }
 
-/// A solver with restarts.
+/// Solver with restarts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MultiStart<S> {
-    /// The solver that runs from each start.
+    /// Solver that runs from each start.
     pub solver: S,
-    /// When to restart.
+    /// Rule for restarts.
     pub rule: RestartRule,
 }
 
@@ -53,30 +53,30 @@ impl<S> MultiStart<S> {
     }
 }
 
-/// The running attempt.
+/// State of the running attempt.
 #[derive(Debug, Clone, Default)]
 pub struct State<T> {
     inner: T,
     attempt: AttemptProgress,
 }
 
-/// The progress of an attempt.
+/// Progress of an attempt.
 #[derive(Debug, Clone, Copy, Default)]
 struct AttemptProgress {
     steps: usize,
-    /// The best value when `steps` was last a multiple of the patience.
+    /// Best value when `steps` was last a multiple of the patience.
     milestone: f64,
 }
 
 impl AttemptProgress {
-    /// The progress of an attempt that starts at a point with this value.
+    /// Progress of an attempt that starts at a point with this value.
     fn begun_at(value: f64) -> Self {
         Self { steps: 0, milestone: value }
     }
 }
 
 impl RestartRule {
-    /// Counts a step of the attempt and returns whether to abandon it, given its best `value` so far.
+    /// Counts a step of the attempt. Returns whether to abandon it, given its best `value` so far.
     #[inline]
     fn abandons(&self, attempt: &mut AttemptProgress, value: f64) -> bool {
         attempt.steps += 1;

@@ -1,5 +1,5 @@
-//! Newton-Raphson: full steps by the pseudo-inverse of the Jacobian. Fast when it converges, but nothing keeps it from
-//! overshooting or cycling until its budget is spent.
+//! Newton-Raphson: full steps by the pseudo-inverse of the Jacobian. It is fast when it converges, but may overshoot or cycle
+//! until its budget is spent.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -7,7 +7,7 @@ use super::status::Status;
 use crate::error::{Error, Result};
 use crate::objective::{LeastSquares, Linearization, Point};
 
-/// Newton-Raphson by the pseudo-inverse.
+/// Options of Newton-Raphson.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewtonRaphson {
     /// Fraction of the full step to take, above 0 and at most 1.
@@ -33,7 +33,7 @@ impl NewtonRaphson {
     }
 }
 
-/// The iteration between steps.
+/// State of the iteration between steps.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     x: Point,

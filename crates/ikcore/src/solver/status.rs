@@ -1,14 +1,14 @@
-//! How a run ended: one vocabulary for solves, batches and tracks.
+//! Status of a finished run, shared by solves, batches and tracks.
 //!
-//! A [`Stop`](super::Stop) holds the budgets of a run; a [`Status`] says how the run ended. Inside a run a status is
-//! also the signal that ends it: evaluator and solver return it as an error, and `?` passes it up to the driver.
+//! A [`Stop`](super::Stop) holds the budgets of a run; a [`Status`] reports how the run ended. Inside a run a status is also
+//! the signal that ends it: evaluator and solver return it as an error, and `?` passes it up to the driver.
 
 use serde::{Deserialize, Serialize};
 
-/// The list of statuses: variant and number, name in Python, meaning.
+/// Defines the statuses: variant and number, name in Python, meaning.
 macro_rules! statuses {
     ($($variant:ident = $number:literal, $name:literal: $meaning:literal;)+) => {
-        /// How a solve, an item of a batch or a step of a track ended.
+        /// Status of a solve, an item of a batch or a step of a track at its end.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         #[repr(u8)]
         pub enum Status {
@@ -16,17 +16,17 @@ macro_rules! statuses {
         }
 
         impl Status {
-            /// All of them, in the order of their numbers.
+            /// All statuses in the order of their numbers.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
-            /// The name in Python.
+            /// Name in Python.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)+
                 }
             }
 
-            /// The meaning in one sentence.
+            /// Meaning in one sentence.
             pub fn meaning(self) -> &'static str {
                 match self {
                     $(Self::$variant => $meaning,)+
@@ -64,7 +64,7 @@ statuses! {
 }
 
 impl Status {
-    /// What to try next, as the end of a sentence; empty for success.
+    /// Advice on the next attempt, as the end of a sentence; empty for success.
     pub fn advice(self) -> &'static str {
         match self {
             Self::Solved | Self::Improved => "",

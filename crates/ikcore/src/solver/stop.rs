@@ -1,10 +1,10 @@
-//! The budgets of a run.
+//! Budgets of a run.
 
 use std::time::Duration;
 
 use crate::error::{Error, Result};
 
-/// The budgets of a run, which ends when the first of them is spent. Counts are repeatable, a time limit is not.
+/// Budgets of a run, which ends when the first of them is spent. Counts are repeatable, a time limit is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Objective evaluations (for a robot: forward kinematics), including the start.
@@ -13,14 +13,14 @@ pub struct Stop {
     pub max_iterations: usize,
     /// Minimum number of iterations, even from a start that is already solved.
     pub min_iterations: usize,
-    /// Wall-clock time. With it, results are no longer repeatable.
+    /// Wall-clock time limit. Results with it are not repeatable.
     pub max_time: Option<Duration>,
-    /// The run ends after a step whose best value is below this. The start itself is not compared.
+    /// Value below which the run ends after a step. The start itself is not compared.
     pub value_below: Option<f64>,
 }
 
 impl Default for Stop {
-    /// 30 000 evaluations: about 10 ms for a 7-joint arm.
+    /// Default budget of 30 000 evaluations: about 10 ms for a 7-joint arm.
     fn default() -> Self {
         Self {
             max_evaluations: 30_000,

@@ -1,19 +1,19 @@
-//! The only clock of the crate.
+//! Stopwatch, the only clock of the crate.
 
 use std::time::{Duration, Instant};
 
-/// Measures the time since its start.
+/// Stopwatch for elapsed time.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch(Instant);
 
 impl Stopwatch {
-    /// Starts now.
+    /// Starts a stopwatch.
     #[allow(clippy::disallowed_methods)]
     pub fn start() -> Self {
         Self(Instant::now())
     }
 
-    /// One that started this much later.
+    /// Stopwatch that started later by this time.
     pub(crate) fn started_later(self, by: Duration) -> Self {
         Self(self.0 + by)
     }

@@ -1,12 +1,12 @@
-//! Index of random configurations by the frame of their tip.
+//! Index of random configurations by tip frame.
 //!
-//! The first joint rotates the whole arm about its axis, and the last one only rotates the flange; neither changes the
-//! rest of the arm. So both rotations are removed before stored frames are compared with a target, and set in closed
-//! form afterwards. That leaves four dimensions instead of six, so that a few thousand configurations lie close to most
-//! targets. First and last joints that are prismatic, or that drive others, keep their stored values.
+//! The first joint rotates the whole arm about its axis, and the last one only rotates the flange; neither changes the rest
+//! of the arm. Both rotations are therefore removed before stored frames are compared with a target, and set in closed form
+//! afterwards. That leaves four dimensions instead of six, so that a few thousand configurations lie close to most targets.
+//! First and last joints that are prismatic, or that also drive other stages, keep their stored values.
 //!
-//! Entries are sorted into buckets of similar frames. A search compares the centres of the buckets and then scans the
-//! nearest buckets: it reads a tenth of a plain scan, which matters because other work evicts the index from the caches
+//! Entries are sorted into buckets of similar frames. A search compares the centres of the buckets and then scans the nearest
+//! buckets: it reads a tenth of what a plain scan reads, which matters because other work evicts the index from the caches
 //! between calls.
 
 use std::f64::consts::TAU;
@@ -21,40 +21,40 @@ use crate::rng;
 /// Number of configurations: 1.4 MB for 7 joints, 3.1 MB for 32, built in about 4 ms.
 const SIZE: usize = 8192;
 
-/// Configurations in a bucket.
+/// Number of configurations in a bucket.
 const BUCKET: usize = 64;
 
-/// Buckets scanned.
+/// Number of buckets scanned.
 const SCANNED: usize = 4;
 
-/// Position queries scan every n-th block.
+/// Stride of position queries, which scan every n-th block.
 const STRIDE: usize = SIZE / 512;
 
 /// Weight of a difference between unit axes, relative to positions (m).
 pub(super) const AXIS_WEIGHT: f64 = 0.3;
 
-/// Features of a frame: position, weighted z axis, weighted x axis.
+/// Number of features of a frame: position, weighted z axis, weighted x axis.
 const FEATURES: usize = 9;
 
 /// Random configurations of one chain, and the frames of their last joints.
 ///
-/// Independent of base and tool: frames of the last joint, relative to the first.
+/// The frames are relative to the first joint, so the index does not depend on base and tool.
 #[derive(Debug)]
 pub(crate) struct StartIndex {
     dof: usize,
-    /// The first and last joint, if their rotations can be removed.
+    /// First and last joint, if their rotations can be removed.
     pub(super) first: Option<Turn>,
     pub(super) last: Option<Turn>,
     configurations: Vec<f64>,
     frames: Vec<Frame>,
     /// Rows of the `compared` features, block by block.
     rows: Vec<LaneRow>,
-    /// Rows of the centres of the buckets.
+    /// Rows of the bucket centres.
     centres: Vec<LaneRow>,
     compared: Vec<usize>,
 }
 
-/// A joint that rotates one stage and nothing else, by `scale` (rad) per unit of q.
+/// Joint that rotates exactly one stage, by `scale` (rad) per unit of q.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
     pub joint: usize,
@@ -62,7 +62,7 @@ pub(super) struct Turn {
 }
 
 impl StartIndex {
-    /// Builds the index of a chain with neither base nor tool, drawn from `ranges`, one per joint.
+    /// Builds the index of a chain without base and tool, drawn from `ranges`, one per joint.
     pub fn new(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
         let motions = &chain.motions[..chain.moving];
         let first = Turn::of_stage(motions, 0);
@@ -126,7 +126,7 @@ impl StartIndex {
         [px, py, pz, zx, zy, zz, xx, xy, xz].map(|v| v as f32)
     }
 
-    /// Entries with frames near `wanted`, nearest first.
+    /// Returns entries with frames near `wanted`, nearest first.
     pub(super) fn near_frame(&self, wanted: &Frame) -> [usize; LANES] {
         let all = self.features(wanted);
         let mut features = [0.0; FEATURES];
@@ -141,26 +141,25 @@ impl StartIndex {
         nearest_by_lane(&self.rows, width, blocks, &distance)
     }
 
-    /// Entries with the point at `reach` (m) along the z axis of their frame near `place`, nearest first.
+    /// Returns entries whose point at `reach` (m) along the z axis of their frame is near `place`, nearest first.
     pub(super) fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
         let distance = ToPoint {
             place: place.map(|v| v as f32),
             reach: (reach / AXIS_WEIGHT) as f32,
             azimuth_free: self.first.is_some(),
         };
-        // Positions have fewer dimensions than frames, so a sample of all buckets is as dense.
+        // A subset of the blocks suffices, since positions have fewer dimensions than frames.
         let blocks = (0..SIZE / LANES).step_by(STRIDE);
         nearest_by_lane(&self.rows, self.compared.len(), blocks, &distance)
     }
 
-    /// Configuration and frame of entry `entry`.
+    /// Returns configuration and frame of entry `entry`.
     pub(super) fn entry(&self, entry: usize) -> (&[f64], &Frame) {
         (&self.configurations[entry * self.dof..(entry + 1) * self.dof], &self.frames[entry])
     }
 }
 
-/// Sorts `entries` into buckets of [`BUCKET`] with similar features, by repeatedly halving them along the widest
-/// feature.
+/// Sorts `entries` into buckets of [`BUCKET`] with similar features, by repeatedly halving along the widest feature.
 fn into_buckets(entries: &mut [u32], features: &[[f32; FEATURES]], compared: &[usize]) {
     if entries.len() <= BUCKET {
         return;
@@ -204,7 +203,8 @@ impl Distance for ToFrame<'_> {
     }
 }
 
-/// Distance from `place` to the point at `reach` along the weighted z axis; at any azimuth if that is free.
+/// Distance from `place` to the point at `reach` along the weighted z axis, minimised over the azimuth if the azimuth is
+/// free.
 struct ToPoint {
     place: [f32; 3],
     reach: f32,
@@ -217,7 +217,7 @@ impl Distance for ToPoint {
         let [x, y, z] = self.place;
         let mut squared = [0.0; LANES];
         if self.azimuth_free {
-            // Stored positions have no y.
+            // Stored positions have y = 0.
             let (px, pz, zx, zy, zz) = (&block[0], &block[1], &block[2], &block[3], &block[4]);
             let radius = (x * x + y * y).sqrt();
             for (i, squared) in squared.iter_mut().enumerate() {
@@ -246,7 +246,7 @@ impl Turn {
         (alone && scale != 0.0).then_some(Self { joint, scale })
     }
 
-    /// The joint value `q` after a rotation by `angle` (rad), shifted by whole turns to be nearest to the middle of
+    /// Returns the joint value `q` after a rotation by `angle` (rad), shifted by whole turns to be nearest to the middle of
     /// `range`.
     pub fn turned(&self, q: f64, angle: f64, (lower, upper): (f64, f64)) -> f64 {
         let (turned, period) = (q + angle / self.scale, TAU / self.scale.abs());
@@ -254,12 +254,12 @@ impl Turn {
     }
 }
 
-/// The frame of the last joint, relative to the first, when the tip of `chain` is at `tip`.
+/// Returns the frame of the last joint, relative to the first, when the tip of `chain` is at `tip`.
 pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
     chain.stages.frame(0).inverse().then::<NoFma>(tip).then::<NoFma>(&chain.tip.inverse())
 }
 
-/// `frame` rotated about the base's z axis, given sine and cosine of the angle.
+/// Rotates `frame` about the base's z axis, given sine and cosine of the angle.
 pub(super) fn turned_about_base_z(frame: &Frame, sine: f64, cosine: f64) -> Frame {
     let turned = |v: [f64; 3]| [cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]];
     Frame { axes: frame.axes.map(turned), origin: turned(frame.origin) }

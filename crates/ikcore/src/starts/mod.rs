@@ -1,6 +1,6 @@
-//! Starts for a descent: random configurations of a chain, indexed by their tip pose.
+//! Starting points for a descent: random configurations of a chain, indexed by their tip pose.
 //!
-//! They depend on a chain and the ranges of its joints, not on `Robot`. Read `index` for the stored data and
+//! The index depends on a chain and the ranges of its joints, not on `Robot`. Read `index` for the stored data and
 //! `near_target` for how an entry becomes a start; `nearest_by_lane` is the scan.
 
 pub(crate) mod index;

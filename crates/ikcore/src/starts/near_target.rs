@@ -1,4 +1,4 @@
-//! Starts near one target: entries of the index, with their first and last joint rotated towards it.
+//! Starting points near one target: entries of the index, with first and last joint rotated towards it.
 
 use super::index::{AXIS_WEIGHT, StartIndex, between_joints, turned_about_base_z};
 use std::f64::consts::PI;
@@ -9,7 +9,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::sampling_range;
 
-/// Indexed configurations whose tip is near one target, nearest first.
+/// Indexed configurations with their tip near one target, nearest first.
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
     index: &'a StartIndex,
@@ -18,23 +18,23 @@ pub struct Starts<'a> {
     used: usize,
 }
 
-/// The target in the frame of the first joint.
+/// Target in the frame of the first joint.
 #[derive(Debug, Clone, Copy)]
 enum Wanted {
-    /// A frame of the last joint.
+    /// Frame of the last joint.
     Frame(Frame),
-    /// A position `place` for the tip; `tip` is the tip in the frame of the last joint.
+    /// Position `place` of the tip; `tip` is the tip in the frame of the last joint.
     Point { place: [f64; 3], tip: [f64; 3] },
 }
 
 impl StartIndex {
-    /// Starts for `pose` of the tip of `chain`. The chain may have another base and tool than the indexed one.
+    /// Returns starts for `pose` of the tip of `chain`. The chain may have another base and tool than the indexed one.
     pub(crate) fn near_pose(&self, chain: &Chain, pose: &Frame) -> Starts<'_> {
         let wanted = between_joints(chain, pose);
         self.starts(Wanted::Frame(wanted), self.near_frame(&wanted))
     }
 
-    /// Starts for `position` (m) of the tip of `chain`. Ignores the offset of the tip from the last axis.
+    /// Returns starts for `position` (m) of the tip of `chain`. Ignores the offset of the tip from the last axis.
     pub(crate) fn near_position(&self, chain: &Chain, position: &[f64; 3]) -> Starts<'_> {
         let place = chain.stages.frame(0).inverse().place::<NoFma>(position);
         let tip = chain.tip.origin;
@@ -47,7 +47,7 @@ impl StartIndex {
 }
 
 impl Starts<'_> {
-    /// Writes the next start inside the box \[`lower`, `upper`\] into `q`; false when there are no more.
+    /// Writes the next start inside the box \[`lower`, `upper`\] into `q`; returns false when there are no more.
     pub fn write_next(&mut self, lower: &[f64], upper: &[f64], q: &mut [f64]) -> bool {
         while self.used < LANES {
             self.write(self.entries[self.used], lower, upper, q);
@@ -74,7 +74,7 @@ impl Starts<'_> {
         }
     }
 
-    /// Sine and cosine of the rotation about the base's z axis that brings `frame` nearest to the target.
+    /// Returns sine and cosine of the rotation about the base's z axis that brings `frame` nearest to the target.
     fn turn_of_first(&self, frame: &Frame) -> (f64, f64) {
         match &self.wanted {
             Wanted::Point { place, tip } => turn_between(&[(1.0, frame.place::<NoFma>(tip), *place)]),
@@ -91,7 +91,7 @@ impl Starts<'_> {
     }
 }
 
-/// Sine and cosine of the rotation about z that minimises the weighted squared distances of the pairs (weight, from,
+/// Returns sine and cosine of the rotation about z that minimises the weighted squared distances of the pairs (weight, from,
 /// to).
 fn turn_between(pairs: &[(f64, [f64; 3], [f64; 3])]) -> (f64, f64) {
     let (mut sine, mut cosine) = (0.0, 0.0);
@@ -103,7 +103,7 @@ fn turn_between(pairs: &[(f64, [f64; 3], [f64; 3])]) -> (f64, f64) {
     if size > 0.0 { (sine / size, cosine / size) } else { (0.0, 1.0) }
 }
 
-/// The rotation of `frame` about its own z axis (rad) that brings its x and y axes nearest to those of `wanted`.
+/// Returns the rotation of `frame` about its own z axis (rad) that brings its x and y axes nearest to those of `wanted`.
 fn spin(frame: &Frame, wanted: &Frame) -> f64 {
     let dot = |i: usize, j: usize| -> f64 { (0..3).map(|k| frame.axes[i][k] * wanted.axes[j][k]).sum() };
     f64::atan2(dot(1, 0) - dot(0, 1), dot(0, 0) + dot(1, 1))

@@ -1,25 +1,25 @@
-//! Nearest neighbours by a scan of blocks of entries, eight entries at once.
+//! Nearest-neighbour scan over blocks of entries, eight entries at once.
 
 use crate::math::arithmetic::by_instructions;
 
 /// Number of entries compared at once, and of neighbours returned by a search.
 pub(super) const LANES: usize = 8;
 
-/// One number of eight entries.
+/// Values of one feature for eight entries.
 pub(super) type LaneRow = [f32; LANES];
 
 /// Distance of the eight entries of a block from a query. A trait instead of a closure, since only a method can be
 /// `#[inline(always)]` and so be compiled with the instructions of its caller.
 pub(super) trait Distance {
-    /// The distances, or a monotonic function of them, lane by lane.
+    /// Returns the distances, or a monotonic function of them, lane by lane.
     fn of(&self, block: &[LaneRow]) -> LaneRow;
 }
 
-/// Returns the nearest entry of each lane in `blocks`, nearest first. `rows` holds blocks of `width` rows; entry
-/// `LANES * b + i` is lane i of block b.
+/// Returns the nearest entry of each lane in `blocks`, nearest first. `rows` holds blocks of `width` rows; entry `LANES * b +
+/// i` is lane i of block b.
 ///
-/// Only the first is certain to be among the eight nearest; each of the others is the nearest of one eighth of the
-/// entries. They are equally good as starts, and the scan needs no sorting.
+/// Only the first result is certain to be among the eight nearest entries; each further one is the nearest of one eighth of
+/// the entries. These are equally good as starts, and the scan needs no sorting.
 pub(super) fn nearest_by_lane(
     rows: &[LaneRow],
     width: usize,
@@ -29,7 +29,7 @@ pub(super) fn nearest_by_lane(
     let (distances, blocks) = scan(rows, width, blocks, distance);
     let mut sorted = [0; LANES];
     for lane in 0..LANES {
-        // Sorts by counting, without branches; equal distances keep their order.
+        // Branch-free counting sort; equal distances keep their order.
         let nearer = |other: &usize| distances[*other] < distances[lane];
         let first = (0..lane).filter(|other| nearer(other) || distances[*other] == distances[lane]).count();
         let place = first + (lane + 1..LANES).filter(nearer).count();

@@ -1,4 +1,4 @@
-//! Tasks and targets of the only tip or of several: each tip has a target of its own, or is to be seen from another in a given pose.
+//! Tasks and targets of one tip or several: each tip has its own target, or a target pose relative to another tip.
 
 use smallvec::SmallVec;
 
@@ -15,48 +15,48 @@ use crate::math::so3::cross;
 use crate::objective::{Linearization, Score, TaskBlock};
 use crate::robot::Robot;
 
-/// The pose that a target is for.
+/// Frame that a target refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// That of the tip of this number.
+    /// Tip of this number.
     Tip(usize),
-    /// That of tip `of`, seen from tip `from`.
+    /// Tip `of`, relative to tip `from`.
     Pair {
-        /// Number of the tip that it is seen from.
+        /// Number of the reference tip.
         from: usize,
-        /// Number of the tip that is seen.
+        /// Number of the moving tip.
         of: usize,
     },
 }
 
-/// A task of a tip, or of a pair of them.
+/// Task of a tip, or of a pair of tips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedTask {
-    /// The pose that counts.
+    /// Frame that the target refers to.
     pub subject: Subject,
-    /// The part of it that matters. `None` means all of it.
+    /// Part of the target to reach. `None` means all of it.
     pub task: Option<Task>,
-    /// Tolerances within which its target counts as reached.
+    /// Tolerances within which the target counts as reached.
     pub tolerance: Tolerance,
 }
 
-/// A validated task.
+/// Validated task.
 #[derive(Debug, Clone)]
 pub struct TipCriterion {
-    /// The pose that counts.
+    /// Frame that the target refers to.
     pub(crate) subject: Subject,
-    /// The part of it that matters. `None` means all of it.
+    /// Part of the target to reach. `None` means all of it.
     kind: Option<TaskKind>,
-    /// When its target counts as reached.
+    /// Criterion for reaching the target, with weights.
     pub(crate) criterion: Criterion,
-    /// The tool of the task, in the frame of the tip that is moved.
+    /// Tool of the task, in the frame of the moving tip.
     tool: Option<Box<Frame>>,
-    /// Factor on its residual, beside those of the other tasks.
+    /// Weight of the residual relative to other tasks.
     weight: f64,
 }
 
 impl NamedTask {
-    /// That of the only tip of a robot.
+    /// Task of the only tip of a robot.
     #[inline]
     pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
         Self { subject: Subject::Tip(0), task, tolerance }
@@ -65,7 +65,7 @@ impl NamedTask {
     /// Checks the task.
     ///
     /// # Errors
-    /// Those of [`Task::validate`] and of the tolerances.
+    /// Errors of [`Task::validate`] and of the tolerances.
     #[inline]
     pub(crate) fn validated(&self) -> Result<TipCriterion> {
         let Self { subject, task, tolerance } = *self;
@@ -78,36 +78,37 @@ impl NamedTask {
 }
 
 impl<T: Into<Criterion>> From<T> for TipCriterion {
-    /// The whole target of the only tip, by this criterion.
+    /// Task of reaching the whole target of the only tip, by this criterion.
     fn from(criterion: T) -> Self {
         Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), tool: None, weight: 1.0 }
     }
 }
 
 impl Subject {
-    /// Whether it is a tip as seen from another.
+    /// Whether the subject is a pair of tips.
     pub(crate) fn is_pair(&self) -> bool {
         matches!(self, Self::Pair { .. })
     }
 }
 
 impl TipCriterion {
-    /// Leaves the tool to the robot, which carries it.
+    /// Removes the tool, which the robot carries.
     pub(crate) fn leave_tool(&mut self) {
         self.tool = None;
     }
 
-    /// The same task, weighing `weight` beside the others.
+    /// Sets the weight of the residual relative to other tasks.
     pub(crate) fn weighing(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
-    /// The assessment of the frame that counts.
+    /// Assesses `frame`, the frame of the subject.
     fn assess(&self, target: &Target, frame: &Frame) -> Assessment {
         self.weighted(target.assess_tip(frame, &self.criterion))
     }
 
-    /// Like [`assess`](Self::assess), with residual and Jacobian, from the geometric Jacobian of `dof` columns in `block`.
+    /// Assesses like [`assess`](Self::assess) and writes residual and Jacobian, from the geometric Jacobian of `dof` columns in
+    /// `block`.
     fn linearize(&self, target: &Target, frame: &Frame, dof: usize, block: &mut TaskBlock) -> Assessment {
         let assessment = target.linearize_tip(frame, dof, &self.criterion, block);
         if self.weight != 1.0 {
@@ -133,7 +134,7 @@ impl TipCriterion {
         Ok(())
     }
 
-    /// Where the tip itself is to be for a target of its tool.
+    /// Target of the tip itself, given a target of its tool.
     pub(crate) fn without_tool(&self, target: &Target) -> Target {
         match (&self.tool, target) {
             (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
@@ -141,7 +142,7 @@ impl TipCriterion {
         }
     }
 
-    /// The frame that counts at `q`.
+    /// Frame of the subject at `q`.
     fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
         let tip = |tip: usize| robot.tip_of(tip, q);
         let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
@@ -151,7 +152,7 @@ impl TipCriterion {
         }
     }
 
-    /// The frame that counts at `q`, and its geometric Jacobian.
+    /// Frame of the subject at `q`, and its geometric Jacobian.
     fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
         let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
         let mut frame = robot.tip_and_jacobian_of(of, q, columns);
@@ -173,14 +174,14 @@ impl TipCriterion {
     }
 }
 
-/// Adds the velocity of a point at `lever` from the column's own to its linear rows, times `factor`.
+/// Adds to the linear rows of a column, times `factor`, the velocity of a point at `lever` due to its angular rows.
 fn add_moment(column: &mut [f64; 6], lever: &[f64; 3], factor: f64) {
     let moment = cross(&[column[3], column[4], column[5]], lever);
     (0..3).for_each(|k| column[k] += factor * moment[k]);
 }
 
-/// Turns `columns`, the Jacobian of `frame`, into that of the frame as seen from `base`, whose Jacobian is `own`: with p the
-/// vector between them, v = R'(v_frame - v_base - w_base x p) and w = R'(w_frame - w_base).
+/// Transforms `columns`, the Jacobian of `frame`, to the Jacobian relative to `base`, whose Jacobian is `own`: with p the
+/// vector between the frames, v = R'(v_frame - v_base - w_base x p) and w = R'(w_frame - w_base).
 fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[f64; 6]]) {
     let lever = std::array::from_fn(|k| frame.origin[k] - base.origin[k]);
     for (column, own) in columns.iter_mut().zip(own) {
@@ -195,14 +196,14 @@ fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[
 /// Tasks and their targets, in the same order.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Aims<'a> {
-    /// The tasks: one for a robot with one tip.
+    /// Tasks; one for a robot with one tip.
     pub tasks: &'a [TipCriterion],
-    /// Their targets.
+    /// Target of each task.
     pub targets: &'a [Target],
 }
 
 impl<'a> Aims<'a> {
-    /// The target of the only tip.
+    /// Task and target of the only tip.
     pub fn of_one(task: &'a TipCriterion, target: &'a Target) -> Self {
         Self { tasks: std::slice::from_ref(task), targets: std::slice::from_ref(target) }
     }
@@ -216,23 +217,23 @@ impl<'a> Aims<'a> {
         }
     }
 
-    /// Whether nothing is asked.
+    /// Whether there are no targets.
     pub(crate) fn is_empty(&self) -> bool {
         self.targets.is_empty()
     }
 
-    /// Each task with its target.
+    /// Iterates over tasks with their targets.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a TipCriterion, &'a Target)> + use<'a> {
         self.tasks.iter().zip(self.targets)
     }
 
-    /// The assessment of `q`: the sum of the values, solved where all are; the largest errors.
+    /// Assesses `q`: the sum of the values, solved if all tasks are solved, with the largest errors.
     pub(crate) fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
         let assess = |(task, target): (&TipCriterion, &Target)| task.assess(target, &task.frame(robot, q));
         self.iter().map(assess).fold(nothing_asked(), together)
     }
 
-    /// The assessment of `q`, with residuals and Jacobians. Calls `solved` with the number of each task of several tips that is solved.
+    /// Assesses `q` and writes residuals and Jacobians. Calls `solved` with the number of each solved task of several tips.
     #[inline]
     pub(crate) fn linearize(
         &self,
@@ -247,7 +248,7 @@ impl<'a> Aims<'a> {
         }
     }
 
-    // Kept out of line: inlined, it would make that of one tip slower.
+    // Kept out of line: inlining would slow down the case of one tip.
     #[cold]
     #[inline(never)]
     fn linearize_several(
@@ -270,23 +271,23 @@ impl<'a> Aims<'a> {
         all
     }
 
-    /// Positions (m) that count for each task at `q`.
+    /// Calls `keep` with the position (m) of each task's frame at `q`.
     pub(crate) fn positions(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 3])) {
         self.tasks.iter().for_each(|task| keep(task.frame(robot, q).origin));
     }
 
-    /// Whether a task is for a pair of tips.
+    /// Whether any task is for a pair of tips.
     pub(crate) fn has_pairs(&self) -> bool {
         self.tasks.iter().any(|task| task.subject.is_pair())
     }
 
-    /// Whether all pairs of tips are where they are to be at `q`; true without any.
+    /// Whether all pairs of tips are at their relative poses at `q`; true without pairs.
     pub(crate) fn pairs_are_held(&self, robot: &Robot, q: &[f64]) -> bool {
         let mut pairs = self.iter().filter(|(task, _)| task.subject.is_pair());
         pairs.all(|(task, target)| task.assess(target, &task.frame(robot, q)).score.solved)
     }
 
-    /// The residual of each task at `q`, and the assessment.
+    /// Calls `keep` with the residual of each task at `q`, and returns the assessment.
     pub(crate) fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
         let mut block = TaskBlock::default();
         let residual = |(task, target): (&TipCriterion, &Target)| {
@@ -297,7 +298,7 @@ impl<'a> Aims<'a> {
         self.iter().map(residual).fold(nothing_asked(), together)
     }
 
-    /// The errors of each task at `q`.
+    /// Errors of each task at `q`.
     pub(crate) fn errors(&self, robot: &Robot, q: &[f64]) -> SmallVec<[TipError; 4]> {
         let error = |(task, target): (&TipCriterion, &Target)| {
             TipError::from(target.assess_tip(&task.frame(robot, q), &task.criterion).error)
@@ -305,7 +306,7 @@ impl<'a> Aims<'a> {
         self.iter().map(error).collect()
     }
 
-    /// Err for targets of two tips and of the pair of them that contradict each other.
+    /// Checks that targets of two tips agree with the target of their pair.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
@@ -343,7 +344,7 @@ fn nothing_asked() -> Assessment {
     Assessment { score: Score { value: 0.0, solved: true }, error }
 }
 
-/// Two assessments as one.
+/// Combines two assessments into one.
 fn together(one: Assessment, other: Assessment) -> Assessment {
     let larger = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Some(if a > b { a } else { b }),
@@ -363,7 +364,7 @@ mod tests {
     use crate::math::pose;
     use crate::task::{Region, TaskKind};
 
-    /// A turning chest with two arms of three joints.
+    /// Robot with a rotating chest and two arms of three joints.
     fn robot() -> Robot {
         let mut urdf = String::from(r#"<robot name="pair"><link name="floor"/><link name="chest"/>"#);
         let mut joint = |name: &str, [parent, child]: [&str; 2], [xyz, axis]: [&str; 2], kind: &str| {

@@ -8,23 +8,23 @@ use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::objective::{Score, TaskBlock};
 
-/// The errors of a tip relative to its target, by a criterion.
+/// Errors of a tip relative to its target, judged by a criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
-    /// The weighted sum of squares, and whether the target is reached.
+    /// Weighted sum of squares, and whether the target is reached.
     pub score: Score,
-    /// The errors of the components that count, unweighted.
+    /// Unweighted errors of the components that count.
     pub error: SquaredError,
 }
 
 impl Criterion {
-    /// The assessment of `error` with the sum of squares `value`, if all components weigh the same.
+    /// Assesses `error` with the sum of squares `value`, if all components have the same weight.
     #[inline(always)]
     pub(super) fn assess_unweighted(&self, error: SquaredError, value: f64) -> Assessment {
         Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
     }
 
-    /// The assessment of the residual of `target`, in base coordinates, by `components`.
+    /// Assesses the residual of `target`, in base coordinates, by `components`.
     pub(super) fn assess_components(
         &self,
         components: &Components,
@@ -54,7 +54,7 @@ impl Criterion {
 }
 
 impl Components {
-    /// Rotates residual and columns from base coordinates into the target's frame and weights them.
+    /// Rotates residual and columns from base coordinates into the target's frame, and weights them.
     pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut TaskBlock) {
         let weighted = |vector: &[f64; ROWS]| {
             let turned = turned_into_frame(target, vector);
@@ -68,7 +68,7 @@ impl Components {
 }
 
 impl Target {
-    /// The residual of `tip`, unweighted: one entry for each component.
+    /// Unweighted residual of `tip`, one entry per component.
     pub(crate) fn residual_by_component(&self, tip: &Frame) -> [f64; ROWS] {
         turned_into_frame(self, &self.residual(tip))
     }

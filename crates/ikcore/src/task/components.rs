@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
 
-/// Weights and tolerances of the components: x, y, z (m) and the three entries of the rotation vector (rad), along the
-/// axes of the target frame, or of the base if the target is only a position.
+/// Weights and tolerances of the components: x, y, z (m) and the three entries of the rotation vector (rad), along the axes of
+/// the target frame, or of the base if the target is only a position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Components {
     /// Factors on the residuals; a component of weight zero is left free.

@@ -1,4 +1,4 @@
-//! When a target counts as reached.
+//! Criterion for reaching a target.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,16 +11,16 @@ use crate::error::Result;
 /// Largest margin (m) between the tip and the faces of its region, however wide the tolerance.
 const WIDEST_MARGIN: f64 = 1e-3;
 
-/// When a target counts as reached, and the weights of its components.
+/// Criterion for reaching a target, and the weights of its components.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
-    /// Weights and tolerances component by component. `None` means all components weigh the same.
+    /// Weights and tolerances component by component. `None` means equal weights.
     pub components: Option<Components>,
-    /// The region that the tip must stay in. `None` means anywhere.
+    /// Region of the tip. `None` means unrestricted.
     pub region: Option<Region>,
-    /// The value of a tip outside its region.
+    /// Value of a tip outside its region.
     pub outside: Outside,
 }
 
@@ -40,7 +40,7 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
-    /// Whether it makes `target` fix a whole pose.
+    /// Whether `target` fixes a whole pose under this criterion.
     pub(crate) fn fixes_pose(&self, target: &Target) -> bool {
         matches!(target, Target::Pose(_)) && self.components.is_none() && self.region.is_none()
     }
@@ -51,7 +51,7 @@ impl Criterion {
         self.components.is_some() || self.region.is_some()
     }
 
-    /// The distance (m) that the tip keeps from the faces.
+    /// Margin (m) that the tip keeps from the faces.
     pub(super) fn margin(&self) -> f64 {
         let within = match self.components.and_then(|components| Some((components.weights, components.tolerance?))) {
             Some((weights, tolerance)) => {
@@ -62,7 +62,7 @@ impl Criterion {
         (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// The target of the search: `target` itself, or the nearest position in the region.
+    /// Target of the search: `target` itself, or the nearest position in the region.
     pub(crate) fn aim(&self, target: &Target) -> Target {
         match &self.region {
             Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
@@ -70,7 +70,7 @@ impl Criterion {
         }
     }
 
-    /// The coordinates of the tip that `target` leaves free.
+    /// Coordinates of the tip that `target` leaves free.
     pub(super) fn free(&self, target: &Target) -> [bool; 3] {
         match (target, &self.components) {
             (Target::Orientation(_), _) => [true; 3],

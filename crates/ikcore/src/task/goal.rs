@@ -6,12 +6,12 @@ use crate::objective::{Bounds, Point};
 use crate::obstacle::ClearSpace;
 use crate::robot::Robot;
 
-/// A cost to minimise along the self-motion. Positive weights balance several goals.
+/// Cost to minimise along the self-motion. Positive weights balance several goals.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
     /// Distance from a posture: |q - posture|^2.
     Posture {
-        /// (n,) (rad, m).
+        /// Posture (n,) (rad, m).
         posture: Vec<f64>,
         /// Weight among several goals.
         weight: f64,
@@ -23,9 +23,9 @@ pub enum Goal {
     },
     /// Avoidance of singularities: -ln w, with w Yoshikawa's index.
     Manipulability {
-        /// The motion of the tip that counts.
+        /// Motion of the tip that counts.
         motion: Motion,
-        /// The tip; None for the only one.
+        /// Name of the tip; `None` for the only one.
         tip: Option<String>,
         /// Weight among several goals.
         weight: f64,
@@ -33,12 +33,13 @@ pub enum Goal {
     /// Avoidance of singularities by the whole arm: -ln of the sum of the indices of all links
     /// ([`Manipulability::link_indices`]).
     LinkManipulability {
-        /// The motion of the links' tips that counts.
+        /// Motion of the links' tips that counts.
         motion: Motion,
         /// Weight among several goals.
         weight: f64,
     },
-    /// Distance from everything near: the sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to`.
+    /// Distance from near bodies: the sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below
+    /// `up_to`.
     Clearance {
         /// Distance beyond which a pair no longer counts (m).
         up_to: f64,
@@ -54,18 +55,18 @@ pub struct Goals {
     gradient: Point,
 }
 
-/// A goal in its computed form.
+/// Goal compiled for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
-    /// The sum of stiffness * (q - rest)^2.
+    /// Sum of stiffness * (q - rest)^2.
     Springs { stiffness: Vec<f64>, rest: Vec<f64> },
-    /// -weight * ln of an index.
+    /// Logarithm of an index: -weight * ln(index).
     Manipulability { measure: Manipulability, of: Part, weight: f64 },
-    /// weight * nearness.
+    /// Nearness of bodies, times `weight`.
     Clearance { up_to: f64, weight: f64 },
 }
 
-/// The part of the arm that an index measures.
+/// Part of the arm that an index measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     Tip,
@@ -96,11 +97,11 @@ impl Goal {
         if let Self::Clearance { up_to, .. } = self { require_positive("up_to", *up_to) } else { Ok(()) }
     }
 
-    /// Checks the goal against the robot; `among_obstacles` says whether its surroundings are known.
+    /// Checks the goal against the robot; `among_obstacles` is true if collisions are checked.
     ///
     /// # Errors
     /// As [`validate_numbers`](Self::validate_numbers) and, for the posture, [`Robot::check`]; [`Error::Contradiction`] for a
-    /// clearance from what is not known.
+    /// clearance goal without collision checks.
     pub fn validate(&self, robot: &Robot, among_obstacles: bool) -> Result<()> {
         self.validate_numbers()?;
         match self {
@@ -110,7 +111,8 @@ impl Goal {
                           self_collision=True"
                     .into(),
             }),
-            // Its gradient takes axes that joints before them carry along, as those of a rotation vector are not.
+            // The gradient assumes that each axis is carried along by the joints before it, unlike the axes of a rotation
+            // vector.
             Self::Manipulability { .. } | Self::LinkManipulability { .. } if robot.is_floating() => {
                 let problem = "the goals Manipulability and LinkManipulability are not for robots on a floating base";
                 Err(Error::Contradiction { problem: problem.into() })
@@ -164,7 +166,7 @@ impl Goals {
         self.terms.is_empty()
     }
 
-    /// Writes the gradient at `q` into `gradient` and returns the cost. Clearances are those in `space`.
+    /// Writes the gradient at `q` into `gradient`, and returns the cost. Clearances are measured in `space`.
     pub fn cost(&mut self, robot: &Robot, space: Option<&ClearSpace<'_>>, q: &[f64], gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
         let one = &mut self.gradient;
@@ -173,7 +175,7 @@ impl Goals {
 }
 
 impl Term {
-    /// Adds the gradient at `q` to `gradient` and returns the cost; `one` is scratch.
+    /// Adds the gradient at `q` to `gradient`, and returns the cost; `one` is scratch.
     fn add(
         &self,
         robot: &Robot,

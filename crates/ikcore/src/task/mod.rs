@@ -1,9 +1,9 @@
 //! Targets and tasks of the tip, their residuals and derivatives, and secondary goals in the null space.
 //!
 //! A [`Task`] turns the caller's target into a [`Target`] and a [`Criterion`], which decides when the target is reached
-//! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target;
-//! `tip_assessment`, `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region
-//! and a robot at q; `aims` to the tasks of one tip or several. [`Goals`] are costs in the null space of the task.
+//! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
+//! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q; `aims`
+//! applies it to the tasks of one tip or several. [`Goals`] are costs in the null space of the task.
 
 mod aims;
 mod assessment;

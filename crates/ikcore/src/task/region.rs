@@ -1,23 +1,23 @@
-//! A box that the tip must stay in: p_min < p < p_max, eq. (5) of Cheng et al. (2020).
+//! Region of the tip, a box p_min < p < p_max: eq. (5) of Cheng et al. (2020).
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
-/// The names of the coordinates.
+/// Names of the coordinates.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The value of a tip outside its region.
+/// Value of a tip outside its region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Outside {
-    /// Decreasing towards the region, so that a search that starts outside finds its way in.
+    /// Finite and decreasing towards the region, so that a search that starts outside finds its way in.
     #[default]
     Graded,
     /// Infinite, so that a search that starts inside stays there.
     Infinite,
 }
 
-/// An open box in the base frame; infinite where it has no face.
+/// Open box in the base frame; infinite where it has no face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Region {
     lower: [f64; 3],
@@ -25,7 +25,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// The box between two corners (m); infinite coordinates leave it open.
+    /// Box between two corners (m); infinite coordinates leave it open.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a NaN, or a lower corner that is not below the upper one.
@@ -43,24 +43,24 @@ impl Region {
         Ok(Self { lower, upper })
     }
 
-    /// The lower corner (m).
+    /// Lower corner (m).
     pub fn lower(&self) -> &[f64; 3] {
         &self.lower
     }
 
-    /// The upper corner (m).
+    /// Upper corner (m).
     pub fn upper(&self) -> &[f64; 3] {
         &self.upper
     }
 
-    /// Whether `point` (m) lies inside; the faces are outside.
+    /// Whether `point` (m) is inside; the faces are outside.
     #[inline]
     pub fn contains(&self, point: &[f64; 3]) -> bool {
         (0..3).all(|k| self.lower[k] < point[k] && point[k] < self.upper[k])
     }
 
-    /// The point nearest to `point` (m) that is `margin` (m) away from every face; if two faces are close, at least a
-    /// quarter of their distance away.
+    /// Point nearest to `point` (m) with a distance of `margin` (m) from every face, or of a quarter of the distance of two
+    /// close faces.
     #[inline]
     pub fn nearest(&self, point: &[f64; 3], margin: f64) -> [f64; 3] {
         std::array::from_fn(|k| {

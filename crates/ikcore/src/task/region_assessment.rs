@@ -1,4 +1,4 @@
-//! The assessment of a tip that is kept in a region.
+//! Assessment of a tip in a region.
 //!
 //! The search aims at the point of the region that is nearest to the target, a margin inside the faces, so that a
 //! search that ends within its tolerance ends inside the region. For a coordinate that the task leaves free, the
@@ -24,14 +24,14 @@ impl Criterion {
 }
 
 impl Target {
-    /// The assessment of `tip`, which must be in `region`.
+    /// Assesses `tip`, which must be in `region`.
     pub(super) fn assess_tip_within(&self, region: &Region, tip: &Frame, criterion: &Criterion) -> Assessment {
         let excess = free_excess(region, &tip.origin, criterion, self);
         let led = criterion.aim(self).assess_tip_anywhere(tip, criterion);
         self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
-    /// Like [`assess_tip_within`](Self::assess_tip_within), with residual and Jacobian.
+    /// Assesses like [`assess_tip_within`](Self::assess_tip_within), and writes residual and Jacobian.
     pub(super) fn linearize_tip_within(
         &self,
         region: &Region,
@@ -53,8 +53,8 @@ impl Target {
         self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
-    /// The assessment of a tip whose distance from the aim has this `value`. The errors are relative to the target
-    /// itself; it counts as solved inside the region, as near to the target as the region allows.
+    /// Assesses a tip whose squared distance from the aim is `value`. The errors are relative to the target itself; the tip
+    /// counts as solved inside the region, as near to the target as the region allows.
     fn assess_led(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
         let inside = region.contains(&tip.origin);
         let within = self.with_position(|wanted| region.nearest(wanted, 0.0));
@@ -68,7 +68,7 @@ impl Target {
     }
 }
 
-/// How far each free coordinate of the tip is outside (m).
+/// Excess of each free coordinate of the tip over the region (m).
 fn free_excess(region: &Region, tip: &[f64; 3], criterion: &Criterion, target: &Target) -> [f64; 3] {
     let inside = region.nearest(tip, criterion.margin());
     let free = criterion.free(target);

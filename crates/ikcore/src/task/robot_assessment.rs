@@ -10,7 +10,7 @@ use crate::objective::TaskBlock;
 use crate::robot::Robot;
 
 impl Target {
-    /// The assessment of the tip of `robot` at `q`, by `criterion`.
+    /// Assesses the tip of `robot` at `q` by `criterion`.
     #[inline]
     pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
         match (self, criterion.is_componentwise()) {
@@ -37,7 +37,7 @@ impl Target {
         }
     }
 
-    /// The assessment of `tip`, by `criterion`.
+    /// Assesses `tip` by `criterion`.
     #[inline]
     pub(crate) fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         match &criterion.region {
@@ -46,15 +46,15 @@ impl Target {
         }
     }
 
-    /// Weighted residual and Jacobian at `q`, and the assessment by `criterion`.
+    /// Writes weighted residual and Jacobian at `q`, and returns the assessment by `criterion`.
     #[inline]
     pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut TaskBlock) -> Assessment {
         let tip = robot.tip_and_jacobian(q, &mut out.columns);
         self.linearize_tip(&tip, q.len(), criterion, out)
     }
 
-    /// Like [`linearize`](Self::linearize), from a tip and its geometric Jacobian, given in the first `dof` columns of
-    /// `out`.
+    /// Linearizes like [`linearize`](Self::linearize), from a tip and its geometric Jacobian, given in the first `dof` columns
+    /// of `out`.
     #[inline]
     pub(crate) fn linearize_tip(
         &self,

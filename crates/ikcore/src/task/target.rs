@@ -5,23 +5,23 @@ use smallvec::SmallVec;
 use crate::error::{Result, require_finite};
 use crate::math::{Frame, Pose};
 
-/// The targets of one solve: that of the only tip, or one for each task of several.
+/// Targets of one solve: one for each task.
 pub type TargetRow = SmallVec<[Target; 1]>;
 
-/// A target of the tip.
+/// Target of the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// A position (m); the orientation is free.
+    /// Position (m); the orientation is free.
     Position([f64; 3]),
-    /// A full pose.
+    /// Full pose.
     Pose(Frame),
-    /// The orientation of a frame; the position is free.
+    /// Orientation of a frame; the position is free.
     Orientation(Frame),
-    /// The position of a frame and the direction of `axis` in it; the rotation about the axis is free.
+    /// Position of a frame and the direction of `axis` in it; the rotation about the axis is free.
     Pointing {
-        /// The full pose, including the rotation about the axis.
+        /// Full pose, including the rotation about the axis.
         frame: Frame,
-        /// The axis in the tip's own coordinates, of unit length.
+        /// Axis in the tip's own coordinates, of unit length.
         axis: [f64; 3],
     },
 }
@@ -46,7 +46,7 @@ impl Target {
         require_finite("target", frame.axes.as_flattened(), |i| format!("rotation entry {i}"))
     }
 
-    /// The target position (m), if any.
+    /// Position of the target (m), if it has one.
     pub fn position(&self) -> Option<[f64; 3]> {
         match self {
             Self::Position(position) => Some(*position),
@@ -55,7 +55,7 @@ impl Target {
         }
     }
 
-    /// The target frame, if any.
+    /// Frame of the target, if it has one.
     pub(super) fn frame(&self) -> Option<&Frame> {
         match self {
             Self::Position(_) => None,
@@ -63,7 +63,7 @@ impl Target {
         }
     }
 
-    /// The same target with its position, if it has one, replaced.
+    /// Replaces the position of the target, if it has one.
     pub(crate) fn with_position(&self, replaced: impl Fn(&[f64; 3]) -> [f64; 3]) -> Self {
         let moved = |frame: &Frame| Frame { origin: replaced(&frame.origin), ..*frame };
         match self {

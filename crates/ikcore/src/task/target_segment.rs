@@ -5,8 +5,8 @@ use crate::math::Frame;
 use crate::math::hermite::Cubic;
 use crate::math::so3::{rotated, rotation_between};
 
-/// The motion of a target from the start of a tick to its end. Positions follow the cubic that meets both velocities,
-/// or a straight line if these are unknown; orientations rotate at constant speed.
+/// Motion of a target from the start of a tick to its end. Positions follow the cubic that meets both velocities, or a straight
+/// line if these are unknown; orientations rotate at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TargetSegment {
     /// Target at the start.
@@ -19,7 +19,7 @@ pub(crate) struct TargetSegment {
     pub dt: f64,
 }
 
-/// Velocity (m/s) and angular velocity (rad/s) of a target, in the base's axes.
+/// Velocity (m/s) and angular velocity (rad/s) of a target, in base coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twist {
     /// Linear velocity (m/s).
@@ -29,7 +29,7 @@ pub struct Twist {
 }
 
 impl TargetSegment {
-    /// The target and its twist at `fraction` of the tick, from 0 to 1.
+    /// Target and twist at `fraction` of the tick, from 0 to 1.
     pub fn at(&self, fraction: f64) -> (Target, Twist) {
         let (from, to) = (self.begin.position().unwrap_or_default(), self.end.position().unwrap_or_default());
         let straight: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]) / self.dt);
@@ -47,14 +47,14 @@ impl TargetSegment {
 }
 
 impl Target {
-    /// This target after moving with `twist` for `time` (s).
+    /// Target after moving with `twist` for `time` (s).
     pub fn moved(&self, twist: &Twist, time: f64) -> Self {
         let position = self.position().unwrap_or_default();
         let there = std::array::from_fn(|k| position[k] + time * twist.linear[k]);
         self.placed(there, twist.angular.map(|entry| time * entry))
     }
 
-    /// The same target at `origin` (m), turned by the rotation vector `turn` (rad).
+    /// Target moved to `origin` (m) and rotated by the rotation vector `turn` (rad).
     fn placed(&self, origin: [f64; 3], turn: [f64; 3]) -> Self {
         let placed = |frame: &Frame| Frame { axes: frame.axes.map(|axis| rotated(&axis, &turn)), origin };
         match self {

@@ -1,4 +1,4 @@
-//! The assessment of a tip and its linearization, without a region.
+//! Assessment and linearization of a tip without a region.
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
@@ -12,7 +12,7 @@ use crate::math::so3::axes_of;
 use crate::objective::TaskBlock;
 
 impl Target {
-    /// The assessment of `tip` by `criterion`, ignoring its region.
+    /// Assesses `tip` by `criterion`, ignoring its region.
     #[inline]
     pub(super) fn assess_tip_anywhere(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         let (error, value) = self.error(tip);
@@ -22,8 +22,8 @@ impl Target {
         }
     }
 
-    /// Weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and the assessment by
-    /// `criterion`, ignoring its region.
+    /// Writes weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and returns the
+    /// assessment by `criterion`, ignoring its region.
     #[inline]
     pub(super) fn linearize_tip_anywhere(
         &self,
@@ -39,7 +39,7 @@ impl Target {
         assessment
     }
 
-    /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
+    /// Writes unweighted residual and Jacobian, in base coordinates; returns the errors and r'r.
     #[inline]
     fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut TaskBlock) -> (SquaredError, f64) {
         match self {
@@ -60,7 +60,7 @@ impl Target {
         }
     }
 
-    /// The errors and r'r.
+    /// Squared errors, and r'r.
     #[inline]
     fn error(&self, tip: &Frame) -> (SquaredError, f64) {
         match self {
@@ -75,7 +75,7 @@ impl Target {
         }
     }
 
-    /// The residual of `tip`, unweighted and in base coordinates.
+    /// Unweighted residual of `tip` in base coordinates.
     pub(super) fn residual(&self, tip: &Frame) -> [f64; ROWS] {
         let mut out = TaskBlock::default();
         self.linearize_unweighted(tip, 0, &mut out);
@@ -83,7 +83,7 @@ impl Target {
     }
 }
 
-/// The errors, and the sum of their squares.
+/// Squared errors, and their sum.
 #[inline(always)]
 fn summed(error: SquaredError) -> (SquaredError, f64) {
     (error, error.sum())

@@ -23,13 +23,13 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
-    /// The same, but nowhere less than `least` (m, rad).
+    /// Raises both tolerances to at least `least` (m, rad).
     #[inline]
     pub fn at_least(&self, least: f64) -> Self {
         Self { position: self.position.max(least), rotation: self.rotation.max(least) }
     }
 
-    /// Checks that both are positive.
+    /// Checks that both tolerances are positive.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for zero, negative or NaN.
@@ -43,7 +43,7 @@ impl Tolerance {
     }
 }
 
-/// Squared errors, which save the square root in hot loops. `None` if the target does not include the part.
+/// Squared errors, which save the square root in hot loops; `None` for a part that the target leaves free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquaredError {
     /// Squared distance (m^2).
@@ -53,7 +53,7 @@ pub struct SquaredError {
 }
 
 impl SquaredError {
-    /// The sum of both.
+    /// Sum of both squared errors.
     #[inline(always)]
     pub(super) fn sum(&self) -> f64 {
         self.position.unwrap_or(0.0) + self.rotation.unwrap_or(0.0)
@@ -67,7 +67,7 @@ impl SquaredError {
     }
 }
 
-/// The errors of the tip; NaN if the target does not include the part.
+/// Errors of the tip; NaN for a part that the target leaves free.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipError {
     /// Distance (m).
@@ -77,7 +77,7 @@ pub struct TipError {
 }
 
 impl TipError {
-    /// Whether both errors, as far as they are asked for, are within `tolerance`.
+    /// Whether the errors of the parts that the target includes are within `tolerance`.
     #[inline]
     pub fn within(&self, tolerance: &Tolerance) -> bool {
         let is_within = |error: f64, largest: f64| error.is_nan() || error <= largest;

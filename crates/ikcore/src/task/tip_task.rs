@@ -1,4 +1,4 @@
-//! Tasks of the tip: which part of a pose matters, weights and tolerances, the tool, the region.
+//! Tasks of the tip: the part of a pose to reach, weights and tolerances, the tool, the region.
 
 use std::ops::Range;
 
@@ -13,37 +13,37 @@ use crate::math::box_step::ROWS;
 use crate::math::so3::norm;
 use crate::robot::Robot;
 
-/// The part of a pose that matters.
+/// Part of a pose to reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TaskKind {
-    /// The whole pose.
+    /// Whole pose.
     Pose,
-    /// The position; the orientation is free.
+    /// Position; the orientation is free.
     Position,
-    /// The orientation; the position is free.
+    /// Orientation; the position is free.
     Orientation,
-    /// The position and the direction of one axis of the tip; the rotation about the axis is free.
+    /// Position and direction of one axis of the tip; the rotation about the axis is free.
     Pointing {
-        /// The axis in the tip's own coordinates, of any length but zero.
+        /// Axis in the tip's own coordinates, of any length but zero.
         axis: [f64; 3],
     },
 }
 
-/// A task of the tip, or of a tool at the tip.
+/// Task of the tip, or of a tool at the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
-    /// The part of a pose that matters.
+    /// Part of a pose to reach.
     pub kind: TaskKind,
     /// Weights and tolerances by component.
     pub components: Option<Components>,
     /// Pose of the tool in the tip frame; the tool then has to reach the target. `None` means the tip itself.
     pub tool: Option<Pose>,
-    /// The region that the tip must stay in. `None` means anywhere.
+    /// Region of the tip. `None` means unrestricted.
     pub region: Option<Region>,
 }
 
 impl TaskKind {
-    /// The name in Python.
+    /// Name in Python.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pose => "Pose",
@@ -53,8 +53,7 @@ impl TaskKind {
         }
     }
 
-    /// The rows of the six components that each entry of the weights and tolerances covers; the angle of a pointing
-    /// task covers three.
+    /// Component rows covered by each entry of weights and tolerances; the angle of a pointing task covers three.
     fn rows(&self) -> &'static [Range<usize>] {
         match self {
             Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
@@ -110,9 +109,8 @@ impl From<TaskKind> for Task {
 }
 
 impl Task {
-    /// The task with weights and tolerances (m, rad), one entry per component of its kind: six for a pose, three for a
-    /// position or an orientation, and x, y, z and the angle for pointing. `None` means weights of one, and the
-    /// tolerances of the call.
+    /// Task with weights and tolerances (m, rad), one entry per component of its kind: six for a pose, three for a position or
+    /// an orientation, and x, y, z and the angle for pointing. `None` means weights of one, and the tolerances of the call.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; as [`validate`](Self::validate).
@@ -131,7 +129,7 @@ impl Task {
         task.validate().map(|()| task)
     }
 
-    /// The same task with the tip kept in `region`.
+    /// Restricts the tip to `region`.
     ///
     /// # Errors
     /// As [`validate`](Self::validate).
@@ -140,17 +138,17 @@ impl Task {
         task.validate().map(|()| task)
     }
 
-    /// The criterion for targets of this task.
+    /// Criterion for targets of this task.
     pub(crate) fn criterion(&self, tolerance: Tolerance) -> Criterion {
         Criterion { components: self.components, region: self.region, ..tolerance.into() }
     }
 
-    /// The weights, one for each component that the kind has; `None` if they are all one by default.
+    /// Weights, one for each component of the kind; `None` if they are all one by default.
     pub fn weights(&self) -> Option<Vec<f64>> {
         self.components.map(|components| self.contract(&components.weights))
     }
 
-    /// The tolerances (m, rad), one for each component that the kind has.
+    /// Tolerances (m, rad), one for each component of the kind.
     pub fn tolerance(&self) -> Option<Vec<f64>> {
         self.components.and_then(|components| components.tolerance).map(|tolerance| self.contract(&tolerance))
     }
@@ -196,7 +194,7 @@ impl Task {
         self.kind.target(wanted)
     }
 
-    /// `robot` with this task's tool at its tip.
+    /// Adds the tool of this task to the tip of `robot`; `None` without a tool.
     ///
     /// # Errors
     /// As [`Robot::with_tool`].

@@ -1,8 +1,8 @@
 //! Constraints on the command of a tracked arm, from the bodies around it.
 //!
-//! A near pair of bodies limits how far the place of rest may move towards the other body. The arm gives way to a body that approaches
-//! before it is near: rows of its closest approach lead the arm aside, out of its way; rows of its present place would only drive the arm
-//! ahead of it, into a corner. Constraints from moving bodies are soft; static ones are hard.
+//! Each near pair of bodies limits how far the rest configuration may move towards the other body. A moving body acts before it
+//! is near: rows at its closest approach lead the arm aside, out of its path; rows at its present pose would only drive the arm
+//! ahead of it, into a corner. Constraints from moving bodies are soft, those from static ones are hard.
 
 use std::sync::Arc;
 
@@ -18,32 +18,32 @@ use crate::obstacle::{
     ClearSpace, Coming, ComingRows, JointMotion, MotionCertificate, NearRow, NearRows, RequiredDistance,
 };
 
-/// Kept beyond the margin where the arm comes to rest (m), in time and at once: room for the certificate.
+/// Clearance beyond the margin at the rest configuration (m), desired and required: leaves room for the certificate.
 const ROOM: f64 = 2e-4;
 const LEAST_ROOM: f64 = 2e-5;
 
-/// Least distance beyond the margin at which a pair becomes a row (m), and largest.
+/// Smallest and largest distance beyond the margin at which a pair becomes a row (m).
 const NEAR: [f64; 2] = [0.03, 0.2];
 
-/// Time in which an arm gets out of the way of an obstacle that comes nearer (s).
+/// Time for evading an approaching obstacle (s).
 const WARNING: f64 = 0.2;
 
-/// Speed of giving way (m/s): the arm begins early enough for it to suffice. Horizon of the prediction (s).
+/// Evasion speed (m/s), which determines how early the arm starts to evade, and prediction horizon (s).
 const GIVING_WAY: f64 = 0.05;
 const FORESEEN: f64 = 3.0;
 
-/// Kept beyond the margin, in time, by an arm that has to give way and cannot change its velocity at once (m): close to an obstacle the
-/// certificate of a motion between ticks would refuse to let it start.
+/// Desired clearance beyond the margin (m) of an arm that has to evade and has limited acceleration: closer to an obstacle, the
+/// certificate of the motion between ticks would refuse to let it start.
 const ROOM_TO_START: f64 = 3e-3;
 
-/// Softness of rows of moving bodies, and of rows wanted in time: they give way to rows of static bodies.
+/// Compliance of rows of moving bodies, and of desired rows: both yield to rows of static bodies.
 const MOVING: f64 = 1e-7;
 const WISHED: f64 = 1e-5;
 
-/// Time in which a distance that is wanted, but not needed, comes about (s).
+/// Time constant with which a desired distance is restored (s).
 const PACE: f64 = 0.1;
 
-/// Motion of obstacles between two calls that give their places.
+/// Velocities of the obstacles between two updates of their poses.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ObstacleVelocities {
     /// Velocity of each obstacle (m/s); empty if all are at rest.
@@ -51,24 +51,24 @@ pub(super) struct ObstacleVelocities {
     speeds: Vec<f64>,
 }
 
-/// Bodies around an arm.
+/// Obstacles and links around an arm, with the constraint rows that they impose.
 #[derive(Debug)]
 pub(super) struct Around {
     pub space: Arc<ClearSpace<'static>>,
     pub obstacles: ObstacleVelocities,
-    /// Time since the obstacles were where they are said to be (s).
+    /// Time since the last update of the obstacles (s).
     pub since: f64,
-    /// Near pairs at the place of rest if the arm brakes now.
+    /// Near pairs at the rest configuration if the arm brakes now.
     near: NearRows,
-    /// Near pairs at the place of rest after the command.
+    /// Near pairs at the rest configuration after the command.
     after: NearRows,
-    /// Bodies that will come too near to the place of rest.
+    /// Bodies that will come too near to the rest configuration.
     coming: ComingRows,
     check: MotionCertificate,
 }
 
 impl ObstacleVelocities {
-    /// With these velocities (m/s): one for each of the obstacles, of which there are `count`, or none.
+    /// Velocities (m/s) of `count` obstacles; empty means that all are at rest.
     ///
     /// # Errors
     /// [`Error::WrongLength`] or [`Error::NotFinite`].
@@ -89,7 +89,7 @@ impl ObstacleVelocities {
 }
 
 impl Around {
-    /// The bodies in `space`, which move like `obstacles`, for an arm with these limits.
+    /// Surroundings of an arm with these limits: the bodies in `space`, moving like `obstacles`.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -112,15 +112,15 @@ impl Around {
         })
     }
 
-    /// How far an obstacle gets until the arm is at rest in `stop_time` (s), and how much nearer it comes while the arm gets out of
-    /// its way (m).
+    /// Distances (m) that an obstacle covers until the arm is at rest in `stop_time` (s), and by which it approaches while the
+    /// arm evades.
     fn approach_of(&self, near: &NearRow, stop_time: f64) -> [f64; 2] {
         let Some(velocity) = near.obstacle().and_then(|i| self.obstacles.velocities.get(i)) else { return [0.0; 2] };
         let approach = dot(velocity, near.normal.as_slice()).max(0.0);
         [norm(velocity) * (self.since + stop_time), approach * WARNING]
     }
 
-    /// Finds the pairs near the place of rest.
+    /// Finds the pairs near the rest configuration.
     pub fn find_near(&mut self, context: &StepContext<'_>, rest: &[f64]) {
         let [lower, upper] = context.ends();
         let reach: f64 = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).sum();
@@ -130,12 +130,12 @@ impl Around {
         self.find_coming(rest);
     }
 
-    /// Whether something is nearer than the margin at the place of rest.
+    /// Whether a body is nearer than the margin at the rest configuration.
     pub fn is_too_near(&self) -> bool {
         self.near.rows().iter().any(|near| near.distance < self.space.margin())
     }
 
-    /// Finds what comes too near to an arm at `q`.
+    /// Finds the bodies that will come too near to an arm at `q`.
     fn find_coming(&mut self, q: &[f64]) {
         let (velocities, since) = (&self.obstacles.velocities[..], self.since);
         let margin = self.space.margin() + ROOM;
@@ -148,12 +148,12 @@ impl Around {
         near.obstacle().and_then(|i| self.obstacles.speeds.get(i)).is_some_and(|speed| *speed > 0.0)
     }
 
-    /// What an arm keeps beyond the margin, in time (m).
+    /// Desired clearance beyond the margin (m).
     fn room(&self, limited: bool) -> f64 {
         if limited && self.obstacles.fastest() > 0.0 { ROOM_TO_START } else { ROOM }
     }
 
-    /// Whether a motion until `end` (ticks) is certainly clear.
+    /// Whether the motion until `end` (ticks) is certified clear.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64, dt: f64) -> bool {
         let kept = RequiredDistance {
             margin: self.space.margin(),
@@ -167,8 +167,8 @@ impl Around {
         self.space.is_kept_by(motion, end, &kept, &mut self.check)
     }
 
-    /// Sets the rows of a command that ends in `rest` after `stop_ticks`; what overlaps there is wanted to part. Returns whether
-    /// `command` breaks one.
+    /// Sets the rows of a command that ends in `rest` after `stop_ticks`; overlapping pairs become rows to separate them.
+    /// Returns whether `command` violates a row.
     pub fn set_rows(
         &self,
         context: &StepContext<'_>,
@@ -183,15 +183,15 @@ impl Around {
         let stop_time = context.dt * stop_ticks;
         let pace = (context.dt / PACE).min(1.0);
         for near in self.near.rows() {
-            // The obstacle moves on while the command is carried out.
+            // The obstacle keeps moving while the command is carried out.
             let [until_rest, while_leaving] = self.approach_of(near, context.dt + stop_time);
             let missing = self.space.margin() + until_rest - near.distance;
             let whole = missing + self.room(context.limited.is_some()) + while_leaving;
-            // What is wanted but not needed comes in time, so that it does not rival what is needed. An arm that cannot change its
-            // velocity at once also comes nearer in time, so that it can give way.
+            // Desired clearance is restored gradually, so that it does not compete with required clearance. An arm with limited
+            // acceleration also approaches gradually, so that it can still evade.
             let paced = if whole > 0.0 || context.limited.is_some() { pace * whole } else { whole };
             if near.distance < 0.0 {
-                // The deepest counts most: bodies on both sides of an obstacle want opposite ways out.
+                // The deepest overlap counts most: bodies on both sides of an obstacle demand opposite ways out.
                 let weight = (near.distance / self.near.rows()[0].distance).powi(2);
                 wanted.push(response.row(&near.gradient.map(|entry| weight * entry), weight * paced));
             } else {
@@ -214,7 +214,7 @@ impl Around {
         rows.iter().chain(&*wanted).any(|row| dot(&row.gradient, command) < row.least)
     }
 
-    /// Sets the rows of the place where the arm comes to rest after the command `q`: they bend on the way there.
+    /// Sets the rows at the rest configuration after the command `q`, where the gradients differ from those before it.
     pub fn set_rows_after(
         &mut self,
         context: &StepContext<'_>,
@@ -234,13 +234,14 @@ impl Around {
         }
     }
 
-    /// Sets the rows of a goal configuration at `q`. Returns whether it keeps them.
+    /// Sets the rows of a goal configuration at `q`. Returns whether `q` satisfies them.
     pub fn set_goal_rows(&mut self, q: &[f64], rows: &mut Vec<Row>) -> bool {
         let far = self.obstacles.fastest() * (self.since + WARNING);
         self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
         rows.clear();
         for near in self.near.rows() {
-            // A goal keeps a little more than the arm that is to get there; goals are pursued under acceleration limits alone.
+            // A goal keeps slightly more clearance than the arm that pursues it; goals are pursued under acceleration limits
+            // only.
             let room = self.room(true) + ROOM;
             let kept = self.space.margin() + room + self.approach_of(near, 0.0).iter().sum::<f64>();
             let least = kept - near.distance + dot(&near.gradient[..q.len()], q);
@@ -255,7 +256,7 @@ impl Around {
     }
 }
 
-/// How the place of rest follows the command x: r_j(x) = rest_j + slope_j x_j + offset_j, the secant over the box.
+/// Secant model of the rest configuration over the box of commands x: r_j(x) = rest_j + slope_j x_j + offset_j.
 pub(super) struct Response {
     pub slope: Point,
     offset: Point,
@@ -280,7 +281,7 @@ impl Response {
         Self { slope, offset }
     }
 
-    /// The row of the command with which gradient'(r(x) - rest) >= `least`.
+    /// Row of the command for gradient'(r(x) - rest) >= `least`.
     fn row(&self, gradient: &[f64; MAX_DOF], least: f64) -> Row {
         let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
         for (j, (slope, offset)) in self.slope.iter().zip(&self.offset).enumerate() {

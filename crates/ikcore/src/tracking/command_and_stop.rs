@@ -8,23 +8,24 @@ use crate::motion::{Braking, JointState, StopCurve};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
-/// An interval this short (ticks) is not halved again.
+/// Shortest interval that is halved (ticks).
 const SHORTEST: f64 = 1e-3;
 
-/// The motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
+/// Motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
 #[derive(Debug)]
 pub(super) struct CommandAndStop<'a> {
     from: &'a [f64],
     command: &'a [f64],
-    /// The stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
+    /// Stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
     stops: SmallVec<[(StopCurve, f64); MAX_DOF]>,
-    /// Displacements in the tick before.
+    /// Displacements in the previous tick.
     before: &'a [f64],
     ticks: f64,
 }
 
 impl<'a> CommandAndStop<'a> {
-    /// Of an arm at `from` that is given `command`. `limited`: how its joints may brake, and their motion in the last tick.
+    /// Motion of an arm at `from` that receives `command`. `limited` holds the braking limits of the joints and their state in
+    /// the last tick; `None` without acceleration limits.
     pub fn new(from: &'a [f64], command: &'a [f64], limited: Option<(&[Braking], &'a JointState)>) -> Self {
         let mut stops: SmallVec<[(StopCurve, f64); MAX_DOF]> = SmallVec::new();
         if let Some((braking, state)) = limited {
@@ -43,17 +44,17 @@ impl<'a> CommandAndStop<'a> {
         self.ticks
     }
 
-    /// When it ends (ticks).
+    /// End of the motion (ticks).
     pub fn end_tick(&self) -> f64 {
         1.0 + self.ticks
     }
 
-    /// Where the arm comes to rest.
+    /// Rest configuration.
     pub fn rest(&self) -> Point {
         (0..self.command.len()).map(|j| self.end(j)).collect()
     }
 
-    /// Where joint `j` comes to rest.
+    /// Rest position of joint `j`.
     pub fn end(&self, j: usize) -> f64 {
         self.command[j] + self.stops.get(j).map_or(0.0, |(stop, _)| stop.end())
     }
@@ -99,8 +100,9 @@ impl JointMotion for CommandAndStop<'_> {
     }
 }
 
-/// Where to divide an interval of a motion in ticks. A spline is known by its control points alone. Of more than one tick, halves of
-/// whole ticks: the motion is straight between ticks alone.
+/// Point at which to divide an interval of a motion in ticks; `None` if it is too short. Intervals of more than one tick are
+/// divided at whole ticks, between which the motion is straight; those of a spline, determined by its control points, are never
+/// divided within a tick.
 pub(super) fn middle(from: f64, to: f64, is_spline: bool) -> Option<f64> {
     let (length, half) = (to - from, 0.5 * (to - from));
     let shortest = if is_spline { 1.0 } else { SHORTEST };

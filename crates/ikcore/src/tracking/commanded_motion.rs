@@ -1,16 +1,16 @@
 //! The motion between ticks of an arm whose velocity may not jump.
 //!
-//! A uniform cubic B-spline with the commanded positions as control points. Its velocity is a mean of the displacements
-//! per tick, its acceleration the interpolation of their changes, and its jerk the change of these: what was kept at the
-//! ticks holds in between. It passes each commanded position at a sixth of that tick's acceleration times dt^2, because
-//! no curve through alternating positions could keep the limit that their differences keep.
+//! The curve is a uniform cubic B-spline with the commanded positions as control points. Its velocity is a mean of the
+//! displacements per tick, its acceleration interpolates their differences, and its jerk is the second difference; limits kept
+//! at the ticks therefore hold in between. The curve passes each commanded position at a sixth of that tick's acceleration
+//! times dt^2, because no curve through alternating positions could keep the limits that their differences keep.
 
 use crate::trajectory::{Coefficients, polynomial};
 
-/// Fewest positions that determine the curve.
+/// Smallest number of positions that determine the curve.
 pub(super) const FEWEST: usize = 3;
 
-/// The polynomials between the rows of `q` (at least [`FEWEST`], of `n` joints), in order of segments, then joints. The
+/// Returns the polynomials between the rows of `q` (at least [`FEWEST`], of `n` joints), ordered by segment, then joint. The
 /// arm rests before the first row, and keeps its acceleration after the last.
 pub(super) fn spline(q: &[f64], n: usize, dt: f64) -> Vec<Coefficients> {
     let rows = q.len() / n;
@@ -27,9 +27,9 @@ pub(super) fn spline(q: &[f64], n: usize, dt: f64) -> Vec<Coefficients> {
     coefficients
 }
 
-/// The segment between the second and the third of four control points.
+/// Spline segment between the second and the third of four control points.
 fn segment([before, here, next, after]: [f64; 4], dt: f64) -> Coefficients {
-    // Differences first: they are small.
+    // Differences first: small numbers lose fewer digits.
     let [first, second, third] = [here - before, next - here, after - next];
     let [bend, next_bend] = [second - first, third - second];
     polynomial([

@@ -1,4 +1,4 @@
-//! Constrained steps: nearest to their start or to the target, measured by the effect on the task or by the joints.
+//! Constrained steps in a box: towards the target or nearest to the start, in task space or in joint space.
 
 use smallvec::SmallVec;
 
@@ -11,10 +11,10 @@ use crate::objective::{Linearization, Point, TaskBlock};
 use crate::robot::Robot;
 use crate::task::Aims;
 
-/// Damping of the joints beside the task, relative to the squared size of the Jacobian.
+/// Damping of joint motion, relative to the squared norm of the Jacobian.
 const DAMPING: f64 = 1e-5;
 
-/// Weight of wanted rows, relative to the task.
+/// Weight of the separating rows relative to the task.
 const URGENT: f64 = 10.0;
 
 /// Newton steps onto the poses of pairs; they converge quadratically.
@@ -23,7 +23,7 @@ const HOLDING_STEPS: usize = 5;
 /// Largest error of a held pair (m, rad).
 const HELD: f64 = 1e-10;
 
-/// Rows that a pair has at most.
+/// Largest number of rows of a pair.
 const ROWS_OF_PAIR: usize = ROWS;
 
 /// Solver of constrained steps, with its constraints and scratch.
@@ -31,38 +31,39 @@ const ROWS_OF_PAIR: usize = ROWS;
 pub(super) struct ConstrainedStep {
     /// Inequalities.
     pub rows: Vec<Row>,
-    /// Inequalities that cannot be kept at once; approached before the task, the first few of them.
+    /// Inequalities that separate overlapping bodies, which one step may not achieve; the first six join the tasks.
     pub wanted: Vec<Row>,
     wanted_columns: Vec<[f64; ROWS]>,
-    /// Equations that keep pairs of tips at their relative poses.
+    /// Equations that hold pairs of tips at their relative poses.
     held: Vec<Row>,
     solver: RowSolver,
     linearization: Box<Linearization>,
 }
 
-/// The point that a step comes nearest to.
+/// Reference point of a step: the point of the feasible set nearest to it is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Towards {
     /// The target.
     Target,
-    /// Where it begins.
+    /// Start of the step, by the effect on the task.
     Start,
-    /// Where it begins, measured by the joints: an arm that may not stop at once would keep what the task leaves free in motion.
+    /// Start of the step, by joint displacements: an arm with limited acceleration would otherwise keep redundant joints
+    /// moving.
     Joints,
 }
 
-/// A step of a robot in a box.
+/// Request for a step of a robot in a box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepRequest<'a> {
     pub robot: &'a Robot,
-    /// Pairs of tips are held; other targets weigh joint motions. Empty: the first tip weighs them.
+    /// Tasks and targets: pairs of tips are held, other targets weigh joint motions. Empty: the first tip weighs them.
     pub aims: Aims<'a>,
     /// Lower and upper ends of the box.
     pub ends: [&'a [f64]; 2],
     pub towards: Towards,
 }
 
-/// Where the arm rests after a `command`, and how far that place moves with the command, for each joint.
+/// Rest configuration after a `command`, and its derivative with respect to the command, joint by joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Resting<'a> {
     pub rest: &'a [f64],
@@ -71,7 +72,7 @@ pub(super) struct Resting<'a> {
 }
 
 impl ConstrainedStep {
-    /// With room for steps of `n` joints beside this many rows.
+    /// Solver with scratch for `n` joints and this many rows.
     pub fn with_room(n: usize, rows: usize) -> Self {
         Self {
             rows: Vec::with_capacity(rows),
@@ -82,19 +83,19 @@ impl ConstrainedStep {
         }
     }
 
-    /// Whether an arm at `q` is to move: bodies are to part, or it has to give way to what moves, whose rows are softer.
+    /// Whether an arm at `q` has to move: to separate overlapping bodies, or to evade moving ones, whose rows are softer.
     pub fn ask_to_move(&self, q: &[f64]) -> bool {
         let gives_way = |row: &Row| row.softness > SOFTNESS && dot(&row.gradient, q) < row.least;
         !self.wanted.is_empty() || self.rows.iter().any(gives_way)
     }
 
-    /// Writes the point after the step from `start` into `out`.
+    /// Writes the point reached by the step from `start` into `out`.
     pub fn write(&mut self, step: &StepRequest<'_>, start: &[f64], out: &mut [f64]) {
         self.linearize(step, start);
         self.write_linearized(step, start, out);
     }
 
-    /// Writes the command after the step of the place of rest into `out`.
+    /// Writes the command that moves the rest configuration by a step into `out`.
     pub fn write_resting(&mut self, step: &StepRequest<'_>, resting: &Resting<'_>, out: &mut [f64]) {
         self.linearize(step, resting.rest);
         for block in self.linearization.blocks_mut() {
@@ -105,7 +106,7 @@ impl ConstrainedStep {
         self.write_linearized(step, resting.command, out);
     }
 
-    /// Writes the point after the step from `start`, where the linearization is, into `out`.
+    /// Writes the point reached by the step from `start`, already linearized, into `out`.
     fn write_linearized(&mut self, step: &StepRequest<'_>, start: &[f64], out: &mut [f64]) {
         let n = start.len();
         let short = self.set_wanted_columns(start);
@@ -129,7 +130,7 @@ impl ConstrainedStep {
         self.solver.write(&step, out);
     }
 
-    /// Sets the columns of what is wanted, as a task; returns by how much it falls short at `start`.
+    /// Sets the columns of the wanted rows, as a task; returns their shortfall at `start`.
     fn set_wanted_columns(&mut self, start: &[f64]) -> [f64; ROWS] {
         let mut short = [0.0; ROWS];
         self.wanted_columns.clear();
@@ -142,7 +143,8 @@ impl ConstrainedStep {
         short
     }
 
-    /// Moves `q` to the poses of all pairs, by as little as they allow. Returns whether they are held there.
+    /// Projects `q` onto the relative poses of all pairs, moving it as little as possible. Returns whether the pairs are held
+    /// there.
     pub fn hold(&mut self, step: &StepRequest<'_>, q: &mut Point) -> bool {
         let aims = &step.aims;
         let step = StepRequest { towards: Towards::Joints, ..*step };
@@ -157,13 +159,13 @@ impl ConstrainedStep {
         aims.pairs_are_held(step.robot, q)
     }
 
-    /// How far pairs are from where they are to be, where the linearization is.
+    /// Largest error of the pairs at the linearization.
     fn missed(&self, aims: &Aims<'_>) -> f64 {
         let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.subject.is_pair());
         blocks.map(|(block, _)| dot(&block.residual, &block.residual)).fold(0.0, f64::max).sqrt()
     }
 
-    /// Residuals and Jacobians at `start`.
+    /// Computes residuals and Jacobians at `start`.
     fn linearize(&mut self, step: &StepRequest<'_>, start: &[f64]) {
         if !step.aims.is_empty() {
             step.aims.linearize(step.robot, start, &mut self.linearization, |_| ());
@@ -174,7 +176,7 @@ impl ConstrainedStep {
         step.robot.tip_and_jacobian(start, &mut self.linearization.first.columns);
     }
 
-    /// The rows of all pairs: r + J (x - start) = 0.
+    /// Adds the equations of all pairs: r + J (x - start) = 0.
     fn hold_pairs(&mut self, aims: &Aims<'_>, start: &[f64]) {
         for (block, task) in self.linearization.blocks().zip(aims.tasks) {
             for k in (0..ROWS).filter(|_| task.subject.is_pair()) {

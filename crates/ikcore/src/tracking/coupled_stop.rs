@@ -1,4 +1,5 @@
-//! Coupled stops, which keep pairs of tips together: all joints brake in proportion, and are led back to the poses of the pairs.
+//! Coupled stops, which hold pairs of tips: all joints brake in proportion and are projected onto the relative poses of the
+//! pairs.
 
 use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
 use super::step_context::StepContext;
@@ -11,52 +12,52 @@ use crate::obstacle::JointMotion;
 const SLOWER: f64 = 3.0;
 const MORE_TICKS: usize = 8;
 
-/// A step below this (rad, m) is rest if the next tick can end it.
+/// Displacement per tick (rad, m) that counts as rest if the next tick can end it.
 const REST: f64 = 1e-8;
 
 /// The configurations of a stop, tick by tick.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CoupledStop {
-    /// Before the command, after it, and at the ends of the ticks of the stop.
+    /// Configurations before and after the command, and at the ends of the ticks of the stop.
     places: Vec<Point>,
-    /// Displacements in the tick before.
+    /// Displacements in the previous tick.
     before: Point,
     /// Largest accelerations (rad, m per tick^2).
     acceleration: Point,
-    /// Places that have been passed.
+    /// Number of configurations of the stop passed so far.
     passed: usize,
     /// Whether the arm follows a spline between ticks.
     limited: bool,
 }
 
 impl CoupledStop {
-    /// Forgets it.
+    /// Discards the stop.
     pub fn clear(&mut self) {
         self.places.clear();
         self.passed = 0;
     }
 
-    /// The next place of an arm that stops.
+    /// Next configuration of a stopping arm.
     pub fn next(&self) -> Option<&Point> {
         self.places.get(self.passed + 2).or(self.places.last())
     }
 
-    /// The arm has gone on to the next place.
+    /// Advances to the next configuration.
     pub fn pass(&mut self) {
         self.passed += 1;
     }
 
-    /// Where it ends.
+    /// Configuration at rest.
     pub fn rest(&self) -> Option<&Point> {
         self.places.last()
     }
 
-    /// Ticks until the arm is at rest: from the end of the command, or from the last place that has been passed.
+    /// Ticks until the arm is at rest, from the end of the command or from the last configuration passed.
     pub fn ticks_to_stop(&self) -> f64 {
         self.places.len().saturating_sub(2 + self.passed) as f64
     }
 
-    /// Finds the stop after `command`. Returns whether there is one that holds the pairs within all limits.
+    /// Finds the stop after `command`. Returns whether it holds the pairs within all limits.
     pub fn find(&mut self, context: &StepContext<'_>, command: &[f64], rows: &mut ConstrainedStep) -> bool {
         self.clear();
         self.places.extend([Point::from_slice(context.q), Point::from_slice(command)]);
@@ -93,7 +94,7 @@ impl CoupledStop {
     }
 }
 
-/// Whether all joints hardly move, and can stand within the next tick.
+/// Whether all joints are nearly at rest and can stop within the next tick.
 fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
     let mut joints = state.step.iter().zip(&state.change).zip(braking);
     joints.all(|((step, change), most)| {
@@ -101,12 +102,12 @@ fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
     })
 }
 
-/// The next place of a stop: all joints slow down by the same fraction, by which the first of them may.
+/// Next configuration of a stop: all joints decelerate by the same fraction, the largest that all of them allow.
 fn braked(context: &StepContext<'_>, state: &JointState, q: &Point) -> Point {
     let mut step = Point::from_elem(0.0, q.len());
     let Some(limited) = context.limited else { return q.clone() };
     state.brake(limited.braking(), &mut step);
-    // By how much each would slow down, as a fraction: weighed by its speed, so that slow joints do not count.
+    // Ratio of speeds after and before the tick, over joints fast enough to count.
     let squared = dot(&state.step, &state.step);
     let fraction = step.iter().zip(&state.step).filter(|(_, now)| now.powi(2) > 1e-6 * squared);
     let fraction = fraction.map(|(next, now)| next / now).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Detects that measurements arrive late, from the first commands of a run and their measurements.
+//! Detection of a sensor delay from the first commands of a run and their measurements.
 //!
 //! Near the start, the motion of the tip is linear in the commands: dy_k = J du_{k-d}, with d the delay in measurements.
 //! J is fitted by least squares for each delay from 0 to 8. With the true delay the residual is far smaller than with the
@@ -9,18 +9,18 @@ use nalgebra::DMatrix;
 
 use super::tip_pose::TipPose;
 
-/// Longest delay that is tried (measurements).
+/// Longest delay considered (measurements).
 const LONGEST: usize = 8;
 
-/// The fit with the true delay leaves at most this fraction of the squared residual with the assumed delay. In trials
-/// without delay (noise, outliers, slow servos), the smallest fraction of another delay was 0.4.
+/// Largest ratio of the squared residuals with the detected and with the assumed delay. In trials without delay (noise,
+/// outliers, slow servos) the smallest ratio of another delay was 0.4.
 const CLEARLY_SMALLER: f64 = 0.25;
 
-/// Measurements that are fitted, beyond those needed for the delays: 4 and 8 per joint. The few are near the start, where
-/// the motion is linear; the many suppress noise.
+/// Measurements to fit per joint, beyond those needed for the delays. The short window stays near the start, where the motion
+/// is linear; the long one suppresses noise.
 const PER_JOINT: [usize; 2] = [4, 8];
 
-/// Singular values below this fraction of the largest are directions that no command took.
+/// Relative tolerance for zero singular values: directions that no command took.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The first commands of a run and the positions measured.
@@ -33,13 +33,13 @@ pub(super) struct FirstMeasurements {
 }
 
 impl FirstMeasurements {
-    /// For an arm of this number of joints.
+    /// An empty buffer for an arm with `joints` joints.
     pub(super) fn new(joints: usize) -> Self {
         let most = window(PER_JOINT[1], joints);
         Self { joints, commands: Vec::with_capacity(most * joints), positions: Vec::with_capacity(most), most }
     }
 
-    /// Notes a command (n,) and the measurement after it, unless there are enough.
+    /// Records a command (n,) and its measurement until the buffer is full.
     #[inline]
     pub(super) fn note(&mut self, command: &[f64], tip: &TipPose) {
         if self.positions.len() < self.most {
@@ -48,7 +48,7 @@ impl FirstMeasurements {
         }
     }
 
-    /// The delay of the sensor (measurements), if it clearly differs from the `assumed` one.
+    /// Returns the delay of the sensor (measurements) if it clearly differs from the `assumed` one.
     pub(super) fn delay_other_than(&self, assumed: usize) -> Option<usize> {
         PER_JOINT.iter().find_map(|per_joint| {
             let residuals = self.residuals(window(*per_joint, self.joints))?;
@@ -58,8 +58,8 @@ impl FirstMeasurements {
         })
     }
 
-    /// Squared residuals of the fits with delays 0 to [`LONGEST`], over the first `count` measurements; None where there
-    /// are not enough, or where nothing moved.
+    /// Squared residuals of the fits with delays 0 to [`LONGEST`] over the first `count` measurements; `None` with fewer
+    /// measurements, or if the tip did not move.
     fn residuals(&self, count: usize) -> Option<Vec<f64>> {
         let (n, rows) = (self.joints, count - 1 - LONGEST);
         if self.positions.len() < count {
@@ -86,7 +86,7 @@ fn window(per_joint: usize, joints: usize) -> usize {
     2 * LONGEST + per_joint * joints
 }
 
-/// The squared part of `moved` outside the column space of `sent`.
+/// Squared norm of the part of `moved` outside the column space of `sent`.
 fn unexplained(sent: DMatrix<f64>, moved: &DMatrix<f64>) -> Option<f64> {
     let decomposed = sent.try_svd(true, false, f64::EPSILON, 1000)?;
     let (directions, sizes) = (decomposed.u?, decomposed.singular_values);

@@ -1,4 +1,4 @@
-//! The motion of an arm under acceleration or jerk limits: what it did in the last ticks, and what it may do next.
+//! State and reachable set of an arm under acceleration or jerk limits.
 
 use crate::error::{Error, Result};
 use crate::limits::{Limits, TickBox};
@@ -6,7 +6,7 @@ use crate::motion::{Braking, JointState, ReachableSet, Scales};
 use crate::objective::Point;
 use crate::wording::number;
 
-/// Motion under acceleration or jerk limits.
+/// Motion of an arm under acceleration or jerk limits.
 #[derive(Debug)]
 pub(super) struct LimitedState {
     reachable: ReachableSet,
@@ -16,7 +16,7 @@ pub(super) struct LimitedState {
 }
 
 impl LimitedState {
-    /// At rest; `None` without acceleration and jerk limits.
+    /// Motion at rest; `None` without acceleration and jerk limits.
     pub fn new(limits: &Limits, dt: f64) -> Option<Self> {
         let reachable = ReachableSet::new(limits, dt)?;
         let steps = (0..limits.dof()).map(|j| dt * limits.velocity_of(j).at(0.0));
@@ -24,23 +24,23 @@ impl LimitedState {
         Some(Self { state: JointState::at_rest(limits.dof()), reachable, scales, dt })
     }
 
-    /// How the joints may brake.
+    /// Braking limits of the joints.
     pub fn braking(&self) -> &[Braking] {
         self.reachable.braking()
     }
 
-    /// Steps and changes of the last tick.
+    /// Displacement and its change in the last tick.
     pub fn state(&self) -> &JointState {
         &self.state
     }
 
-    /// Largest steps and changes.
+    /// Largest displacement per tick and its largest change.
     pub fn scales(&self) -> &Scales {
         &self.scales
     }
 
-    /// Narrows the box of the tick that begins at `time` (s) to what leaves a full stop. Returns false if a joint cannot
-    /// keep its limits.
+    /// Narrows the box of the tick that begins at `time` (s) to commands from which the arm can still stop. Returns false if a
+    /// joint cannot keep its limits.
     pub fn narrow(&mut self, q: &[f64], time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         for (most, velocity) in self.scales.step.iter_mut().zip(&tick.velocity) {
             *most = velocity * self.dt;
@@ -48,12 +48,12 @@ impl LimitedState {
         self.reachable.narrow(q, &self.state, time, limits, tick)
     }
 
-    /// [`narrow`](Self::narrow) for a later tick, that of an arm at `q` in `state`.
+    /// Variant of [`narrow`](Self::narrow) for a later tick, of an arm at `q` in `state`.
     pub fn narrow_ahead(&self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         self.reachable.narrow_now(q, state, time, limits, tick)
     }
 
-    /// Moves on from `before` to `q`.
+    /// Advances the state by the motion from `before` to `q`.
     pub fn advance(&mut self, before: &[f64], q: &[f64]) {
         self.state.advance(q.iter().zip(before).map(|(q, before)| q - before));
     }
@@ -89,7 +89,7 @@ impl LimitedState {
         out
     }
 
-    /// How long the fastest stop takes (s).
+    /// Duration of the fastest stop (s).
     pub fn time_to_stop(&self) -> f64 {
         self.dt * self.state.ticks_to_stop(self.braking())
     }

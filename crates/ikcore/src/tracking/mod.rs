@@ -1,6 +1,6 @@
-//! Following a path, tick by tick, inside the limits.
+//! Tracking: following a path tick by tick, inside the limits.
 //!
-//! Algorithm 1 of Cheng et al. (2020). Our choices where the paper leaves something open:
+//! The method is Algorithm 1 of Cheng et al. (2020), with our choices where the paper leaves something open:
 //!
 //! - The box of a tick is the intersection of the position limits with the range that the velocity limits allow from
 //!   the accepted configuration, so that no result can violate either. If a position limit closes in faster than its
@@ -12,16 +12,16 @@
 //! | file | what |
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
-//! | `path_approach` | the approach from rest onto a moving path, `TrackOptions::ease` |
+//! | `path_approach` | approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
 //! | `tracked_arm` | accepted configuration, clock, limits and targets |
 //! | `limited_state` | the motion of an arm under acceleration or jerk limits |
-//! | `around_arm` | what is around an arm, as rows that its command is to keep |
+//! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
-//! | `progress` | whether an arm that obstacles hold still comes nearer to its target |
-//! | `constrained_step`, `context`, `tick_aim` | steps beside rows, and what they are found from |
-//! | `tip_tasks`, `track_tips` | several tips: what is asked of them, and the call for their paths |
+//! | `progress` | progress towards its target of an arm held by obstacles |
+//! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
+//! | `tip_paths`, `tip_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |

@@ -40,18 +40,18 @@ impl Default for ModelFreeOptions {
     }
 }
 
-/// The record of a track without a model.
+/// Record of a track without a model.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ModelFreeRecord {
-    /// Rows as in any track: `q` is the accepted configuration, `position` the position measured at `command` (m). The
-    /// violations cover all commands.
+    /// Rows of the track: `q` is the accepted configuration, `position` the position measured at `command` (m). The violations
+    /// cover all commands.
     pub track: Record,
     /// The command at which each row's position was measured (k, n). It differs from `q` for
     /// [`Znnbas`](super::controller::Znnbas), which measures an antenna away from the accepted configuration.
     pub command: Vec<f64>,
-    /// Why the plant ended the run, if it did.
+    /// Fault of the plant that ended the run.
     pub fault: Option<Fault>,
-    /// The delay of the sensor (measurements), if the run failed and the delay clearly differs from the controller's
+    /// Delay of the sensor (measurements), if the run failed and the delay clearly differs from the controller's
     /// `sensor_delay`.
     pub sensor_delay: Option<usize>,
 }
@@ -164,7 +164,7 @@ impl ModelFreeRecord {
         settled(&self.track.position_error)
     }
 
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         if let Some(Fault(reason)) = &self.fault {
             let rows = self.track.rows();

@@ -13,18 +13,18 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
-/// Configurations of the motion on the path around the tick at which it may be met: before, there and after.
+/// Window of consecutive configurations for central differences: before, at and after the meeting tick.
 const AROUND: usize = 3;
 
-/// The approach, and the ticks that it takes.
+/// Approach trajectory and its length in ticks.
 pub(super) struct PathApproach {
     pub ticks: usize,
     trajectory: Trajectory,
 }
 
 impl PathApproach {
-    /// The earliest approach of an arm at rest at `start`. The path is followed without acceleration and jerk limits for
-    /// as long as no motion within them meets it. `None` if none does before it ends.
+    /// Finds the earliest approach of an arm at rest at `start`. Follows the path without acceleration and jerk limits until a
+    /// motion within them meets it; `None` if none does before the path ends.
     ///
     /// # Errors
     /// [`Error::Contradiction`] without acceleration and jerk limits; errors of a [`Session`].
@@ -69,7 +69,7 @@ impl PathApproach {
     /// The configuration at time `t` (s).
     ///
     /// # Errors
-    /// None in practice: the lengths are those of the arm.
+    /// None in practice: the buffers have the length of the trajectory.
     pub(super) fn at(&self, t: f64) -> Result<Vec<f64>> {
         let n = self.trajectory.joints().len();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
@@ -78,14 +78,14 @@ impl PathApproach {
     }
 }
 
-/// The options of a motion that changes its velocity at once.
+/// Copy of the options without acceleration and jerk limits.
 fn without_rates(limits: &Limits, options: &TrackOptions) -> Result<TrackOptions> {
     let none = || vec![Profile::Constant(f64::INFINITY)];
     let limits = limits.clone().replace(Field::Acceleration, none())?.replace(Field::Jerk, none())?;
     Ok(TrackOptions { limits: Some(limits), ..options.clone() })
 }
 
-/// The state of a motion at the middle one of three ticks.
+/// Position, velocity and acceleration at the middle of three ticks, by central differences.
 fn moving(before: &[f64], there: &[f64], after: &[f64], dt: f64) -> ArmState {
     let joints = || before.iter().zip(after).zip(there);
     ArmState {

@@ -16,13 +16,13 @@ pub trait Plant {
     /// [`Fault`] ends the run; the rows recorded so far are kept.
     fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault>;
 
-    /// Ticks between two polls of the monitor: one, unless measurements are almost free.
+    /// Ticks between two polls of the monitor; more than one only where measurements are almost free.
     fn ticks_between_looks(&self) -> usize {
         1
     }
 }
 
-/// Why a plant failed, as the end of "the plant ...".
+/// Reason for a failed measurement, worded as the end of "the plant ...".
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault(pub String);
 
@@ -58,8 +58,7 @@ impl KinematicPlant {
         Ok(Self { robot, noise, rotation_noise: None, rng: rng::stream(seed, 1) })
     }
 
-    /// The same plant with a sensor that measures poses, with noise of this standard deviation (rad) about each axis of the
-    /// base.
+    /// Replaces the sensor by one that measures poses, with noise of this standard deviation (rad) about each axis of the base.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for noise that is negative or not finite.
@@ -78,7 +77,7 @@ impl KinematicPlant {
         self.noise
     }
 
-    /// Standard deviation of the measured orientation about each axis (rad); None: only the position is measured.
+    /// Standard deviation of the measured orientation about each axis (rad); `None` if only the position is measured.
     pub fn rotation_noise(&self) -> Option<f64> {
         self.rotation_noise
     }
@@ -89,7 +88,7 @@ impl KinematicPlant {
         [x, y, z].map(|draw| deviation * draw)
     }
 
-    /// `position` (m) as the sensor measures it.
+    /// Adds the noise of the sensor to `position` (m).
     #[inline]
     fn noisy(&mut self, position: [f64; 3]) -> [f64; 3] {
         if self.noise == 0.0 {

@@ -1,71 +1,71 @@
 //! Progress of an arm held by obstacles towards its target.
 //!
-//! Commands beside obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles hold and
-//! that has come no nearer for a while therefore takes only commands after which its place of rest is nearer to the target, by a fraction of
-//! how far that place moves: the error at rest falls with each of them. Where even that leads nowhere soon, the arm comes to rest.
-//! The target counts as a new one where its motion, not that of the arm, has changed the error.
+//! Commands near obstacles are found tick by tick, and two that undo each other would alternate for ever. An arm that obstacles
+//! hold and that has come no nearer for a while therefore takes only commands that move its rest configuration nearer to the
+//! target, by a fraction of the distance moved: the error at rest falls with each command. If even this fails for a time, the
+//! arm stops. A target counts as new if its own motion, not that of the arm, has changed the error.
 
 use super::step_context::StepContext;
 use crate::limits::{Field, Limits};
 use crate::math::vector::distance;
 use crate::objective::Point;
 
-/// An arm comes nearer if its error falls by this fraction, and no less than this (m), within this time (s).
+/// Relative and absolute (m) decrease of the error that counts as progress, and the time for it (s).
 const NEARER: f64 = 0.02;
 const LEAST: f64 = 2e-4;
 const PATIENCE: f64 = 0.3;
 
-/// Likewise if each command has to bring the place of rest nearer.
+/// Relative decrease and time (s) if every command has to bring the rest configuration nearer.
 const MUCH_NEARER: f64 = 0.2;
 const LAST_PATIENCE: f64 = 0.5;
 
-/// Slow arms get more time: in proportion to a turn by 1 rad from rest to rest beyond this (s), up to a factor.
+/// Time of a turn by 1 rad from rest to rest (s) beyond which an arm gets proportionally more time, and the largest factor.
 const QUICK_TURN: f64 = 2.5;
 const MOST_PATIENT: f64 = 20.0;
 
-/// A target that changes the error by this fraction is a new one.
+/// Relative change of the error by which a target counts as new.
 const NEW: f64 = 0.05;
 
-/// Obstacles hold an arm for this long (s) after they have last changed a command.
+/// Time for which an arm counts as held after obstacles last changed a command (s).
 const HELD_FOR: f64 = 0.3;
 
-/// Least decrease of the error for each unit by which the place of rest moves (m/rad).
+/// Least decrease of the error per unit of motion of the rest configuration (m/rad).
 const SLOPE: f64 = 0.02;
 
-/// Which commands an arm takes.
+/// Commands admitted in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Pace {
-    /// Those that its rule wants.
+    /// All commands of the rule.
     #[default]
     Free,
-    /// Those that bring the place of rest nearer to the target.
+    /// Commands that bring the rest configuration nearer to the target.
     Nearer,
-    /// Those of its stop.
+    /// Commands of the stop.
     Rest,
 }
 
-/// The progress of an arm towards its target, which may move. Errors are roots of squared ones.
+/// Progress of an arm towards its target, which may move. Errors are square roots of the squared ones.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArmProgress {
-    /// By how much more time than a quick arm this one gets.
+    /// Time factor of this arm relative to a quick one.
     slower: f64,
     pace: Pace,
     /// Error before the last command, to the target of that tick; `None` before the first.
     before: Option<f64>,
-    /// By how much commands have lowered the error since the arm last came nearer.
+    /// Decrease of the error by commands since the arm last came nearer.
     gained: f64,
-    /// By how much the motion of the target has raised it.
+    /// Increase of the error by motion of the target since then.
     news: f64,
-    /// Time since then (s).
+    /// Time elapsed since then (s).
     waited: f64,
     /// Time since obstacles last held the arm (s); `None` if they do not hold it.
     held_ago: Option<f64>,
-    /// Whether obstacles were given anew since the arm began to come nearer.
+    /// Whether obstacles were replaced since the arm began to come nearer.
     replaced: bool,
 }
 
 impl ArmProgress {
-    /// Of an arm with these limits.
+    /// Initial progress of an arm with these limits.
     pub fn new(limits: &Limits) -> Self {
         let slower = (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT);
         Self {
@@ -80,13 +80,13 @@ impl ArmProgress {
         }
     }
 
-    /// Forgets what the arm gained.
+    /// Forgets all progress.
     pub fn restart(&mut self) {
         (self.before, self.held_ago) = (None, None);
         self.begin(Pace::Free);
     }
 
-    /// Begins a tick of `dt` (s). The error is `after` the last command to its target, and `now` to the new one.
+    /// Begins a tick of `dt` (s), with the errors after the last command: `after` to its own target, `now` to the new one.
     pub fn begin_tick(&mut self, [after, now]: [f64; 2], dt: f64) {
         let before = self.before.replace(now);
         self.gained += before.map_or(f64::INFINITY, |before| before - after);
@@ -114,29 +114,29 @@ impl ArmProgress {
         (self.pace, self.gained, self.news, self.waited) = (pace, 0.0, 0.0, 0.0);
     }
 
-    /// Obstacles are given anew.
+    /// Records that obstacles were replaced.
     pub fn note_replaced(&mut self) {
         self.replaced = true;
     }
 
-    /// Whether a command that nothing holds back must bring an arm nearer to set it free. Otherwise, of two that undo each other, one
-    /// would; where obstacles have changed, the way may lead away from the target at first.
+    /// Whether an unrestricted command has to bring the arm nearer to end the held state. This prevents two commands that undo
+    /// each other from alternating; after a change of obstacles, the way may lead away from the target at first.
     pub fn is_freed_nearer(&self) -> bool {
         !self.replaced
     }
 
-    /// Obstacles hold the arm.
+    /// Records that obstacles hold the arm.
     pub fn note_held(&mut self) {
         self.held_ago = Some(0.0);
     }
 
-    /// Which commands the arm takes in this tick.
+    /// Commands admitted in this tick.
     pub fn pace(&self) -> Pace {
         self.pace
     }
 }
 
-/// About the time in which the middle one of the joints turns by 1 rad (m) from rest to rest (s); locked joints do not count.
+/// Approximate time in which the median joint turns by 1 rad (m) from rest to rest (s); locked joints do not count.
 fn time_of_turn(limits: &Limits) -> f64 {
     let limit = |field: Field, j: usize| limits.field(field).map_or(f64::INFINITY, |profiles| profiles[j].at(0.0));
     let time = |j: usize| {
@@ -149,7 +149,7 @@ fn time_of_turn(limits: &Limits) -> f64 {
     times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether an arm comes nearer to its target by resting at `to` instead of `from`, by a fraction of the way between them.
+/// Whether resting at `to` instead of `from` lowers the error by a fraction of the distance between them.
 pub(super) fn is_nearer(context: &StepContext<'_>, from: &[f64], to: &[f64]) -> bool {
     let [before, after] = [from, to].map(|q| context.aims.assess(context.robot, q).score);
     let falls = before.value.sqrt() - after.value.sqrt();

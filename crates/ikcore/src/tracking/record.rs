@@ -15,18 +15,18 @@ use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
-/// Excess over a limit that counts as rounding, in units in the last place of q.
+/// Tolerance for rounding of positions, in units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
 
-/// The record of a track: k rows. Row 0 is the start at t = 0; row i is the tick that ends at t_i = i dt. Tables are
-/// stored in row-major order.
+/// Record of a track with k rows. Row 0 is the start at t = 0; row i is the tick that ends at t_i = i dt. Tables are stored in
+/// row-major order.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// Joints per row, n.
     pub dof: usize,
     /// Configurations (k, n) (rad, m).
     pub q: Vec<f64>,
-    /// Tip positions (k, 3) (m); of several tips those of the first target.
+    /// Tip positions (k, 3) (m); for several tips, those of the first target.
     pub position: Vec<[f64; 3]>,
     /// Reference positions (k, 3) (m).
     pub reference: Vec<[f64; 3]>,
@@ -34,9 +34,9 @@ pub struct Record {
     pub position_error: Vec<f64>,
     /// Angles from the reference orientations (k,) (rad); NaN where the task has no orientation.
     pub rotation_error: Vec<f64>,
-    /// Smallest distances from obstacles and between links (k,) (m); NaN if nothing was to be kept clear of.
+    /// Smallest distances from obstacles and between links (k,) (m); NaN without obstacles and self-collision checks.
     pub clearance: Vec<f64>,
-    /// How each tick ended (k,).
+    /// Status of each tick (k,).
     pub step_status: Vec<Status>,
     /// Evaluations of the forward kinematics per tick (k,).
     pub step_evaluations: Vec<usize>,
@@ -44,35 +44,35 @@ pub struct Record {
     pub step_iterations: Vec<usize>,
     /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 if within 4 ulp.
     pub max_violation: f64,
-    /// The joint of that excess, and when (s).
+    /// Joint and time (s) of that excess.
     pub worst_violation: Option<(usize, f64)>,
     /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, negative only if
     /// `max_violation` is positive.
     pub limit_margin: f64,
-    /// The limits in force.
+    /// Limits in force.
     pub limits: Limits,
     /// The error band.
     pub criterion: Criterion,
-    /// Distance by which the path is provably out of reach, and when (s). `None` if the track succeeded or nothing is
+    /// Distance by which the path is provably out of reach, and its time (s). `None` if the track succeeded or nothing is
     /// proven.
     pub out_of_reach: Option<(ReachShortfall, f64)>,
-    /// How the track as a whole ended.
+    /// Status of the whole track.
     pub status: Status,
     /// Time taken.
     pub elapsed: Duration,
-    /// The approach at the start, if one was asked for.
+    /// Approach at the start, if requested.
     ease: Ease,
     limit_at: LimitAt,
     dt: f64,
-    /// What became of each target of several tips; empty for one tip. Stored apart.
+    /// Results of each target of several tips; empty for one tip. Stored apart.
     #[serde(skip)]
     pub tips: TipTable,
 }
 
-/// What became of each target, row by row, the targets in the order of the call.
+/// Results of each target, row by row, in the order of the call.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct TipTable {
-    /// Positions (k, targets) (m), those of pairs as seen from the first tip.
+    /// Positions (k, targets) (m); for pairs, in the frame of the first tip.
     pub positions: Vec<[f64; 3]>,
     /// Reference positions (k, targets) (m).
     pub references: Vec<[f64; 3]>,
@@ -94,13 +94,13 @@ impl TipTable {
     }
 }
 
-/// The approach that a track begins with.
+/// Approach at the start of a track.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 enum Ease {
     NotAsked,
     /// No motion within the limits meets the path before it ends.
     Impossible,
-    /// It takes so many ticks.
+    /// Length of the approach in ticks.
     Ticks(usize),
 }
 
@@ -108,7 +108,7 @@ enum Ease {
 pub(super) struct Accepted<'a> {
     /// Configuration (n,).
     pub q: &'a [f64],
-    /// The limits that `q` is checked against.
+    /// Limits that `q` is checked against.
     pub tick_box: &'a TickBox,
     /// Smallest distance from obstacles and between links (m).
     pub clearance: f64,
@@ -155,12 +155,12 @@ impl Record {
         self.dt
     }
 
-    /// Notes that the ticks so far were an approach of this many `ticks`.
+    /// Marks the ticks so far as an approach of this many `ticks`.
     pub(super) fn note_approach(&mut self, ticks: usize) {
         self.ease = Ease::Ticks(ticks);
     }
 
-    /// Notes that no approach meets the path.
+    /// Records that no approach meets the path.
     pub(super) fn note_no_approach(&mut self) {
         self.ease = Ease::Impossible;
     }
@@ -193,7 +193,7 @@ impl Record {
             fastest = larger((q - before).abs() - velocity * self.dt, fastest);
             farthest = larger(larger(floor - q, q - ceiling), farthest);
         }
-        // Computed from displacements, which keep the limit to the last bit; velocities add a rounding error.
+        // Displacements keep the limit to the last bit; velocities would add a rounding error.
         self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
         let limited = self.limits.field(Field::Acceleration).is_some() || self.limits.field(Field::Jerk).is_some();
         if limited || larger(fastest, farthest) > self.max_violation {
@@ -201,7 +201,7 @@ impl Record {
         }
     }
 
-    /// Finds the joints that violate a limit in the tick from `from` to `to` (s), and by how much.
+    /// Finds limit violations of the joints in the tick from `from` to `to` (s).
     fn find_violations(&mut self, accepted: &Accepted<'_>, [from, to]: [f64; 2]) {
         let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. }, .. } = *accepted;
         for j in 0..q.len() {
@@ -213,7 +213,8 @@ impl Record {
         }
     }
 
-    /// Keeps the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
+    /// Records the `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), if it is the largest and more than
+    /// rounding.
     #[inline]
     pub(super) fn note_excess(&mut self, excess: f64, j: usize, q: f64, when: f64) {
         if excess <= self.max_violation {
@@ -226,8 +227,8 @@ impl Record {
         }
     }
 
-    /// Returns by how much the displacement `step` of joint `j` exceeds the acceleration or jerk limit, by its difference to
-    /// those of the ticks before. The arm starts at rest.
+    /// Excess of the displacement `step` of joint `j` over its acceleration or jerk limit, from differences to the
+    /// displacements of the previous ticks. The arm starts at rest.
     fn too_sudden(&self, j: usize, step: f64, tick: [f64; 2]) -> f64 {
         let rows = self.rows();
         let q = |ago: usize| self.q[rows.saturating_sub(ago).max(1) * self.dof - self.dof + j];
@@ -240,8 +241,8 @@ impl Record {
         larger(too_hard, too_abrupt)
     }
 
-    /// Sets the status of the whole track. It is solved if it stayed in the band once it had reached it, and every
-    /// limit was kept; it was held in its region if at times it came only as near to the band as the region allows.
+    /// Sets the status of the whole track: solved if it stayed in the band from the first tick there on and kept every limit,
+    /// held in its region if at times the region kept it from the band.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
@@ -269,7 +270,7 @@ impl Record {
         row as f64 * self.dt
     }
 
-    /// Returns when the tick of row `row` (1 or more) begins and ends (s).
+    /// Start and end of the tick of row `row` (1 or more) (s).
     fn ends(&self, row: usize) -> [f64; 2] {
         [self.time_of(row - 1), self.time_of(row)]
     }
@@ -290,7 +291,7 @@ impl Record {
         at_rest.chain(moving).collect()
     }
 
-    /// The motion of joints of these names. Without acceleration and jerk limits it is linear between the ticks, with the
+    /// Trajectory of joints with these names. Without acceleration and jerk limits it is linear between the ticks, with the
     /// velocities of [`qd`](Self::qd); with them it is a cubic spline that keeps them at every instant and passes each
     /// configuration at a sixth of its acceleration times dt^2.
     ///
@@ -304,7 +305,7 @@ impl Record {
         Trajectory::from_samples(joints, &self.time(), &self.q, None, None)
     }
 
-    /// The first row in the band, or as near to it as the region allows; not before the approach has met the path.
+    /// First row in the band, or as near to it as the region allows; not before the approach has met the path.
     pub fn joined(&self) -> Option<usize> {
         let first = if let Ease::Ticks(ticks) = self.ease { ticks } else { 0 };
         (first..self.rows()).find(|row| is_in_place(&self.step_status[*row]))
@@ -315,7 +316,7 @@ impl Record {
         self.step_evaluations.iter().sum()
     }
 
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         let advice = match &self.out_of_reach {
             None if self.ease == Ease::Impossible => {
@@ -335,12 +336,12 @@ impl Record {
         self.message_with(&advice)
     }
 
-    /// Whether obstacles or other links were in the way.
+    /// Whether obstacles or other links held the arm back.
     fn was_held_back(&self) -> bool {
         self.step_status.iter().any(|status| matches!(status, Status::InCollision | Status::HeldByObstacle))
     }
 
-    /// How they were, and what to try.
+    /// Describes how obstacles held the arm back, with advice.
     fn held_back(&self) -> String {
         let count = |wanted: Status| self.step_status.iter().filter(|status| **status == wanted).count();
         let (status, phrase) = match count(Status::InCollision) {
@@ -350,7 +351,7 @@ impl Record {
         format!("in {} steps {phrase}: {}", count(status), status.advice())
     }
 
-    /// [`message`](Self::message), with this `advice` if the track failed.
+    /// Returns [`message`](Self::message) with this `advice` if the track failed.
     pub(super) fn message_with(&self, advice: &str) -> String {
         let last = self.rows() - 1;
         if self.status == Status::Interrupted {
@@ -393,7 +394,7 @@ impl Record {
         )
     }
 
-    /// Whether the arm begins on the path, loses it at once, and its velocity may not jump.
+    /// Whether the arm starts on the path and loses it at once because its acceleration is limited.
     fn starts_too_fast(&self) -> bool {
         let limited = [Field::Acceleration, Field::Jerk].into_iter().any(|field| self.limits.is_finite(field));
         let lost_at_once = self.joined() == Some(0) && self.step_status.get(1) != Some(&Status::Solved);
@@ -401,7 +402,7 @@ impl Record {
         limited && lost_at_once && eases
     }
 
-    /// Formats errors (m, rad) with their units; components that the task leaves out are omitted.
+    /// Formats errors (m, rad) with their units, without components that the task leaves free.
     fn in_words(&self, position: f64, rotation: f64) -> String {
         let asked =
             |errors: &[f64], value: f64| if errors.iter().any(|error| !error.is_nan()) { value } else { f64::NAN };
@@ -410,17 +411,17 @@ impl Record {
     }
 }
 
-/// Returns true if the tick ended in the band, or as near to it as the region allows.
+/// Whether the tick ended in the band, or as near to it as the region allows.
 fn is_in_place(status: &Status) -> bool {
     matches!(status, Status::Solved | Status::HeldInRegion)
 }
 
-/// The smallest error; NaN (not part of the task) is ignored.
+/// Smallest error; NaN (not part of the task) is ignored.
 fn smallest(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The largest error; NaN (not part of the task) is ignored.
+/// Largest error; NaN (not part of the task) is ignored.
 fn largest(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(0.0, f64::max)
 }

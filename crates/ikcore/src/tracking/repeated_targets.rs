@@ -1,33 +1,33 @@
-//! Targets that a fast loop repeats until the next one arrives.
+//! Repetition of targets by a loop that runs faster than they arrive.
 //!
-//! A camera gives 60 targets a second and the loop runs at 500 Hz: a loop that passes the last target in every tick says
-//! nothing new. Taken for samples, the repetitions would be a target that stops, jumps and stops.
+//! A camera gives 60 targets a second, the loop runs at 500 Hz and passes the last target in every tick. Taken as samples, the
+//! repetitions would describe a target that stops, jumps and stops.
 
 use crate::task::{Target, TargetRow};
 
-/// A target that stays this many intervals has stopped.
+/// Number of intervals without change after which a target has stopped.
 const STOPPED: f64 = 2.0;
 
-/// Targets that change less often (s) are not a stream: each stands still until the next.
+/// Longest interval between changes of a stream of targets (s); rarer ones each stand still until the next.
 const LONGEST_INTERVAL: f64 = 0.1;
 
-/// Recognises repetitions.
+/// Detector of repeated targets.
 #[derive(Debug)]
 pub(super) struct RepeatedTargets {
     dt: f64,
     last: TargetRow,
-    /// When the target changed (s), and the time between changes.
+    /// Time of the last change of the target (s), and the mean interval between changes.
     changed: f64,
     interval: f64,
 }
 
 impl RepeatedTargets {
-    /// In ticks of `dt` (s).
+    /// Detector for ticks of `dt` (s).
     pub fn new(dt: f64) -> Self {
         Self { dt, last: TargetRow::new(), changed: f64::NEG_INFINITY, interval: f64::INFINITY }
     }
 
-    /// Whether these targets, which came at `time` (s), repeat the last ones while the next are still to come.
+    /// Whether these targets, received at `time` (s), repeat the last ones while the next are still due.
     pub fn is_repetition(&mut self, targets: &[Target], time: f64) -> bool {
         let waited = time - self.changed;
         if self.last[..] == *targets {
@@ -41,7 +41,7 @@ impl RepeatedTargets {
         false
     }
 
-    /// Forgets the last target, so that the next one is new.
+    /// Forgets the last target, so that the next counts as new.
     pub fn forget(&mut self) {
         *self = Self::new(self.dt);
     }
@@ -51,7 +51,7 @@ impl RepeatedTargets {
 mod tests {
     use super::*;
 
-    /// Which ticks repeat a target that changes every `every` ticks and stops at tick `stop`.
+    /// Returns whether each tick repeats a target that changes every `every` ticks and stops at tick `stop`.
     fn repetitions(every: usize, stop: usize) -> Vec<bool> {
         let mut targets = RepeatedTargets::new(0.002);
         let target = |tick: usize| Target::Position([(tick.min(stop) / every) as f64, 0.0, 0.0]);
@@ -63,7 +63,7 @@ mod tests {
         let found = repetitions(8, 48);
         for tick in 9..300 {
             let expected = if tick <= 48 { tick % 8 != 0 } else { tick < 64 };
-            // Rounding decides about the last tick of the second interval.
+            // Rounding decides the last tick of the second interval.
             assert!(tick == 64 || found[tick] == expected, "tick {tick}");
         }
     }

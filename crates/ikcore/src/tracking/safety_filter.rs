@@ -1,11 +1,12 @@
-//! Safety filter of commands: keeps distances from everything around the arm, and pairs of tips together.
+//! Safety filter of commands: keeps the arm clear of everything around it, and pairs of tips at their relative poses.
 //!
-//! Invariant: braking now ends in a configuration known to be clear. Each near pair of bodies gives a row: how far the place of rest may
-//! move towards the other body. The filter takes the command nearest to the proposed one, measured by its effect on the task, that keeps
-//! these rows and the box of the tick. It is sent if the command together with the stop after it is certified clear, between ticks too;
-//! otherwise a part of it is, and in the end the stop goes on that was certified before.
+//! Invariant: braking now ends in a configuration known to be clear. Each near pair of bodies gives a constraint row on the
+//! motion of the rest configuration towards the other body. The filter takes the command nearest to the proposed one, measured
+//! by its effect on the task, that satisfies these rows and the box of the tick. The command is sent if it and the stop after
+//! it are certified clear, between ticks too; otherwise a fraction of it is; failing that, the previously certified stop
+//! continues.
 //!
-//! Pairs of tips at their relative pose stay there: they are equations beside the rows, and the stop keeps to them as well.
+//! Pairs of tips at their relative poses stay there: they add equations to the rows, and the stop keeps them as well.
 
 use std::sync::Arc;
 
@@ -21,25 +22,25 @@ use crate::objective::{Bounds, Point};
 use crate::obstacle::{ClearSpace, MOST_COMING, MOST_ROWS};
 use crate::task::Aims;
 
-/// Parts of a command that are tried if the whole is not certified.
+/// Fractions of a command, tried in turn if the whole is not certified.
 const PARTS: [f64; 2] = [0.5, 0.125];
 
-/// Gauss-Newton steps towards the target along the rows.
+/// Gauss-Newton steps towards the target within the rows.
 const STEPS: usize = 3;
 
-/// Rows of a goal are trusted for joint motions up to this (rad, m).
+/// Trust region of the rows of a goal (rad, m).
 const TRUSTED: f64 = 0.05;
 
-/// Keeps an arm clear and pairs of tips held, tick by tick.
+/// Safety filter of one arm, with its state between ticks.
 #[derive(Debug)]
 pub(super) struct SafetyFilter {
     around: Option<Around>,
     rows: ConstrainedStep,
-    /// The stop of an arm that holds pairs, after its last command; empty if it holds none.
+    /// Stop after the last command of an arm that holds pairs; empty without pairs.
     stop: CoupledStop,
-    /// That of the command in question.
+    /// Stop after the command under consideration.
     next_stop: CoupledStop,
-    /// Obstacles keep the last goal from its target.
+    /// Whether obstacles keep the last goal from its target.
     goal_is_held: bool,
     progress: ArmProgress,
 }
@@ -47,14 +48,14 @@ pub(super) struct SafetyFilter {
 /// Outcome of the filter for a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Kept {
-    /// Whether it was changed.
+    /// Whether the command was changed.
     pub changed: bool,
-    /// Whether it was because of what is around the arm.
+    /// Whether obstacles or links caused the change.
     pub by_obstacles: bool,
 }
 
 impl SafetyFilter {
-    /// Of an arm with these limits, in `space` if there is something to keep clear of.
+    /// Filter of an arm with these limits, in `space` if collisions are to be avoided.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -70,7 +71,7 @@ impl SafetyFilter {
         })
     }
 
-    /// The space to stay in.
+    /// Clear space of the arm.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
         self.around.as_ref().map(|around| &around.space)
     }
@@ -80,7 +81,7 @@ impl SafetyFilter {
         self.around.as_ref().map_or(&[], |around| &around.obstacles.velocities)
     }
 
-    /// Replaces what is around the arm: `space` with the obstacles where they are now, and how they move.
+    /// Replaces the surroundings: `space` with the obstacles at their current poses, and their motion.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -101,13 +102,13 @@ impl SafetyFilter {
         Ok(())
     }
 
-    /// Forgets the stop, because the arm is not where it was.
+    /// Forgets the stop, because the arm has moved elsewhere.
     pub fn forget(&mut self) {
         self.stop.clear();
         self.progress.restart();
     }
 
-    /// Moves on by one tick, of `dt` (s), of the stop after the last command. Returns its next configuration if pairs are held;
+    /// Advances the stop after the last command by one tick of `dt` (s). Returns its next configuration if pairs are held;
     /// otherwise each joint stops as fast as it may.
     pub fn stop_on(&mut self, dt: f64) -> Option<Point> {
         self.progress.restart();
@@ -119,13 +120,13 @@ impl SafetyFilter {
         next
     }
 
-    /// Ticks until an arm that holds pairs is at rest if it stops now; `None` if it holds none.
+    /// Ticks until an arm that holds pairs is at rest if it stops now; `None` without pairs.
     pub fn ticks_to_stop(&self) -> Option<f64> {
         self.stop.rest().map(|_| self.stop.ticks_to_stop())
     }
 
-    /// Changes the command `q` that the rule has found to one that keeps the arm clear and pairs of tips held. Pairs that cannot be held
-    /// are tasks like others, until they are where they are to be.
+    /// Changes the command `q` of the rule to one that keeps the arm clear and holds pairs of tips. Pairs that cannot be held
+    /// yet are ordinary tasks until they reach their relative pose.
     pub fn keep(&mut self, context: &StepContext<'_>, q: &mut Point) -> Kept {
         let wanted = q.clone();
         match context.errors() {
@@ -147,7 +148,7 @@ impl SafetyFilter {
         Kept { changed: *q != wanted, by_obstacles }
     }
 
-    /// Changes the command `q` to one that keeps the arm clear. Returns whether it had to.
+    /// Changes the command `q` to one that keeps the arm clear. Returns whether obstacles held it back.
     fn keep_clear(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
         if self.around.is_none() {
             return false;
@@ -182,8 +183,8 @@ impl SafetyFilter {
         blocked || !self.allows(context, nearer_than, &wanted)
     }
 
-    /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether what is around the arm made it
-    /// another; None if pairs cannot be held.
+    /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether obstacles changed it;
+    /// `None` if the pairs cannot be held.
     fn keep_held(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
         let mut brake = self.stop.next().cloned().unwrap_or_else(|| context.braking());
         context.tick_box.bounds.clip(&mut brake);
@@ -217,7 +218,8 @@ impl SafetyFilter {
         Some(blocked)
     }
 
-    /// How the arm moves, which brakes by the command `brake`. Where bodies are too near or it has to give way, it moves in any case.
+    /// Decides which commands are admitted; `brake` is the braking command. An arm that is too near to a body or has to evade
+    /// moves in any case.
     fn pace(&mut self, brake: &[f64]) -> Pace {
         if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
             self.progress.restart();
@@ -225,8 +227,8 @@ impl SafetyFilter {
         self.progress.pace()
     }
 
-    /// Moves the command `q` to one beside the rows: the nearest, or the one after which the arm rests nearest to the target. It would
-    /// rest at `rest` after the command `brake`.
+    /// Moves the command `q` into the rows: to the nearest command, or to the one after which the arm rests nearest to the
+    /// target. Braking by `brake` would end at `rest`.
     fn move_beside_rows(
         &mut self,
         context: &StepContext<'_>,
@@ -245,7 +247,7 @@ impl SafetyFilter {
         }
     }
 
-    /// Finds the stop after the command `q`, beside no rows: these are for the command.
+    /// Finds the stop after the command `q`. The rows of the command do not apply to it.
     fn finds_stop(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
         let Self { rows, next_stop, .. } = self;
         let [near, wanted] = [&mut rows.rows, &mut rows.wanted].map(std::mem::take);
@@ -254,8 +256,8 @@ impl SafetyFilter {
         found
     }
 
-    /// Whether the command `q` and the stop after it are certainly clear and, of an arm that has to come nearer than it would at
-    /// `rest`, whether it does.
+    /// Whether the command `q` and the stop after it are certified clear and, if `rest` is given, end nearer to the target than
+    /// `rest`.
     fn allows(&mut self, context: &StepContext<'_>, rest: Option<&Point>, q: &[f64]) -> bool {
         let motion = context.stop_after(q);
         let comes_nearer = |rest: &Point| is_nearer(context, rest, &motion.rest());
@@ -263,7 +265,7 @@ impl SafetyFilter {
             && self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), context.dt))
     }
 
-    /// Moves the command `q` to one that keeps the rows of the place where the arm would come to rest after it.
+    /// Corrects the command `q` by the rows at the rest configuration after it.
     fn correct(&mut self, context: &StepContext<'_>, q: &mut Point) {
         let stop = context.stop_after(q);
         let rest = stop.rest();
@@ -272,17 +274,16 @@ impl SafetyFilter {
             around.set_rows_after(context, (&rest, stop.ticks_to_stop()), q, &mut self.rows.rows);
         }
         let start = q.clone();
-        // The effect on the tip itself counts, whatever the task.
+        // Distances are measured by the effect on the tip itself, whatever the task.
         let aims = if context.robot.tip_count() > 1 { context.aims } else { Aims::default() };
-        // An arm that gives way is corrected by as little as possible, lest the joints that the task leaves free take a leap that no
-        // certificate allows.
+        // Evasion is corrected in joint space, because free joints could otherwise leap farther than any certificate allows.
         let gives_way = self.around.as_ref().is_some_and(|around| around.obstacles.fastest() > 0.0);
         let towards = if gives_way { Towards::Joints } else { Towards::Start };
         self.rows.write(&StepRequest { aims, ..context.request(towards) }, &start, q);
     }
 
-    /// Moves `sample`, a configuration that meets a target, to one that keeps the margin too, if it does not: by Gauss-Newton steps
-    /// beside the rows, beginning at `from`. Returns whether it had to.
+    /// Moves `sample`, a configuration that meets a target, to one that also keeps the margin, by Gauss-Newton steps within the
+    /// rows from `from`. Returns whether it had to.
     pub fn clear_goal(&mut self, context: &StepContext<'_>, from: &[f64], sample: &mut Point) -> bool {
         let Self { around: Some(around), rows, goal_is_held, .. } = self else { return self.goal_is_held };
         rows.wanted.clear();
@@ -309,7 +310,7 @@ impl SafetyFilter {
         self.goal_is_held
     }
 
-    /// Sets the rows of the command. Returns whether `command` breaks one.
+    /// Sets the rows of the command. Returns whether `command` violates a row.
     fn set_rows(&mut self, context: &StepContext<'_>, (rest, stop_ticks): (&[f64], f64), command: &[f64]) -> bool {
         let Self { around, rows, .. } = self;
         rows.rows.clear();
@@ -320,10 +321,10 @@ impl SafetyFilter {
         })
     }
 
-    /// Moves `q` to the command that keeps the rows and disturbs the task least.
+    /// Moves `q` to the command that satisfies the rows and disturbs the task least.
     fn step_beside_rows(&mut self, context: &StepContext<'_>, q: &mut Point) {
-        // What the rule wants under acceleration limits is not the target itself, but on the way there. A target far away must not
-        // rival bodies that are to part.
+        // Under acceleration limits the proposed command is only on the way to the target. A far target must not compete with
+        // the separation of overlapping bodies.
         let at_once = context.limited.is_none() && self.rows.wanted.is_empty();
         let (towards, steps) = if at_once { (Towards::Target, STEPS) } else { (Towards::Start, 1) };
         for _ in 0..steps {

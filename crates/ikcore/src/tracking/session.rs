@@ -1,4 +1,4 @@
-//! One control loop: an arm, the rule that proposes its commands, and the safety filter that decides on them.
+//! Control loop: an arm, the rule that proposes its commands, and the safety filter that decides on them.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use crate::task::{Assessment, Goals, Target, TipError};
 /// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
 
-/// A tracker in progress.
+/// Tracking session of one arm.
 #[derive(Debug)]
 pub struct Session {
     arm: TrackedArm,
@@ -34,9 +34,9 @@ pub struct Session {
     running: RunningRule,
     goals: Goals,
     surroundings: Surroundings,
-    /// Where something is to be kept clear of, or pairs of tips may be held.
+    /// Safety filter, present if collisions are to be avoided or pairs of tips may be held.
     safety: Option<Box<SafetyFilter>>,
-    /// The arm brakes until a target arrives.
+    /// Whether the arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
     rng: LazyRng,
@@ -67,12 +67,12 @@ impl Session {
         Ok(Self { arm, rule, running, goals, surroundings, safety, stopping: false, seed, rng })
     }
 
-    /// The accepted configuration (n,).
+    /// Accepted configuration (n,).
     pub fn q(&self) -> &[f64] {
         &self.arm.q
     }
 
-    /// The velocity of the last tick (n,) (rad/s, m/s); zero before the first.
+    /// Velocity of the last tick (n,) (rad/s, m/s); zero before the first.
     pub fn qd(&self) -> Point {
         self.arm.q.iter().zip(&self.arm.before).map(|(q, before)| (q - before) / self.arm.dt).collect()
     }
@@ -82,34 +82,34 @@ impl Session {
         self.arm.time()
     }
 
-    /// The limits in force.
+    /// Limits in force.
     pub fn limits(&self) -> &Limits {
         &self.arm.limits
     }
 
-    /// The time step (s).
+    /// Time step (s).
     pub fn dt(&self) -> f64 {
         self.arm.dt
     }
 
-    /// The velocity limits of the last tick (n,) (rad/s, m/s).
+    /// Velocity limits of the last tick (n,) (rad/s, m/s).
     pub fn velocity_limit(&self) -> &[f64] {
         &self.arm.tick_box.velocity
     }
 
-    /// Errors of each target of several tips, once these have arrived.
+    /// Errors of each target of several tips; empty before targets arrive, and for one tip.
     pub fn tip_errors(&self) -> Vec<TipError> {
         if self.arm.has_one_tip() { vec![] } else { self.arm.aims().errors(&self.arm.robot, &self.arm.q).to_vec() }
     }
 
-    /// Positions (m) of the tips that have targets, in the order of these; of pairs as seen from the first tip.
+    /// Positions (m) of the tips that have targets, in the order of the targets; for pairs, in the frame of the first tip.
     pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
         let mut positions = vec![];
         self.arm.aims().positions(&self.arm.robot, &self.arm.q, |position| positions.push(position));
         positions
     }
 
-    /// Returns how far the targets of `arrival` are provably out of reach within `bounds`.
+    /// Distance by which the targets of `arrival` are provably out of reach within `bounds`.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -142,7 +142,7 @@ impl Session {
         Ok(self.beginning())
     }
 
-    /// The start as a step.
+    /// Assesses the start as a step.
     fn beginning(&mut self) -> Step {
         let Assessment { score, error } = self.arm.aims().assess(&self.arm.robot, &self.arm.q);
         self.arm.last_value = Some(score.value);
@@ -156,7 +156,8 @@ impl Session {
         Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
     }
 
-    /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is reached.
+    /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is
+    /// reached.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
@@ -166,10 +167,10 @@ impl Session {
         self.advance(Some(Arrival::from(*target)), monitor)
     }
 
-    /// Moves by one tick, with the targets that have arrived since the last tick, if any; tips without one are free. Without a new target
-    /// the arm follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
-    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes. Pairs of tips that are where they are
-    /// to be are held there, before anything else.
+    /// Moves by one tick, with the targets that have arrived since the last tick, if any; tips without a target are free.
+    /// Without a new target, the model-based rule under acceleration or jerk limits follows the extrapolated motion of the last
+    /// targets for a short time; other rules go on towards the last targets. After the timeout the arm brakes. Pairs of tips at
+    /// their relative pose are held there, with priority over all other targets.
     ///
     /// # Errors
     /// As [`step`](Self::step), [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
@@ -197,7 +198,7 @@ impl Session {
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// Checks an arrival, and reduces its targets to the parts that their tasks use. Other tasks than before begin anew.
+    /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule.
     fn read(&mut self, arrival: &mut Arrival) -> Result<()> {
         self.check_stamp(arrival.stamp)?;
         let asked = std::mem::take(&mut arrival.tips);
@@ -209,7 +210,7 @@ impl Session {
         Ok(())
     }
 
-    /// Err for a stamp that the rule cannot use.
+    /// Checks that the rule can use the stamp, if there is one.
     fn check_stamp(&self, stamp: Option<f64>) -> Result<()> {
         if stamp.is_some() && !self.rule.extrapolates(self.arm.limited.is_some()) {
             let problem = "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or \
@@ -219,7 +220,7 @@ impl Session {
         Ok(())
     }
 
-    /// The arm brakes after the timeout, and moves on when a target arrives.
+    /// Begins to brake after the timeout, and ends braking when a target arrives.
     fn update_stopping(&mut self, arrived: bool, time: f64) {
         if arrived {
             self.stopping = false;
@@ -267,13 +268,13 @@ impl Session {
         }
     }
 
-    /// Whether obstacles keep the goal of an arm that does not stop from its target.
+    /// Whether obstacles keep the goal from its target; false while the arm stops.
     fn goal_is_held(&self) -> bool {
         !self.stopping && self.safety.as_ref().is_some_and(|safety| safety.goal_is_held())
     }
 
-    /// Changes what the rule has `found` to a command that keeps the arm clear and pairs of tips held. Returns whether it had to, because
-    /// of what is around the arm.
+    /// Changes the command `found` by the rule to one that keeps the arm clear and holds pairs of tips. Returns whether
+    /// obstacles or other links caused the change.
     fn keep(&mut self, found: &mut TickResult) -> bool {
         let Some(safety) = &mut self.safety else { return false };
         let Kept { changed, by_obstacles } = safety.keep(&self.arm.context(), &mut found.q);
@@ -286,12 +287,12 @@ impl Session {
         by_obstacles
     }
 
-    /// Whether everything keeps the margin at `q`; true if nothing is to be kept clear of.
+    /// Whether all bodies keep the margin at `q`; true if collisions are not checked.
     fn is_clear(&self, q: &[f64]) -> bool {
         self.space().is_none_or(|space| space.holds(q))
     }
 
-    /// What the arm keeps clear of, if anything.
+    /// Clear space of the arm, if collisions are avoided.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
         self.safety.as_ref().and_then(|safety| safety.space())
     }
@@ -301,13 +302,13 @@ impl Session {
         self.safety.as_ref().map_or(&[], |safety| safety.velocities())
     }
 
-    /// What is around the arm.
+    /// Obstacles, margin and choice of self-collision.
     pub fn surroundings(&self) -> &Surroundings {
         &self.surroundings
     }
 
-    /// Replaces the obstacles by these, where they are now, with their `velocities` (m/s); empty: all are at rest. `None`: none.
-    /// The margin and the choice about the robot's own links stay.
+    /// Replaces the obstacles by these, at their current poses, with their `velocities` (m/s); an empty list means all at rest,
+    /// `None` no obstacles. The margin and the choice of self-collision stay.
     ///
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
@@ -329,9 +330,9 @@ impl Session {
         Ok(())
     }
 
-    /// Stops as fast as the limits allow, from the next tick on until a target arrives; pairs of tips that are held stay held. Nothing
-    /// else is wished: the arm does not give way to what comes near, and stands afterwards. Returns how long the stop takes (s): 0 for
-    /// an arm that may stop at once.
+    /// Stops as fast as the limits allow, from the next tick on until a target arrives. Held pairs of tips stay held; the arm
+    /// does not evade approaching obstacles, neither while braking nor afterwards. Returns the duration of the stop (s): 0 for
+    /// an arm without acceleration limits.
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
         let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
@@ -339,8 +340,8 @@ impl Session {
         held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
     }
 
-    /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts
-    /// anew from there.
+    /// Moves by one tick to `q`, which the caller guarantees to be inside the limits, bypassing the rule. The rule restarts
+    /// from there.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -379,7 +380,7 @@ impl Session {
         self.running.forget();
     }
 
-    /// The rule starts anew.
+    /// Restarts the rule.
     fn start_rule(&mut self) {
         self.running = self.rule.start(self.arm.limited.is_some(), !self.arm.has_one_tip());
     }
@@ -393,7 +394,7 @@ impl Session {
     }
 
     /// Resets the session to `q` (n,) at t = 0, with velocities `qd` (n,) (rad/s, m/s) and accelerations `qdd` (n,) (rad/s^2,
-    /// m/s^2); `None` means zero. Both are those of the last tick: differences of its commands.
+    /// m/s^2); `None` means zero. Both are differences of commands in the last tick.
     ///
     /// # Errors
     /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
@@ -410,7 +411,7 @@ impl Session {
     }
 }
 
-/// The space to stay in, if anything is to be kept clear of.
+/// Clear space of the robot, if collisions are to be avoided.
 fn clear_space(surroundings: &Surroundings, robot: &Arc<Robot>) -> Result<Option<ClearSpace<'static>>> {
     Ok(surroundings.clear_space(robot)?.map(|space| space.with_shared(robot)))
 }

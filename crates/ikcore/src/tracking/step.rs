@@ -1,16 +1,16 @@
-//! The result of one tick.
+//! Result of one tick.
 
 use serde::{Deserialize, Serialize};
 
 use crate::solver::Status;
 use crate::task::TipError;
 
-/// The result of one tick.
+/// Result of one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps it out of the band,
-    /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one holds the arm
-    /// back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
+    /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
+    /// holds the arm back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -20,14 +20,14 @@ pub struct Step {
     pub evaluations: usize,
     /// Iterations of the rule; for beetle antennae search, passes.
     pub iterations: usize,
-    /// False if this tick cannot bring a joint back within its position limits or slow it down to its velocity limit.
+    /// Whether this tick can bring every joint back within its position limits and slow it down to its velocity limit.
     pub inside_limits: bool,
-    /// The monitor asked to stop: no configuration was accepted, and time did not advance.
+    /// Whether the monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
 }
 
 impl Step {
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> String {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };

@@ -8,21 +8,21 @@ use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 use crate::task::Aims;
 
-/// The state of an arm at the start of a tick, its targets, and the limits of its next command.
+/// State of an arm at the start of a tick, its targets, and the limits of its next command.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepContext<'a> {
     pub robot: &'a Robot,
     /// The accepted configuration.
     pub q: &'a [f64],
-    /// Empty before the first target.
+    /// Tasks and targets; empty before the first target.
     pub aims: Aims<'a>,
-    /// The box of the next command, and the limits that it comes from.
+    /// Box of the next command, and the limits that define it.
     pub tick_box: &'a TickBox,
     pub limits: &'a Limits,
     pub limit_at: LimitAt,
     /// Steps, changes and limits of an arm under acceleration or jerk limits.
     pub limited: Option<&'a LimitedState>,
-    /// The value accepted in the previous tick, if any.
+    /// Squared error accepted in the previous tick, if any.
     pub last_value: Option<f64>,
     /// Start of the tick, and its length (s).
     pub time: f64,
@@ -30,36 +30,36 @@ pub(super) struct StepContext<'a> {
 }
 
 impl<'a> StepContext<'a> {
-    /// Roots of the squared errors at `q`: to the target of the last tick, and to the new one.
+    /// Square roots of the squared errors at `q`: to the targets of the last tick, and to the new ones.
     pub fn errors(&self) -> Option<[f64; 2]> {
         let after = self.last_value.filter(|value| value.is_finite() && !self.aims.is_empty())?;
         Some([after, self.aims.assess(self.robot, self.q).score.value].map(f64::sqrt))
     }
 
-    /// The ends of the box.
+    /// Lower and upper ends of the box.
     pub fn ends(&self) -> [&'a [f64]; 2] {
         self.tick_box.bounds.ends()
     }
 
-    /// The position limits of the tick.
+    /// Position limits of the tick.
     pub fn positions(&self) -> Bounds {
         let range = |j: usize| self.limits.position_range(j, self.time, self.time + self.dt).into();
         Bounds::from_ranges((0..self.q.len()).map(range))
     }
 
-    /// A step in the box.
+    /// Request for a step in the box.
     pub fn request(&self, towards: Towards) -> StepRequest<'a> {
         StepRequest { robot: self.robot, aims: self.aims, ends: self.ends(), towards }
     }
 
-    /// The command of the fastest stop.
+    /// First command of the fastest stop.
     pub fn braking(&self) -> Point {
         let mut brake = self.limited.map_or_else(|| Point::from_slice(self.q), |limited| limited.stopping(self.q));
         self.tick_box.bounds.clip(&mut brake);
         brake
     }
 
-    /// The motion that takes the command `q` and then stops.
+    /// Motion that takes the command `q` and then stops.
     pub fn stop_after<'m>(&self, q: &'m [f64]) -> CommandAndStop<'m>
     where
         'a: 'm,

@@ -22,7 +22,7 @@ pub struct LowPass {
     pub cutoff: f64,
 }
 
-/// One-euro filter: its cutoff is `min_cutoff` + `beta` speed.
+/// One-euro filter, with cutoff `min_cutoff` + `beta` speed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OneEuro {
     /// Cutoff at rest (Hz).
@@ -31,7 +31,7 @@ pub struct OneEuro {
     pub beta: f64,
 }
 
-/// A filter of targets.
+/// Filter of noisy targets.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TargetFilter {
     /// First-order low-pass.
@@ -56,7 +56,7 @@ impl TargetFilter {
         }
     }
 
-    /// The fractions of the way to a target that the filter covers in `interval` (s), for position and orientation, at these
+    /// Fractions of the distance to a target that the filter covers in `interval` (s), for position and orientation, at these
     /// speeds (m/s, rad/s).
     fn fractions(&self, speeds: [f64; 2], interval: f64) -> [f64; 2] {
         let cutoffs = match *self {
@@ -67,16 +67,16 @@ impl TargetFilter {
     }
 }
 
-/// The fraction of a step that a low-pass covers in `interval` (s).
+/// Fraction of a step that a low-pass covers in `interval` (s).
 fn fraction(cutoff: f64, interval: f64) -> f64 {
     1.0 - (-TAU * cutoff * interval).exp()
 }
 
-/// A filter in use.
+/// Running filter with its state.
 #[derive(Debug)]
 pub(super) struct RunningFilter {
     settings: TargetFilter,
-    /// The last target, as it came and filtered.
+    /// Last target, raw and filtered.
     last: Option<[Target; 2]>,
     twist: Twist,
 }
@@ -86,7 +86,7 @@ impl RunningFilter {
         Self { settings, last: None, twist: Twist { linear: [0.0; 3], angular: [0.0; 3] } }
     }
 
-    /// The filtered target, `interval` (s) after the last one. The first one is not filtered.
+    /// Filters the target, received `interval` (s) after the last one. The first target is not filtered.
     pub fn filtered(&mut self, target: &Target, interval: f64) -> Target {
         let same_kind = |[raw, _]: &[Target; 2]| std::mem::discriminant(raw) == std::mem::discriminant(target);
         let Some([raw, filtered]) = self.last.filter(same_kind) else {

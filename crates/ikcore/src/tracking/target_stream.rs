@@ -1,4 +1,4 @@
-//! Targets as they arrive: their ages, the filter, and the timeout.
+//! Stream of targets: their ages, filters, and timeout.
 
 use smallvec::smallvec;
 
@@ -7,19 +7,19 @@ use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::task::{NamedTask, Target, TargetRow, TargetSegment, Twist};
 
-/// A target is extrapolated over this time (s) at most, however old it is.
+/// Longest extrapolation of a target (s), however old it is.
 const LONGEST_AGE: f64 = 0.25;
 
-/// Targets that have arrived, together.
+/// Targets that arrive together.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Arrival {
-    /// The tasks of several tips, in the order of their targets; tips without one are free. Empty for a robot with one tip.
+    /// Tasks of several tips, in the order of their targets; tips without a task are free. Empty for a robot with one tip.
     pub tips: Vec<NamedTask>,
-    /// The targets.
+    /// Target of each task.
     pub targets: TargetRow,
     /// Velocity of the target of the only tip (m/s), for rules that work with velocities.
     pub velocity: Option<[f64; 3]>,
-    /// When they were measured (s), on the clock of the session. `None` means at the end of the tick.
+    /// Time of measurement (s), on the clock of the session. `None` means the end of the tick.
     pub stamp: Option<f64>,
 }
 
@@ -36,25 +36,25 @@ impl FromIterator<(NamedTask, Target)> for Arrival {
     }
 }
 
-/// The targets of a session: one, or those of several tips, which arrive together.
+/// Targets of a session: one, or those of several tips, which arrive together.
 #[derive(Debug)]
 pub(super) struct TargetStream {
     filter: Option<TargetFilter>,
-    /// One for each target.
+    /// Running filter of each target.
     filters: Vec<RunningFilter>,
     timeout: Option<f64>,
-    /// For rules that extrapolate.
+    /// Detector of repetitions, for rules that extrapolate.
     repeated: Option<RepeatedTargets>,
     last: Option<Arrival>,
-    /// Those at the end of the previous tick.
+    /// Targets at the end of the previous tick.
     before: Option<Arrival>,
-    /// When the last targets were measured, and when they arrived (s).
+    /// Times at which the last targets were measured and arrived (s).
     measured: f64,
     arrived: f64,
 }
 
 impl TargetStream {
-    /// No target yet. `repeated` says which targets are no new ones.
+    /// Stream without a target yet. `repeated` detects repeated targets.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a setting of the filter or a timeout that is not positive.
@@ -65,13 +65,13 @@ impl TargetStream {
         Ok(Self { filter, filters, timeout, repeated, last: None, before: None, measured, arrived: 0.0 })
     }
 
-    /// The last targets, filtered; empty before the first.
+    /// Last targets, filtered; empty before the first.
     pub fn last(&self) -> &[Target] {
         self.last.as_ref().map_or(&[], |arrival| &arrival.targets)
     }
 
-    /// Motion of the first target to its `end` during the last tick, of `dt` (s). Without a previous tick, the target has moved with its
-    /// velocity or, if that is unknown, stood still.
+    /// Motion of the first target to its `end` during the last tick, of `dt` (s). Without a previous tick, the target is
+    /// assumed to have moved with its velocity or, if that is unknown, to have stood still.
     pub fn motion(&self, end: Target, dt: f64) -> TargetSegment {
         let first = |arrival: &Arrival| Some((*arrival.targets.first()?, arrival.velocity));
         match (self.before.as_ref().and_then(first), self.last.as_ref().and_then(|arrival| arrival.velocity)) {
@@ -99,8 +99,8 @@ impl TargetStream {
         self.before.clone_from(&self.last);
     }
 
-    /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets
-    /// or for ones that were measured before the last ones or repeat them.
+    /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets,
+    /// and for targets that are older than the last ones or repeat them.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
@@ -118,7 +118,7 @@ impl TargetStream {
             return Err(Error::out_of_range("stamp", &expected, measured));
         }
         self.arrived = time;
-        // The target of a tick that was interrupted is replaced by the next one.
+        // Targets of an interrupted tick are replaced by the next ones.
         if measured < self.measured || stamp.is_some() && measured == self.measured {
             return Ok(None);
         }
@@ -147,21 +147,21 @@ impl TargetStream {
         self.before.clone_from(&self.last);
     }
 
-    /// The next targets are for other tasks.
+    /// Discards targets and filters, because the next targets belong to other tasks.
     pub fn begin_anew(&mut self) {
         (self.last, self.before) = (None, None);
         self.filters.clear();
         self.expect_new();
     }
 
-    /// The next target is new, even if it equals the last one.
+    /// Treats the next target as new, even if it equals the last one.
     pub fn expect_new(&mut self) {
         if let Some(repeated) = &mut self.repeated {
             repeated.forget();
         }
     }
 
-    /// Forgets all targets; the clock starts at zero.
+    /// Forgets all targets, and restarts the clock at zero.
     pub fn clear(&mut self) {
         (self.measured, self.arrived) = (f64::NEG_INFINITY, 0.0);
         self.begin_anew();

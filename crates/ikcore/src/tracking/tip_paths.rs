@@ -11,14 +11,14 @@ use crate::task::{NamedTask, Target, TargetRow};
 /// Paths that are followed at the same time.
 #[derive(Debug, Clone, Copy)]
 pub struct TipPaths<'a> {
-    /// The tasks of several tips, in the order of their paths; empty for a robot with one tip.
+    /// Tasks of several tips, in the order of their paths; empty for a robot with one tip.
     pub tips: &'a [NamedTask],
-    /// The paths, sampled at the same times.
+    /// Reference paths, sampled at the same times.
     pub paths: &'a [Reference],
 }
 
 impl<'a> TipPaths<'a> {
-    /// The first path, of which there is one at least; all are sampled at the same times.
+    /// Checks that there is a path and that all are sampled at the same times. Returns the first.
     pub(super) fn first(&self) -> Result<&'a Reference> {
         let [first, others @ ..] = self.paths else {
             return Err(Error::WrongLength { what: "paths".into(), expected: "one at least".into(), got: 0 });
@@ -42,7 +42,7 @@ impl<'a> TipPaths<'a> {
         self.paths[0].time(i)
     }
 
-    /// Targets of row `i`: poses of paths with orientations, else positions.
+    /// Targets of row `i`: poses on paths with orientations, else positions.
     pub(super) fn targets(&self, i: usize) -> TargetRow {
         let target =
             |path: &Reference| path.pose(i).map_or(Target::Position(path.position(i)), |pose| Target::from(&pose));
@@ -51,7 +51,7 @@ impl<'a> TipPaths<'a> {
         targets
     }
 
-    /// The targets of row `i` as they arrive.
+    /// Targets of row `i` as an arrival.
     pub(super) fn arrival(&self, i: usize) -> Arrival {
         Arrival { tips: self.tips.to_vec(), targets: self.targets(i), velocity: self.paths[0].velocity(i), stamp: None }
     }

@@ -1,4 +1,4 @@
-//! What a sensor measures of the tip, and what a path asks of it.
+//! Position or pose of a tip, as measured by a sensor or prescribed by a path.
 
 use std::borrow::Cow;
 
@@ -9,12 +9,12 @@ use crate::math::vector::{median, norm, squared_distance};
 use crate::math::{Frame, Pose};
 use crate::task::TipError;
 
-/// The position of the tip, or its pose. Not `Copy`, because a copy always moves the 13 words of a pose.
+/// Position or pose of a tip. Not `Copy`, because a copy always moves the 13 words of a pose.
 #[derive(Debug, PartialEq)]
 pub enum TipPose {
-    /// The position alone (m).
+    /// Position alone (m).
     Position([f64; 3]),
-    /// The position (m) and the orientation.
+    /// Position (m) and orientation.
     Pose(Frame),
 }
 
@@ -59,10 +59,10 @@ impl From<&Pose> for TipPose {
 }
 
 impl TipPose {
-    /// Before anything is measured.
+    /// Value before the first measurement.
     pub(super) const UNKNOWN: Self = Self::Position([f64::NAN; 3]);
 
-    /// The position (m).
+    /// Position (m).
     #[inline]
     pub fn position(&self) -> &[f64; 3] {
         match self {
@@ -71,7 +71,7 @@ impl TipPose {
         }
     }
 
-    /// The pose, if there is an orientation.
+    /// Pose, if there is an orientation.
     pub fn pose(&self) -> Option<Pose> {
         match self {
             Self::Position(_) => None,
@@ -85,12 +85,12 @@ impl TipPose {
         matches!(self, Self::Pose(_))
     }
 
-    /// For messages.
+    /// Name of the variant, for messages.
     pub(super) fn kind(&self) -> &'static str {
         if self.is_oriented() { "a pose (4, 4)" } else { "a position (3,)" }
     }
 
-    /// As much of it as `target` asks for; None where that asks for an orientation and there is none.
+    /// Part that `target` specifies; `None` if the target has an orientation and this one has none.
     #[inline]
     pub(super) fn as_asked_by(&self, target: &Self) -> Option<Cow<'_, Self>> {
         match (self, target) {
@@ -109,7 +109,7 @@ impl TipPose {
         }
     }
 
-    /// Err unless every number is finite; `what` names it.
+    /// Checks that every number is finite; `what` names the value in the error.
     #[inline]
     pub(super) fn require_finite(&self, what: &str) -> Result<()> {
         if self.is_finite() { Ok(()) } else { self.not_finite(what) }
@@ -124,8 +124,8 @@ impl TipPose {
         }
     }
 
-    /// r = (p - p_d, log(R R_d')), in base coordinates (m, rad), as tasks define it; the angular rows are zero without an
-    /// orientation. Seen from another measurement, it is the motion of the tip.
+    /// Residual r = (p - p_d, log(R R_d')) in base coordinates (m, rad), as tasks define it; the angular rows are zero without
+    /// an orientation. The residual to an earlier measurement is the motion of the tip.
     #[inline]
     pub(super) fn residual(&self, target: &Self) -> [f64; ROWS] {
         let (p, d) = (self.position(), target.position());
@@ -133,7 +133,7 @@ impl TipPose {
         [p[0] - d[0], p[1] - d[1], p[2] - d[2], a, b, c]
     }
 
-    /// The rotation from `target` to this one (rad), if both have an orientation.
+    /// Rotation vector from `target` to this pose (rad), if both have an orientation.
     #[inline]
     fn rotation(&self, target: &Self) -> Option<[f64; 3]> {
         match (self, target) {
@@ -147,7 +147,7 @@ impl TipPose {
         squared_distance(target.position(), self.position())
     }
 
-    /// r'r: a radian counts as much as a metre.
+    /// Squared error r'r: a radian counts as much as a metre.
     #[inline]
     pub(super) fn squared_error(&self, target: &Self) -> f64 {
         match self.rotation(target) {
@@ -156,13 +156,13 @@ impl TipPose {
         }
     }
 
-    /// |r|.
+    /// Norm of the residual, |r|.
     #[inline]
     pub(super) fn distance(&self, target: &Self) -> f64 {
         self.squared_error(target).sqrt()
     }
 
-    /// Both parts of the error.
+    /// Position and orientation error.
     #[inline]
     pub(super) fn error(&self, target: &Self) -> TipError {
         TipError {
@@ -171,7 +171,7 @@ impl TipPose {
         }
     }
 
-    /// The middle one of three, in each direction.
+    /// Median of three, in each direction.
     pub(super) fn median([a, b, c]: &[Self; 3]) -> Self {
         let (p, q, r) = (a.position(), b.position(), c.position());
         let origin = std::array::from_fn(|k| median(p[k], q[k], r[k]));

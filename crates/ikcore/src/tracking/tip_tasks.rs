@@ -1,4 +1,4 @@
-//! Tasks of the last targets.
+//! Tasks of the current targets.
 
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
@@ -6,10 +6,10 @@ use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
 use crate::task::{Aims, NamedTask, Region, Target, TipCriterion};
 
-/// Weight of pairs beside other tasks, so that what is not within reach costs them little: they are then held exactly.
+/// Weight of pairs relative to other tasks: an unreachable target then costs them little accuracy, until they are held exactly.
 const PAIR_WEIGHT: f64 = 100.0;
 
-/// The tasks of the last targets; the task of the only tip never changes.
+/// Tasks of the current targets; the task of the only tip never changes.
 #[derive(Debug)]
 pub(super) struct TipTasks {
     asked: Vec<NamedTask>,
@@ -17,10 +17,10 @@ pub(super) struct TipTasks {
 }
 
 impl TipTasks {
-    /// The task of the only tip, which carries its tool; none yet of several tips.
+    /// Task of the only tip, without its tool, which the robot carries; for several tips, no task yet.
     ///
     /// # Errors
-    /// Those of a wrong task or tolerance.
+    /// Errors of a wrong task or tolerance.
     pub fn new(robot: &Robot, options: &TrackOptions) -> Result<Self> {
         let mut only = options.only_task()?;
         only.leave_tool();
@@ -28,21 +28,22 @@ impl TipTasks {
         Ok(Self { asked: vec![], tasks })
     }
 
-    /// The tasks with their `targets`; empty before the first.
+    /// Tasks with their `targets`; empty before the first.
     pub fn with<'a>(&'a self, targets: &'a [Target]) -> Aims<'a> {
         if targets.is_empty() { Aims::default() } else { Aims { tasks: &self.tasks, targets } }
     }
 
-    /// The region of the only tip.
+    /// Region of the only tip.
     pub fn region(&self) -> Option<&Region> {
         self.tasks.first().and_then(|task| task.criterion.region.as_ref())
     }
 
-    /// Reduces validated `targets` to the parts that their tasks use. Returns whether the tasks of several tips, `asked`, are not those of
-    /// the last targets.
+    /// Reduces validated `targets` to the parts that their tasks use. Returns whether the tasks of several tips, `asked`, have
+    /// changed.
     ///
     /// # Errors
-    /// Those of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region; the tasks are then as before.
+    /// Errors of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region; the tasks are then as
+    /// before.
     pub fn read(&mut self, robot: &Robot, asked: &[NamedTask], targets: &mut [Target]) -> Result<bool> {
         targets.iter().try_for_each(Target::validate)?;
         if asked.is_empty() && !targets.is_empty() {

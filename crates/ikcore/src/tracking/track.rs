@@ -31,8 +31,8 @@ pub fn track(
     track_tips(robot, &TipPaths { tips: &[], paths: std::slice::from_ref(path) }, start, options, monitor)
 }
 
-/// [`track`] with each of several tips. Pairs of tips that are where they are to be are held there before anything else: where one arm
-/// cannot follow, both lag.
+/// Follows the paths of several tips at once, otherwise like [`track`]. Pairs of tips at their relative pose are held there
+/// with priority: where one arm cannot follow, both lag.
 ///
 /// # Errors
 /// As [`track`]; [`Error::WrongLength`] for paths that are not sampled at the same times.
@@ -99,7 +99,7 @@ fn farthest_out_of_reach(
     Ok(farthest)
 }
 
-/// Drives the approach.
+/// Drives the arm along the approach.
 fn drive(approach: &PathApproach, asked: &TipPaths<'_>, session: &mut Session, record: &mut Record) -> Result<()> {
     for i in 1..=approach.ticks {
         let step = session.drive(&approach.at(asked.time(i))?, asked.arrival(i))?;
@@ -109,11 +109,11 @@ fn drive(approach: &PathApproach, asked: &TipPaths<'_>, session: &mut Session, r
     Ok(())
 }
 
-/// Steps to the end of the paths; returns false if the monitor asked to stop before.
+/// Tracks to the end of the paths. Returns false if the monitor asked to stop before.
 fn follow(asked: &TipPaths<'_>, session: &mut Session, record: &mut Record, monitor: &mut dyn Monitor) -> Result<bool> {
     let last = asked.len() - 1;
     for i in record.rows()..=last {
-        // Polled here too, since most ticks end before the evaluator polls the monitor.
+        // Polls here too, since most ticks end before the evaluator polls the monitor.
         if !monitor.keep_going() {
             return Ok(false);
         }
@@ -127,12 +127,12 @@ fn follow(asked: &TipPaths<'_>, session: &mut Session, record: &mut Record, moni
     Ok(true)
 }
 
-/// Evaluation budget of the first configuration: most of the time no worse than the best of all, in a sixth of the
-/// time. If the target is still unsolved, the full budget of a solve is used.
+/// Evaluation budget of the first configuration: usually as good as the full budget, in a sixth of the time. If the target is
+/// still unsolved, the full budget of a solve is used.
 const CHOOSING: usize = 1000;
 
-/// Solves for a configuration on, or nearest to, the first points of the paths: the best for the goals or, without goals, one away from
-/// limits and, for one tip, from singularities.
+/// Solves for a configuration on, or nearest to, the first points of the paths: the best for the goals or, without goals, away
+/// from limits and, for one tip, from singularities.
 fn first_configuration(
     robot: &Robot,
     asked: &TipPaths<'_>,
@@ -166,7 +166,7 @@ fn first_configuration(
     Ok(solve_tips(robot, &targets, &SolveOptions { stop: Stop::default(), ..best }, monitor)?.q.to_vec())
 }
 
-/// The position limits at t = 0.
+/// Position limits at t = 0.
 fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> {
     let at_start = |field: Field| -> Vec<Profile> {
         let profiles = limits.field(field).unwrap_or_default().iter();
@@ -175,7 +175,7 @@ fn limits_at_start(robot: &Robot, limits: &Limits) -> Result<Limits> {
     Limits::of(robot).replace(Field::Lower, at_start(Field::Lower))?.replace(Field::Upper, at_start(Field::Upper))
 }
 
-/// Default goals of the start.
+/// Default goals of the first configuration.
 fn start_goals(robot: &Robot, target: &Target) -> Vec<Goal> {
     let centring = Goal::Centring { weight: 1.0 };
     if robot.tip_count() > 1 {

@@ -11,9 +11,9 @@ use crate::task::{Goal, NamedTask, Task, TipCriterion, Tolerance};
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
-    /// The rule that runs in every tick.
+    /// Rule that runs in every tick.
     pub rule: TickRule,
-    /// The part of the path to follow. `None` means all of it.
+    /// Part of the path to follow. `None` means all of it.
     pub task: Option<Task>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
@@ -21,7 +21,7 @@ pub struct TrackOptions {
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
-    /// The time within a tick at which its velocity limit is evaluated.
+    /// Time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
     /// Filter of the targets. `None` means none.
     pub target_filter: Option<TargetFilter>,
@@ -30,25 +30,25 @@ pub struct TrackOptions {
     /// Whether [`track`](super::track()) begins with an approach that meets the moving path within acceleration and jerk
     /// limits. Sessions ignore it.
     pub ease: bool,
-    /// What the arm keeps clear of. By default nothing.
+    /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
 impl TrackOptions {
-    /// The task of the only tip, which decides whether a tick is in its band.
+    /// Task of the only tip, which decides whether a tick is in its band.
     pub(super) fn only_task(&self) -> Result<TipCriterion> {
         NamedTask::of_only(self.task, self.tolerance).validated()
     }
 
-    /// Checks that rule and task serve this robot's number of tips.
+    /// Checks that rule and task support the robot's number of tips.
     pub(super) fn require_tips(&self, robot: &Robot) -> Result<()> {
         self.rule.require_tips(robot)?;
         if self.task.is_some() { robot.require_one_tip("task= for all tips") } else { Ok(()) }
     }
 
-    /// Checks that the rule supports the goals, and the robot too.
+    /// Checks that rule and robot support the goals.
     pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
         if !self.goals.is_empty() && !self.rule.serves_goals() {
             let problem = "goals need the library's own rule, with solver left out, or WeightedPseudoInverse";
@@ -57,7 +57,7 @@ impl TrackOptions {
         self.goals.iter().try_for_each(|goal| goal.validate(robot, false))
     }
 
-    /// The limits in force for `robot`.
+    /// Limits in force for `robot`.
     pub(super) fn limits_for(&self, robot: &Robot) -> Limits {
         self.limits.clone().unwrap_or_else(|| Limits::of(robot))
     }

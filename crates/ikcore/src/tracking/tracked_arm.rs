@@ -1,4 +1,4 @@
-//! The arm of a control loop: its accepted configuration, clock, limits and targets.
+//! State of a tracked arm: its accepted configuration, clock, limits and targets.
 
 use std::sync::Arc;
 
@@ -15,14 +15,14 @@ use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Aims;
 
-/// An arm in motion, tick by tick.
+/// Tracked arm in motion, tick by tick.
 #[derive(Debug)]
 pub(super) struct TrackedArm {
     pub robot: Arc<Robot>,
     pub limits: Limits,
     pub limit_at: LimitAt,
     pub tick_box: TickBox,
-    /// Under acceleration or jerk limits.
+    /// State and reachable set under acceleration or jerk limits.
     pub limited: Option<LimitedState>,
     pub tasks: TipTasks,
     pub targets: TargetStream,
@@ -31,15 +31,15 @@ pub(super) struct TrackedArm {
     pub q: Point,
     /// Configuration at the start of the last tick.
     pub before: Point,
-    /// The value accepted in the previous tick, which a random search must beat.
+    /// Squared error accepted in the previous tick, which a random search must beat.
     pub last_value: Option<f64>,
 }
 
 impl TrackedArm {
-    /// At rest at `start` (n,) at t = 0, with ticks of `dt` (s).
+    /// Arm at rest at `start` (n,) at t = 0, with ticks of `dt` (s).
     ///
     /// # Errors
-    /// Those of wrong tasks, limits or settings of targets, and of a start outside limits or region.
+    /// Errors of wrong tasks, limits or settings of targets, and of a start outside limits or region.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
         let (tasks, limits) = (TipTasks::new(robot, options)?, options.limits_for(robot));
         limits.require_for(robot)?;
@@ -112,7 +112,7 @@ impl TrackedArm {
         self.limits.narrow(&self.q, tick, self.dt, self.limit_at, &mut self.tick_box)
     }
 
-    /// Narrows the box to the commands that leave a full stop. Returns whether there are any.
+    /// Narrows the box to commands from which the arm can still stop. Returns whether there are any.
     pub fn narrow_to_stop(&mut self) -> bool {
         let time = self.time();
         let Self { limited, limits, q, tick_box, .. } = self;
@@ -125,7 +125,7 @@ impl TrackedArm {
         only.is_some_and(|(target, criterion)| criterion.blocked_by_region(target).is_some())
     }
 
-    /// Assesses what has been found, with one evaluation.
+    /// Assesses the result `found`, with one evaluation.
     pub fn assess(&self, found: &mut TickResult) {
         found.evaluations += 1;
         match self.targets.last() {
@@ -145,10 +145,10 @@ impl TrackedArm {
         self.targets.accept();
     }
 
-    /// Begins anew at `q` and t = 0, with these velocities (rad/s, m/s) and accelerations (rad/s^2, m/s^2); `None`: at rest.
+    /// Restarts at `q` and t = 0, with these velocities (rad/s, m/s) and accelerations (rad/s^2, m/s^2); `None` means at rest.
     ///
     /// # Errors
-    /// As [`new`](Self::new) for a start, and for an arm that could not stop inside its limits; the arm is then as before.
+    /// As for the start of [`new`](Self::new), and for an arm that could not stop inside its limits; the arm is then as before.
     pub fn reset(&mut self, q: &[f64], [qd, qdd]: [Option<&[f64]>; 2]) -> Result<()> {
         self.robot.check("q", q)?;
         self.require_inside("q", q)?;

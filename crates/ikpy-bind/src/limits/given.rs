@@ -56,7 +56,7 @@ impl GivenLimit {
         }
     }
 
-    /// Equal values have equal hashes.
+    /// Returns a hash that is equal for equal values.
     pub fn hash(&self, py: Python<'_>) -> PyResult<isize> {
         match self {
             Self::Numbers(numbers) => Ok(content_hash(numbers) as isize),

@@ -21,11 +21,11 @@ use crate::traversal::traversed;
 ///     acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
 ///
 /// Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
-/// are sampled at the ends and in the middle of each tick. A method that cannot keep a field raises `UnsupportedLimit`;
-/// none ignores one.
+/// are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
+/// no limit is ignored.
 #[pyclass(name = "Limits", module = "beetle_ik", frozen)]
 pub struct PyLimits {
-    /// In the order of the fields.
+    /// Given values, in the order of [`FIELDS`].
     given: [Option<GivenLimit>; 5],
 }
 
@@ -129,7 +129,7 @@ impl PyLimits {
 }
 
 impl PyLimits {
-    /// The robot's own limits.
+    /// Returns the robot's own limits.
     pub fn of(robot: &Robot) -> Self {
         let joints = robot.joints();
         Self {
@@ -143,7 +143,7 @@ impl PyLimits {
         }
     }
 
-    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    /// Returns the robot's limits plus the maker's acceleration and jerk limits, where known.
     pub fn rated(robot: &Robot) -> Self {
         let mut limits = Self::of(robot);
         let known = |values: Vec<f64>| if values.iter().any(|v| v.is_finite()) { numbers(values) } else { None };
@@ -153,12 +153,12 @@ impl PyLimits {
         limits
     }
 
-    /// A box.
+    /// Returns position limits alone.
     pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
         Self { given: [numbers(lower), numbers(upper), None, None, None] }
     }
 
-    /// No limits, for `n` joints.
+    /// Returns infinite limits for `n` joints.
     pub(super) fn none(n: usize) -> Self {
         let free = |limit: f64| numbers(vec![limit; n]);
         Self { given: [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None] }
@@ -225,7 +225,7 @@ impl PyLimits {
     }
 }
 
-/// A field with one number per joint.
+/// Makes a field with one number per joint.
 fn numbers(values: Vec<f64>) -> Option<GivenLimit> {
     Some(GivenLimit::Numbers(PerJoint { values, single: false }))
 }

@@ -8,7 +8,7 @@ use crate::convert::summary;
 use crate::error::misfit;
 use crate::robot::PyRobot;
 
-/// Reads the limits of a call that must have some.
+/// Reads a required `limits` argument.
 pub fn required_limits<'a>(limits: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLimits> {
     let limits = limits.cast::<PyLimits>().map_err(|_| {
         let got = summary(limits);
@@ -17,7 +17,8 @@ pub fn required_limits<'a>(limits: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLimit
     Ok(limits.get())
 }
 
-/// Reads the limits of a call: those in force, for the result, and those that differ from the robot's, for the core.
+/// Reads the limits of a call: the limits in force, for the result, and the given limits for the core, None without
+/// any.
 pub fn limits_of_call(
     py: Python<'_>,
     limits: Option<&PyLimits>,

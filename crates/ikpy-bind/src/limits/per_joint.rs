@@ -22,7 +22,7 @@ impl PerJoint {
         Ok(Self { values, single })
     }
 
-    /// The number of a joint.
+    /// Returns the number of a joint.
     pub fn at(&self, joint: usize) -> f64 {
         self.values[if self.values.len() == 1 { 0 } else { joint }]
     }

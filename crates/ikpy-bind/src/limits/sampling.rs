@@ -7,7 +7,7 @@ use crate::convert::scalar_or_vector;
 use crate::error::invalid;
 use crate::signals::check_signals_at;
 
-/// When functions of time are sampled: before the core runs, since callables never reach its threads.
+/// Sample times of limits that are functions of time. Sampling precedes the core, whose threads never call Python.
 pub struct Sampling {
     /// Time between samples (s).
     pub step: f64,
@@ -16,12 +16,12 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    /// At both ends and in the middle of each of `ticks` ticks of `dt` seconds.
+    /// Samples at both ends and in the middle of each of `ticks` ticks of `dt` seconds.
     pub fn of_ticks(dt: f64, ticks: usize) -> Self {
         Self { step: 0.5 * dt, count: 2 * ticks + 1 }
     }
 
-    /// At t = 0 only.
+    /// Samples at t = 0 only.
     pub fn once() -> Self {
         Self { step: 1.0, count: 1 }
     }

@@ -90,7 +90,7 @@ impl PySinusoid {
 }
 
 impl PySinusoid {
-    /// One profile per joint, or one for all of them.
+    /// Returns one profile per joint, or one for all joints.
     pub fn profiles(&self) -> PyResult<Vec<Profile>> {
         let fields = [&self.mean, &self.amplitude, &self.angular_frequency, &self.phase];
         let count = fields.iter().map(|numbers| numbers.values.len()).max().unwrap_or(1);

@@ -13,10 +13,10 @@ use crate::convert::{array, shape_text, summary};
 use crate::error::invalid;
 use crate::monitor::Watcher;
 
-/// The exception of the function or of a signal; the search ends at the next check of the monitor.
+/// Exception raised by the function or by a signal; the search ends at the next check of the monitor.
 pub type Failure = RefCell<Option<PyErr>>;
 
-/// The user's function.
+/// Objective function written in Python.
 pub struct Function<'py, 'f> {
     pub function: Bound<'py, PyAny>,
     pub dimension: usize,
@@ -25,7 +25,7 @@ pub struct Function<'py, 'f> {
 }
 
 impl Function<'_, '_> {
-    /// Returns the values; stores an exception and returns None.
+    /// Returns the values, or stores the exception and returns None.
     fn kept<T>(&self, values: PyResult<T>) -> Option<T> {
         values.map_err(|error| *self.failure.borrow_mut() = Some(error)).ok()
     }
@@ -59,7 +59,7 @@ impl Objective for Function<'_, '_> {
         self.dimension
     }
 
-    /// A Python call is slow enough that a check of the monitor after each one costs nothing.
+    /// Checks the monitor after each evaluation, which costs nothing beside a Python call.
     fn call_pattern(&self) -> CallPattern {
         CallPattern { batch_size: if self.vectorized { usize::MAX } else { 1 }, poll_interval: 1 }
     }
@@ -107,7 +107,7 @@ fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
         .map_err(|error| if error.is_instance_of::<PyException>(value.py()) { no_number() } else { error })
 }
 
-/// The monitor: ends the search after an exception of the function, or on Ctrl-C.
+/// Monitor that ends the search after an exception of the function, or on Ctrl-C.
 pub struct Attendant<'f> {
     pub watcher: &'f mut Watcher,
     pub failure: &'f Failure,

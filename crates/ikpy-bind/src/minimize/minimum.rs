@@ -16,7 +16,7 @@ use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::traversal::traversed;
 
-/// The best point found by `minimize`, and how the search ended.
+/// The best point found by `minimize`, and the outcome of the search.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
 pub struct PyMinimum {
     core: minimize::Minimum,
@@ -95,8 +95,8 @@ impl PyMinimum {
 ///     function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
 ///     lower: (n,), finite.
 ///     upper: (n,), finite.
-///     solver: a derivative-free solver, such as `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`. BAS suits
-///         only functions with minimum zero, near it: see `BAS`.
+///     solver: a derivative-free solver, for example `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`.
+///         BAS suits few functions, whose minimum must be zero: see `BAS`.
 ///     start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
 ///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
 ///     seed: seed of the random draws; the same seed gives the same bits.
@@ -109,6 +109,12 @@ impl PyMinimum {
 /// Raises:
 ///     InvalidInputError: wrong shape, an infinite or empty box, a start outside it, a population larger than the budget, or
 ///         a function that does not return numbers.
+///
+/// For example:
+///
+///     >>> minimum = bik.minimize(lambda x: (x[0] - 1) ** 2 + x[1] ** 2, [-5, -5], [5, 5])
+///     >>> minimum.value < 1e-12
+///     True
 ///
 /// Exceptions of the function and KeyboardInterrupt propagate unchanged. Their attribute `best` holds the best point so far,
 /// a `Minimum`, and a note on the exception says so.
@@ -161,7 +167,7 @@ fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> 
         true => format!("minimize: {}; kept as `best` of this exception", found.core.message()),
         false => "minimize: no finite value was found before".into(),
     };
-    // A class may refuse attributes; its exception comes out all the same.
+    // Exception classes may refuse attributes; the exception is raised anyway.
     let kept = value.setattr("best", Bound::new(py, found)?);
     if kept.is_ok() {
         value.call_method1("add_note", (note,))?;

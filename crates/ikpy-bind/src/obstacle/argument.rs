@@ -15,9 +15,9 @@ use crate::error::invalid;
 
 /// The obstacles of a call.
 pub struct GivenObstacles {
-    /// For the core.
+    /// Obstacles for the core.
     pub core: Obstacles,
-    /// For results, which store them.
+    /// Obstacles as given, which results store.
     pub tuple: Py<PyTuple>,
 }
 
@@ -32,7 +32,7 @@ impl GivenObstacles {
         Ok(Self { core: shapes(&items)?, tuple: PyTuple::new(py, items)?.unbind() })
     }
 
-    /// Reads what the core needs of a sequence of obstacles.
+    /// Reads a sequence of obstacles for the core.
     pub fn read_core(value: &Bound<'_, PyAny>) -> PyResult<Obstacles> {
         match prepared(value) {
             Some(prepared) => Ok(prepared.get().core.clone()),
@@ -57,7 +57,7 @@ impl PyPreparedObstacles {
     }
 }
 
-/// What a `Scene` has prepared; None for other sequences.
+/// Returns the prepared obstacles of a `Scene`; None for other sequences.
 fn prepared<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyPreparedObstacles>> {
     if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
         return None;
@@ -65,14 +65,14 @@ fn prepared<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyPreparedObsta
     value.getattr(intern!(value.py(), "_prepared")).ok()?.cast_into().ok()
 }
 
-/// Obstacles of which some may move: shapes, and the velocity of each; no velocities if all are at rest.
+/// Static and moving obstacles: shapes and their velocities (m/s), empty if all are at rest.
 pub struct MovingObstacles {
     pub shapes: Obstacles,
     pub velocities: Vec<[f64; 3]>,
 }
 
 impl MovingObstacles {
-    /// Reads any sequence of obstacles.
+    /// Reads any sequence of obstacles, static or moving.
     pub fn read(value: &Bound<'_, PyAny>) -> PyResult<Self> {
         let all_at_rest = |shapes| Self { shapes, velocities: vec![] };
         if let Some(prepared) = prepared(value) {
@@ -95,7 +95,7 @@ impl MovingObstacles {
         Ok(Self { shapes: shapes.into(), velocities })
     }
 
-    /// The obstacles as Python objects: those that move are `Moving`.
+    /// Returns the obstacles as Python objects, moving obstacles as `Moving`.
     pub fn objects(py: Python<'_>, shapes: &[Shape], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
         let object = |(i, shape): (usize, &Shape)| match velocities.get(i) {
             Some(velocity) if *velocity != [0.0; 3] => {

@@ -16,8 +16,8 @@ use crate::options::NewArguments;
 
 /// The base class of obstacles: a shape, fixed in the frame of the robot's base.
 ///
-/// Each takes `touch=`, a list of link names: those links are not kept clear of it. A floor is `HalfSpace((0, 0, 1), 0.0,
-/// touch=["panda_link0"])`.
+/// Each shape takes `touch=`, names of links that need not keep clear of it. A floor under the robot is
+/// `HalfSpace((0, 0, 1), 0.0, touch=["panda_link0"])`.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
@@ -35,8 +35,8 @@ where
 
 #[pymethods]
 impl PyObstacle {
-    /// Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
-    /// a point cloud octahedra about at most 2,000 of its points.
+    /// Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface. A half-space is drawn as
+    /// a square of 4 m, a point cloud as octahedra about at most 2,000 of its points.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let triangles = self.core.triangles();
@@ -44,7 +44,8 @@ impl PyObstacle {
         table(py, triangles.as_flattened().as_flattened().to_vec(), &[count, 3, 3])
     }
 
-    /// Names of the links that may touch it, sorted. As the body of a robot (`robot.with_attached`) it may touch them too.
+    /// Sorted names of the links that may touch the shape. They remain allowed when it is attached to a robot
+    /// (`robot.with_attached`).
     #[getter]
     fn touch<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.core.touch())
@@ -121,7 +122,7 @@ impl PyObstacle {
     }
 }
 
-/// Longer lists are not written out.
+/// Longest list that `repr` writes out.
 const MOST_ENTRIES: usize = 8;
 
 /// Formats a list in Python syntax if it is short, else as its length.
@@ -156,7 +157,7 @@ fn rotation_text(pose: &Pose) -> String {
     rotation_rows(pose).map_or(String::new(), |rows| format!(", rotation={rows:?}"))
 }
 
-/// Err for something that is no obstacle; `place` names it.
+/// Returns the error for a value that is no obstacle; `place` names where it was given.
 pub(super) fn not_made_here(place: &str, got: &Bound<'_, PyAny>) -> PyErr {
     let got = summary(got);
     invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))

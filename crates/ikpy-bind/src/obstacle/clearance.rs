@@ -15,16 +15,19 @@ const ROWS: usize = 128;
 /// Returns the smallest distance (m) between the robot's bodies and obstacles, or between two of its bodies: a number
 /// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 ///
-/// Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
-/// the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
-/// voxels of a grid, in the nearest ball of a point cloud. Where `Mesh.closed` is False, not all of the inside is known. Of coordinates
-/// above a kilometre 1e-12 is lost; beyond 1e30 m whatever may be near gives -inf.
+/// The result is never more than the true distance: for capsules at most 1e-9 m less, for bodies of other shapes about
+/// 1e-7 m. Farther than 1 km from the base, 1e-12 of the coordinates is lost; beyond 1e30 m, a body that may be near
+/// gives -inf.
+///
+/// The depth of a capsule in an obstacle is the depth of the deepest point of its axis, plus its radius. It is measured
+/// to the surface of a closed mesh (to 1 % or 0.1 mm), within the nearest block of voxels of a grid, or within the
+/// nearest ball of a point cloud. The inside of a mesh with `Mesh.closed` False is known only in part.
 ///
 /// Args:
 ///     robot: an arm with bodies.
 ///     q: joint positions (n,) or (m, n) (rad, m).
-///     obstacles: obstacles in the frame of the robot's base. All bodies are compared with them, those of the base and of held
-///         links too, but for the links that an obstacle names in its `touch`.
+///     obstacles: obstacles in the frame of the robot's base. Each is compared with all bodies, including those of the
+///         base and of held links, except for the links in its `touch`.
 ///
 /// Two links of the robot are compared if they are among `robot.collision_pairs`.
 ///

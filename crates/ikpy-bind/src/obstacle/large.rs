@@ -10,13 +10,13 @@ use super::touch::{Touch, read_touch};
 use crate::convert::{Array, point, table};
 use crate::monitor::on_a_thread;
 
-/// A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. What its closed parts
-/// enclose counts too; the others are surfaces without thickness.
+/// A triangle mesh, convex or not: vertices (k, 3) (m) and faces (t, 3), indices of vertices. Closed parts are solid;
+/// open parts are surfaces without thickness.
 ///
-/// A part is a set of triangles connected along edges; vertices at one place count as one. It is closed if each edge belongs to two
-/// triangles, in any orientation, or if the orientations of the triangles along each edge cancel. Parts that overlap, or are inside
-/// out, all have an inside. A part is the wall of a cavity if it lies inside another one, apart from all others, and its triangles
-/// are turned the other way.
+/// A part is a set of triangles connected along edges; coincident vertices count as one. It is closed if each edge
+/// belongs to two triangles, in any orientation, or if the orientations of the triangles along each edge cancel.
+/// Overlapping and inside-out parts are solid too. A part is the wall of a cavity if it lies inside another part,
+/// separate from all others, and its triangles have the opposite orientation.
 #[pyclass(name = "Mesh", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyMesh;
 
@@ -52,16 +52,16 @@ impl PyMesh {
         }
     }
 
-    /// Whether all that the mesh encloses is known: all its parts are closed, and none has the outside on both sides of a triangle, by
-    /// winding numbers, as have two layers of opposite orientation that coincide but are not halved alike. Of large parts some 128
-    /// triangles are examined.
+    /// Whether the inside of the mesh is known everywhere: all parts are closed, and by winding numbers no triangle has
+    /// the outside on both sides. Coincident layers of opposite orientation fail this test if their triangles differ.
+    /// In a large part, about 128 triangles are tested.
     #[getter]
     fn closed(this: PyRef<'_, Self>) -> bool {
         matches!(this.as_super().core.geometry(), Geometry::Mesh(mesh) if mesh.is_closed())
     }
 }
 
-/// Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera.
+/// A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m).
 #[pyclass(name = "PointCloud", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyPointCloud {
     /// Radius of the ball about each point (m).
@@ -93,7 +93,7 @@ impl PyPointCloud {
     }
 }
 
-/// The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
+/// An occupancy grid: cubic voxels with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
 /// `occupied` is a boolean array (nx, ny, nz).
 #[pyclass(name = "Grid", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyGrid {

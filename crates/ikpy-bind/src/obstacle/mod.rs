@@ -1,4 +1,4 @@
-//! `bik.obstacles`.
+//! Obstacles: shapes, distances and `bik.obstacles`.
 
 mod argument;
 mod arrays;

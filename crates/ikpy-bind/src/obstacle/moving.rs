@@ -10,14 +10,14 @@ use crate::convert::{copied, point};
 use crate::error::invalid;
 use crate::hash::content_hash;
 
-/// An obstacle that moves, for a `Tracker`: where it is now, and its velocity.
+/// A moving obstacle for a `Tracker`: its present shape and its velocity.
 ///
-/// Give the obstacles anew, `tracker.obstacles = [...]`, as often as they are seen. In between each counts as anywhere that its speed
-/// could have taken it, in any direction: commands keep clear of all that, if it is no faster. An arm that is cornered, or too slow
-/// to give way, is hit.
+/// Assign `tracker.obstacles = [...]` at each new observation. Until then, an obstacle counts as everywhere that its
+/// speed could have taken it, in any direction, and commands keep clear of this region. An obstacle faster than stated
+/// can hit the arm, and so can any obstacle if the arm is cornered or too slow to give way.
 ///
 /// Args:
-///     shape: a shape of `bik.obstacles`, where it is now.
+///     shape: a shape of `bik.obstacles`, at its present position.
 ///     velocity: (3,) (m/s), in the frame of the robot's base.
 #[pyclass(name = "Moving", module = "beetle_ik.obstacles", frozen, eq)]
 #[derive(Debug, Clone, PartialEq)]
@@ -39,13 +39,13 @@ impl PyMoving {
         Ok(Self { shape: obstacle.get().core.clone(), velocity })
     }
 
-    /// The shape, where it is now.
+    /// The shape, at its present position.
     #[getter]
     fn shape(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         wrapped(py, &self.shape)
     }
 
-    /// Its velocity (3,) (m/s).
+    /// Velocity (3,) (m/s), in the frame of the robot's base.
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         copied(py, &self.velocity)

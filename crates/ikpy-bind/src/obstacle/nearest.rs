@@ -40,19 +40,19 @@ impl PyNearest {
         &self.body
     }
 
-    /// What it is near to: "obstacle 0 (Box)" or "link 'panda_link0'".
+    /// The other body: "obstacle 0 (Box)" or "link 'panda_link0'".
     #[getter]
     fn other(&self) -> &str {
         &self.other
     }
 
-    /// Distance between their surfaces (m); negative by how deep they reach into each other.
+    /// Distance between the two surfaces (m); minus the depth where they overlap.
     #[getter]
     fn distance(&self) -> f64 {
         self.distance
     }
 
-    /// The nearest point of the link (3,) (m), in the frame of the robot's base. That of the other body is
+    /// Nearest point of the link (3,) (m), in the frame of the robot's base. The nearest point of the other body is
     /// `point - distance * normal`.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
@@ -65,7 +65,7 @@ impl PyNearest {
         copied(py, &self.normal)
     }
 
-    /// Derivative of the distance by each joint (n,) (m/rad, m/m).
+    /// Derivative of the distance with respect to each joint (n,) (m/rad, m/m).
     #[getter]
     fn gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         copied(py, &self.gradient)
@@ -92,8 +92,8 @@ impl PyNearest {
     }
 }
 
-/// Returns the two bodies that are nearest to each other: a link and an obstacle, or two links; the deepest overlap if
-/// bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
+/// Returns the nearest two bodies: a link and an obstacle, or two links; if bodies overlap, the two with the deepest
+/// overlap. None if nothing can touch. Pairs and distance are defined as in `clearance`.
 ///
 /// Args:
 ///     robot: an arm with bodies.

@@ -44,7 +44,7 @@ pub struct PyBox {
     /// Edge lengths (3,) (m).
     #[pyo3(get)]
     pub(super) size: Coordinates<3>,
-    /// Its axes as columns (3, 3).
+    /// Rotation (3, 3); its columns are the axes of the shape.
     #[pyo3(get)]
     pub(super) rotation: Rotation,
 }
@@ -69,10 +69,10 @@ impl PyBox {
 /// A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,).
 #[pyclass(name = "Capsule", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyCapsule {
-    /// One end of its axis (3,) (m).
+    /// First end of the axis (3,) (m).
     #[pyo3(get)]
     pub(super) a: Coordinates<3>,
-    /// The other end (3,) (m).
+    /// Second end of the axis (3,) (m).
     #[pyo3(get)]
     pub(super) b: Coordinates<3>,
     /// Radius (m).
@@ -176,7 +176,7 @@ pub struct PyEllipsoid {
     /// Lengths of the semi-axes (3,) (m).
     #[pyo3(get)]
     pub(super) semi_axes: Coordinates<3>,
-    /// Its axes as columns (3, 3).
+    /// Rotation (3, 3); its columns are the axes of the shape.
     #[pyo3(get)]
     pub(super) rotation: Rotation,
 }

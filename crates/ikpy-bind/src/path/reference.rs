@@ -55,7 +55,7 @@ impl Traversed for Orientation {
     }
 }
 
-/// Half the time over which the velocity of a user's function is differenced, as a fraction of its duration.
+/// Half-width of the central difference for velocities of Python functions, as a fraction of the duration.
 const DIFFERENCE: f64 = 1e-5;
 
 #[pymethods]
@@ -74,7 +74,8 @@ impl PyPath {
         each(py, t, [3], |t| Ok(self.position_at(py, t)?.to_vec()))
     }
 
-    /// Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). For Python functions by central differences.
+    /// Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Velocities of Python functions are
+    /// central differences.
     fn velocity<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [3], |t| Ok(self.velocity_at(py, t)?.to_vec()))
     }
@@ -126,7 +127,7 @@ impl PyPath {
         self.state(py)?.hash()
     }
 
-    /// Functions of a module can be pickled, lambdas cannot.
+    /// Pickles the path. Functions of a module can be pickled, lambdas cannot.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         pickling::restored_from::<Self>(py, self.state(py)?)
     }

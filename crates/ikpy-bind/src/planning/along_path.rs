@@ -23,10 +23,11 @@ use crate::task::read_task;
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
+///     path: a `Path`, whose timing is ignored, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
 ///     start_q: joint positions (n,) at the start; None: chosen by the planner.
-///     task: which part of the poses matters, with a tool if need be, and how far each component may be off: at every instant
-///         within its `tolerance`; a component with weight 0 is free. The planner uses what is left free. None: all of it.
+///     task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
+///         `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
+///         whole pose.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
@@ -34,10 +35,10 @@ use crate::task::read_task;
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of, with "timed".
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
-///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
-///         decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
-///         the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. With a `task` that has
-///         tolerances it is a part of them: no more than the smallest.
+///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it
+///         (rad). It determines how many points of the path the motion passes. None: a thousandth of the path's extent,
+///         plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
+///         has tolerances, the accuracy is part of them and must not exceed the smallest.
 ///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
 ///         solver of its own.
 ///     stop: budgets; None: the method's own.
@@ -45,9 +46,9 @@ use crate::task::read_task;
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With obstacles
-///     a plan with success is certified to keep the margin at every instant; if none is found, the status is IN_COLLISION, and
-///     the message names the place on the path, the two bodies and the depth.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least. With
+///     obstacles, a successful plan is certified to keep the margin at every instant; if none is found, the status is
+///     IN_COLLISION, and the message names the place on the path, the two bodies and the depth.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
@@ -55,6 +56,14 @@ use crate::task::read_task;
 ///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
+///
+/// For example:
+///
+///     >>> arm = bik.Robot.planar([1.0, 1.0, 1.0])
+///     >>> star = bik.paths.pentagram((1.0, 1.0, 0.0), 5.0, radius=0.5)
+///     >>> plan = bik.plan_along_path(arm, star, limits=bik.Limits(velocity=3.0, acceleration=10.0))
+///     >>> plan.success
+///     True
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, task=None, limits=None, method=None, objective="time", obstacles=None,
                     margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),

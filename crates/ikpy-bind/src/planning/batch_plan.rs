@@ -24,7 +24,7 @@ use crate::traversal::traversed;
 /// batches.
 #[pyclass(name = "BatchPlan", module = "beetle_ik", frozen)]
 pub struct PyBatchPlan {
-    /// Each a `Plan`, or None where `errors` has an exception.
+    /// Plan of each problem, or None where `errors` has an exception.
     #[pyo3(get)]
     plans: Py<PyTuple>,
     /// The exception that `plan_point_to_point` raises for each problem; None where there is a plan.
@@ -33,8 +33,8 @@ pub struct PyBatchPlan {
     /// Whether each motion meets all requirements (m,).
     #[pyo3(get)]
     success: Py<PyArray1<bool>>,
-    /// How the planning of each ended (m,), values of `Status`: those of the plans; OUT_OF_REACH for an end that cannot be
-    /// reached, IN_COLLISION for one in collision, INVALID for any other error.
+    /// Status of each problem (m,), values of `Status`: the status of its plan, or else OUT_OF_REACH for an end out of
+    /// reach, IN_COLLISION for an end in collision, INVALID for any other error.
     #[pyo3(get)]
     status: Py<PyArray1<u8>>,
     /// Values of the objective (m,) (s, rad or m); NaN where there is no plan.
@@ -43,7 +43,7 @@ pub struct PyBatchPlan {
     /// Total time (s).
     #[pyo3(get)]
     elapsed: f64,
-    /// How many were planned, and why the others were not.
+    /// Number of planned motions, and the reasons for failures.
     #[pyo3(get)]
     message: String,
 }
@@ -56,8 +56,8 @@ impl PyBatchPlan {
         self.plans.bind(py).len()
     }
 
-    /// Returns a `Plan` or None, or a `BatchPlan` for a slice, a mask or several indices. The `elapsed` of such a part is the
-    /// sum over its plans.
+    /// Returns a `Plan` or None, or a `BatchPlan` for a slice, a mask or several indices. The `elapsed` of a selection
+    /// is the sum over its plans.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let (plans, errors) = (self.plans.bind(py), self.errors.bind(py));
         match select("a batch", index, plans.len())? {
@@ -108,7 +108,7 @@ impl PyBatchPlan {
 }
 
 impl PyBatchPlan {
-    /// Without `elapsed` it is the sum over the plans.
+    /// Makes a batch; `elapsed` defaults to the sum over the plans.
     fn new(
         plans: &Bound<'_, PyTuple>,
         errors: &Bound<'_, PyTuple>,
@@ -140,7 +140,7 @@ impl PyBatchPlan {
 /// Number of problems whose failure a message explains.
 const EXPLAINED: usize = 3;
 
-/// The number of motions that meet all requirements, and what is wrong with the first others.
+/// Returns the number of motions that meet all requirements, and the first reasons for failure.
 fn message(plans: &Bound<'_, PyTuple>, errors: &Bound<'_, PyTuple>, solved: &[bool]) -> PyResult<String> {
     let (total, count) = (solved.len(), solved.iter().filter(|solved| **solved).count());
     if total == 0 {
@@ -167,24 +167,33 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 
 /// Plans many motions at once, on all cores.
 ///
-/// Item i is bit-identical to what `plan_point_to_point` returns for problem i alone, for any number of threads.
+/// Item i is bit-identical to the result of `plan_point_to_point` for problem i, for any number of threads.
 ///
 /// Args:
 ///     robot: the arm.
-///     problems: a sequence of dicts of arguments of `plan_point_to_point`: start or start_q, end or end_q, and any other. A
-///         problem's own arguments override those given for all.
+///     problems: a sequence of dicts of arguments of `plan_point_to_point`: start or start_q, end or end_q, and any
+///         others. The arguments of a problem override the common ones.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///     approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
 ///         `plan_point_to_point`, for all problems.
 ///
 /// Returns:
-///     A `BatchPlan`. If planning one problem raises an error, such as for an end that cannot be reached or is in collision, the
-///     others are planned all the same: the plan is None, and the exception is in `errors`.
+///     A `BatchPlan`. A problem that raises an error, for example because an end is out of reach or in collision, does
+///     not stop the others: its plan is None, and the exception is in `errors`.
 ///
 /// Raises:
 ///     InvalidInputError: an argument that is no argument of `plan_point_to_point`, wrong shape, NaN (names the problem and
 ///         the argument), before anything is planned.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+///     >>> problems = [{"start_q": home, "end": [0.4, y, 0.3]} for y in (-0.2, 0.2, 5.0)]
+///     >>> plans = bik.plan_batch(robot, problems)
+///     >>> plans.success.tolist()
+///     [True, True, False]
 #[pyfunction]
 #[pyo3(signature = (robot, problems, *, threads=None, progress=None, approach=None, retreat=None, free_start=None, task=None,
                     limits=None, method=None, objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None),
@@ -239,10 +248,10 @@ pub fn plan_batch<'py>(
     Ok(batch)
 }
 
-/// Options of the core, with what the plan stores of the arguments.
+/// Options of the core, with the limits and obstacles that the plan stores.
 type Kept = Arc<ReadOptions>;
 
-/// Reads all problems. Those without options of their own share the common ones.
+/// Reads all problems; problems without options of their own share the common ones.
 fn read_problems<'py>(
     robot: &Bound<'py, PyRobot>,
     problems: &Bound<'py, PyAny>,
@@ -276,7 +285,7 @@ fn in_problem(py: Python<'_>, i: usize, error: &PyErr) -> PyErr {
     PyErr::from_type(error.get_type(py), format!("problems[{i}]: {}", error.value(py)))
 }
 
-/// The plans, and the exceptions of problems that have none.
+/// Returns the plans, and the exceptions of the problems without a plan.
 fn converted<'py>(
     robot: &Bound<'py, PyRobot>,
     results: Vec<ikcore::Result<Plan>>,

@@ -32,7 +32,7 @@ pub fn read_start(
     }
 }
 
-/// Reads the ends, one or several, given as targets or as joint positions; those of several tips are dicts.
+/// Reads the ends, one or several, given as targets or as joint positions; targets of several tips are dicts.
 pub fn read_ends(
     robot: &PyRobot,
     target: Argument<'_, '_>,
@@ -50,7 +50,7 @@ pub fn read_ends(
     }
 }
 
-/// What is for the only tip of a robot, without the dicts that may name it.
+/// Unwraps the dict that names the only tip of a robot, also within a list.
 pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let of_one = |name: &str, end: &Bound<'py, PyAny>| match end.is_instance_of::<PyDict>() {
         true => read_only(name, robot, end, |_, end| Ok(end.clone())),
@@ -65,7 +65,7 @@ pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyRes
     }
 }
 
-/// One or several targets.
+/// Reads one or several targets.
 fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     let numbers = array("end", value)?;
     refuse_angles("end", &numbers)?;
@@ -85,7 +85,7 @@ fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     }
 }
 
-/// One or several configurations; the core checks the number of joints.
+/// Reads one or several configurations; the core checks the number of joints.
 fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     let numbers = array("end_q", value)?;
     let rows = numbers.as_slice()?;
@@ -99,7 +99,7 @@ fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     }
 }
 
-/// The targets of several tips.
+/// Reads the targets of several tips.
 fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argument<'_, '_>) -> PyResult<Endpoint> {
     let asked = Asked::read(name, robot, target, read_target)?;
     let Tolerance { position, rotation } = Tolerance::default();
@@ -113,7 +113,7 @@ enum Given<'a, 'py> {
     Configuration(&'a Bound<'py, PyAny>),
 }
 
-/// The argument that was given, of the two that may be.
+/// Returns the argument that was given, a target or joint positions; an error unless it is exactly one.
 fn one_of<'a, 'py>(name: &str, target: Argument<'a, 'py>, q: Argument<'a, 'py>) -> PyResult<Given<'a, 'py>> {
     match (target, q) {
         (Some(target), None) => Ok(Given::Target(target)),
@@ -123,7 +123,7 @@ fn one_of<'a, 'py>(name: &str, target: Argument<'a, 'py>, q: Argument<'a, 'py>) 
     }
 }
 
-/// A single row that is no position is probably meant as joint angles.
+/// Refuses a row that is no position: it probably holds joint angles.
 fn refuse_angles(name: &str, numbers: &Numbers<'_>) -> PyResult<()> {
     match numbers.shape() {
         [n] if *n != 3 => Err(invalid(format!(

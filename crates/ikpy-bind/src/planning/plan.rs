@@ -22,15 +22,15 @@ use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
 
-/// A planned motion, and how its search ended.
+/// A planned motion, and the outcome of its search.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,
     /// The motion: the best one that meets all requirements, otherwise the one that violates them least.
     #[pyo3(get)]
     trajectory: Py<PyTrajectory>,
-    /// Progress of the search (h, 2): number of evaluations, lowest cost from then on. The cost includes penalties while the
-    /// plan has violations.
+    /// Progress of the search (h, 2): number of evaluations, lowest cost found by then. The cost includes penalties
+    /// while the plan has violations.
     #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
     /// Absolute orientations of the redundant links of a planar arm along the path (points, links, 3), as value, lowest and
@@ -49,7 +49,7 @@ pub struct PyPlan {
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
-    /// The smallest distance on the trajectory, once it was asked for.
+    /// Smallest distance on the trajectory, computed at the first access.
     least_distance: OnceLock<Option<(f64, Option<NearestContact>)>>,
 }
 
@@ -59,7 +59,7 @@ outcome! {
     PyPlan = |result|
     /// Whether the trajectory meets all requirements.
     success,
-    /// SOLVED on `success`; otherwise why the search ended.
+    /// SOLVED on `success`; otherwise the reason why the search ended.
     status: result.core.status,
     message: result.core.message(),
     /// Evaluations of the cost.
@@ -88,7 +88,7 @@ impl PyPlan {
         Ok(self.least_distance(py)?.as_ref().map_or(f64::NAN, |(clearance, _)| *clearance))
     }
 
-    /// The nearest two bodies, where on the trajectory they are nearest: a `Nearest`; None without obstacles.
+    /// Nearest two bodies over the whole trajectory, a `Nearest`; None without obstacles.
     #[getter]
     fn nearest(&self, py: Python<'_>) -> PyResult<Option<PyNearest>> {
         let nearest = self.least_distance(py)?.as_ref().and_then(|(_, nearest)| nearest.clone());
@@ -101,14 +101,14 @@ impl PyPlan {
         self.core.accuracy.unwrap_or(f64::NAN)
     }
 
-    /// Index of the end that was taken, of those given; None for a plan along a path.
+    /// Index of the chosen end among those given; None for a plan along a path.
     #[getter]
     fn chosen_end(&self) -> Option<usize> {
         self.core.chosen_end
     }
 
-    /// How the motion got out of a contact at its start, with `free_start=True`: the smallest distance at the start (m), below the
-    /// margin, and the time (s) from which on the margin is kept; None if the start was clear.
+    /// Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and
+    /// the time (s) from which on the margin is kept; None if the start was clear.
     #[getter]
     fn freed(&self) -> Option<(f64, f64)> {
         self.core.freed.map(|freed| (freed.clearance, freed.until))
@@ -120,13 +120,13 @@ impl PyPlan {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
-    /// Returns the plan with other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+    /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
     ///
-    /// A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as a
-    /// whole and passes the very same configurations.
+    /// A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
+    /// a whole and passes exactly the same configurations.
     ///
     /// Args:
-    ///     limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
+    ///     limits: position, velocity, acceleration and jerk limits; a field left out is the robot's.
     ///
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
@@ -192,7 +192,7 @@ impl PyPlan {
         })
     }
 
-    /// Finds the smallest distance when it is first asked for.
+    /// Returns the smallest distance, computed at the first access.
     fn least_distance(&self, py: Python<'_>) -> PyResult<&Option<(f64, Option<NearestContact>)>> {
         if let Some(known) = self.least_distance.get() {
             return Ok(known);

@@ -32,14 +32,14 @@ pub struct EndArguments<'py> {
 }
 
 impl EndArguments<'_> {
-    /// Converts them to the start and the possible ends; `task` is for their targets of several tips.
+    /// Converts the arguments to the start and the possible ends; `task` applies to targets of several tips.
     pub fn read(&self, robot: &PyRobot, task: &Argument<'_>) -> PyResult<(Endpoint, Vec<Endpoint>)> {
         let start = read_start(robot, self.start.as_ref(), self.start_q.as_ref(), task.as_ref())?;
         Ok((start, read_ends(robot, self.end.as_ref(), self.end_q.as_ref(), task.as_ref())?))
     }
 }
 
-/// The other arguments as passed from Python; None: the default.
+/// Arguments of a plan other than its ends, as passed from Python; None: the default.
 #[derive(Default, Clone)]
 pub struct PlanArguments<'py> {
     pub start_qd: Argument<'py>,
@@ -57,7 +57,7 @@ pub struct PlanArguments<'py> {
     pub seed: Argument<'py>,
 }
 
-/// The options of a plan, and what its result stores of the arguments.
+/// Options of a plan, and the arguments that its result stores.
 pub struct ReadOptions {
     pub core: Arc<PointToPointOptions>,
     pub limits: Py<PyLimits>,
@@ -70,7 +70,7 @@ impl PlanArguments<'_> {
         self.read_among(py, robot, GivenObstacles::read(py, self.obstacles.as_ref())?)
     }
 
-    /// The same for a problem that may override some of the arguments of `all`. Obstacles of all are not read again.
+    /// Converts the arguments of a problem that may override some of `all`. Common obstacles are not read again.
     pub fn read_over(
         &self,
         py: Python<'_>,
@@ -99,7 +99,7 @@ impl PlanArguments<'_> {
             approach: read_line("approach", self.approach.as_ref())?,
             retreat: read_line("retreat", self.retreat.as_ref())?,
             free_start: extracted("free_start", self.free_start.as_ref())?.unwrap_or(false),
-            // That of several tips goes with their targets.
+            // Tasks of several tips belong to their targets.
             task: match &self.task {
                 Some(task) if robot.core.tip_count() == 1 => read_task(Some(&plain("task", robot, task)?))?,
                 _ => None,
@@ -117,8 +117,8 @@ impl PlanArguments<'_> {
     }
 }
 
-/// Reads the arguments of one problem from its dict. The options are those of `common` where the dict has none; None if it has
-/// none at all.
+/// Reads the arguments of one problem from its dict. Missing options come from `common`; the options are None if the
+/// dict has none.
 pub fn read_problem<'py>(
     problem: &Bound<'py, PyAny>,
     common: &PlanArguments<'py>,
@@ -143,14 +143,14 @@ pub fn read_problem<'py>(
     Ok((ends, own))
 }
 
-/// Gives the fields of a struct of arguments by their names.
+/// Defines access to the fields of a struct of arguments by name.
 macro_rules! named {
     ($class:ident: $($field:ident),+) => {
         impl<'py> $class<'py> {
             /// The names of the arguments.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
 
-            /// The argument of this name, if there is one.
+            /// Returns the argument of this name, if there is one.
             fn named(&mut self, name: &str) -> Option<&mut Argument<'py>> {
                 match name {
                     $(stringify!($field) => Some(&mut self.$field),)+
@@ -167,13 +167,13 @@ named!(
     self_collision, stop, seed
 );
 
-/// Extracts a number or a truth value, with the error for an argument of a function.
+/// Extracts a number or a truth value; errors name the argument.
 fn extracted<T: for<'py> FromPyObjectOwned<'py>>(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<T>> {
     let Some(value) = value else { return Ok(None) };
     value.extract::<T>().map(Some).map_err(|error| in_argument(name, value, error.into()))
 }
 
-/// Casts an argument to its class, with the same error.
+/// Casts an argument to its class; errors name the argument.
 fn cast<'py, T: pyo3::PyTypeInfo>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, T>> {
     value.cast::<T>().cloned().map_err(|error| in_argument(name, value, error.into()))
 }

@@ -9,22 +9,22 @@ use crate::monitor::{Watcher, watched};
 use crate::python_calls;
 use crate::robot::PyRobot;
 
-/// Plans a motion between two ends, to rest at the end.
+/// Plans a motion between two ends, which comes to rest at the second.
 ///
 /// Args:
 ///     robot: the arm.
-///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends, (k, 3) or
-///         (k, 4, 4), are alternatives, such as grasps: the planner takes the one with the lowest cost, `Plan.chosen_end`.
-///         For a robot with several `tips` dicts of them, as for `solve`; several ends are a list of dicts.
+///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration. Several ends,
+///         (k, 3) or (k, 4, 4), are alternatives, for example grasps: the planner takes the one with the lowest cost,
+///         `Plan.chosen_end`. For a robot with several `tips`, dicts as for `solve`; several ends are a list of dicts.
 ///     start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
 ///     start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
 ///         rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
-///     approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`. The
-///         orientation is constant on it, and the tip stays within 0.1 mm of it. It begins and ends at rest.
-///     retreat: the same after the start, against the z axis.
-///     free_start: whether a start that is nearer to something than the margin moves out first, `Plan.freed`, by a piece on which
-///         no two bodies come nearer than they are at the start.
-///     task: which part of the poses counts, one of `tasks`, as for `solve`; None: all of it.
+///     approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`.
+///         The line has constant orientation, begins and ends at rest, and is followed within 0.1 mm.
+///     retreat: straight line of the tip after the start, against the z axis, otherwise like `approach`.
+///     free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
+///         bodies come nearer than at the start; see `Plan.freed`.
+///     task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -45,6 +45,15 @@ use crate::robot::PyRobot;
 ///     LimitError: limits that contradict each other or exclude an end.
 ///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> home = [0, -1.5, 1.5, -1.5, -1.5, 0]
+///     >>> limits = bik.Limits(acceleration=10.0)
+///     >>> plan = bik.plan_point_to_point(robot, start_q=home, end=[0.4, 0.1, 0.3], limits=limits)
+///     >>> plan.success
+///     True
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, approach=None, retreat=None,
                     free_start=None, task=None, limits=None, method=None, objective=None, obstacles=None, margin=None,

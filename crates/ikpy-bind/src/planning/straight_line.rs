@@ -17,8 +17,9 @@ use crate::options::{NewArguments, Shown, keywords, list_text};
 ///     direction: (3,), direction of the motion, of any nonzero length; None: along the tip's z axis towards the end, against
 ///         it from the start.
 ///     frame: frame of the direction, "tip" or "base".
-///     touch: contacts that are allowed on this line alone, such as those of a hand that closes on a part: names of links that may
-///         touch any obstacle, or a dict from the index of an obstacle to the names of links that may touch it.
+///     touch: contacts that are allowed on this line alone, for example of a hand that closes on a part: names of links
+///         that may touch any obstacle, or a dict from the index of an obstacle to the names of links that may touch
+///         it.
 #[pyclass(name = "StraightLine", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyStraightLine(StraightLine);

@@ -37,6 +37,13 @@ use crate::trajectory::{PyTrajectory, names};
 ///     InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
 ///     InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+///
+/// For example:
+///
+///     >>> limits = bik.Limits(velocity=2.0, acceleration=5.0)
+///     >>> motion = bik.time_optimal([[0, 0], [1, 0.5], [0, 1]], limits)
+///     >>> round(motion.duration, 1)
+///     1.8
 #[pyfunction]
 #[pyo3(signature = (waypoints_q, limits, *, knots=None, spline="natural", blend=None, gridpoints=None, start_speed=0.0,
                     end_speed=0.0, joint_names=None))]

@@ -13,7 +13,7 @@ use crate::options::{NewArguments, keywords};
 use crate::solver::{derivative_free_solver, derivative_free_to_python};
 
 /// Trajectory planning by beetle swarm optimisation (Wang et al. 2019), as `method=` of `plan_point_to_point` and
-/// `plan_along_path`. The string "tpbso" stands for `TPBSO()`.
+/// `plan_along_path`. The string "tpbso" means `TPBSO()`.
 ///
 /// Args:
 ///     elbows: sign of the second joint's angle at start and end of a planar arm's motion, 1 or -1. At an end given by

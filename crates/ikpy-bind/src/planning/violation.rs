@@ -15,7 +15,7 @@ pub struct PyViolation(pub Violation);
 
 #[pymethods]
 impl PyViolation {
-    /// The quantity that exceeds it, such as "velocity of joint 'elbow'".
+    /// The quantity that exceeds the bound, for example "velocity of joint 'elbow'".
     #[getter]
     fn what(&self) -> &str {
         &self.0.what
@@ -33,7 +33,7 @@ impl PyViolation {
         self.0.bound
     }
 
-    /// The unit, such as "rad/s".
+    /// Unit of value and bound, for example "rad/s".
     #[getter]
     fn unit(&self) -> &str {
         &self.0.unit

@@ -18,7 +18,7 @@ pub struct PyBody {
 
 #[pymethods]
 impl PyBody {
-    /// The link that carries it.
+    /// Name of the link that carries the body.
     #[getter]
     fn link(&self) -> &str {
         &self.core.link
@@ -30,7 +30,7 @@ impl PyBody {
         wrapped(py, &self.core.shape)
     }
 
-    /// Where it comes from: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file.
+    /// Origin of the body: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file.
     #[getter]
     fn source(&self) -> String {
         self.core.source.to_string()

@@ -35,9 +35,9 @@ fn ends<'py>(py: Python<'py>, robot: &Robot) -> PyResult<[Bound<'py, PyArray2<f6
     Ok([pose_array(py, robot.base())?, pose_array(py, robot.tool())?])
 }
 
-/// (name, kind, lower, upper, velocity).
+/// Joint: (name, kind, lower, upper, velocity).
 type JointParts = (String, String, f64, f64, f64);
-/// (joint, turns, axis, scale, offset).
+/// Moving element: (joint, turns, axis, scale, offset).
 type MovingParts<'py> = (usize, bool, Bound<'py, PyAny>, f64, f64);
 
 /// Makes a robot from joints and from the elements that follow link `base`.
@@ -69,15 +69,15 @@ fn append(chain: &mut ChainBuilder, element: &Bound<'_, PyTuple>) -> PyResult<()
 
 #[pymethods]
 impl PyRobot {
-    /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
+    /// Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`.
     fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.core.require_one_tip("interop").map_err(raise)?;
         let [base, tool] = ends(py, &self.core)?;
         (base, elements(py, &self.core)?, tool).into_pyobject(py)
     }
 
-    /// For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
-    /// joint, turns, axis (3,), scale, offset) or ("link", name).
+    /// Makes a robot for `beetle_ik.interop`. Joints are (name, kind, lower, upper, velocity); elements are ("fixed",
+    /// pose (4, 4)), ("moving", joint, turns, axis (3,), scale, offset) or ("link", name).
     #[staticmethod]
     fn _from_chain(
         name: &str,

@@ -23,19 +23,21 @@ impl PyRobot {
     ///     path_or_xml: a file, or text that contains "<". A file of xacro is expanded by the package xacro, of the extra
     ///         "robots".
     ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
-    ///     tip: link at the end of the chain, or a list of several, such as ["left_tool", "right_tool"]; None: the only leaf. Of
-    ///         several, q holds the joints of one chain after another, shared ones once.
-    ///     hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
-    ///         the limit nearest to it.
+    ///     tip: link at the end of the chain, or a list of several, for example ["left_tool", "right_tool"]; None: the
+    ///         only leaf. With several tips, q holds the joints of one chain after another, shared joints once.
+    ///     hold: values (rad, m) of joints beside the chain, for example {"finger_joint": 0.04}; the others are held at
+    ///         zero, or at the limit nearest to zero.
     ///     srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
-    ///     collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become capsules that
-    ///         enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
-    ///         hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. "hulls": meshes become
-    ///         their convex hulls, and the other shapes stay as they are: closer than capsules, and slower. None: none is read.
-    ///     package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
-    ///         AMENT_PREFIX_PATH, and the folders above the file.
-    ///     trusted: whether a xacro file may do all that xacro can: execute expressions of any kind, read the environment and
-    ///         any file. False: it may come from anyone; what it may do is on the page on robots, and all else is refused.
+    ///     collision: treatment of collision shapes. "primitives": spheres, cylinders, capsules and boxes become
+    ///         capsules that enclose them; meshes are listed in `unread_collision_shapes`. "fit": in
+    ///         addition, each mesh (STL, OBJ, DAE) becomes a few capsules that enclose it; `mesh_fits` gives their
+    ///         quality. The fits are kept in the user's cache directory. "hulls": meshes become their convex hulls, and
+    ///         the other shapes keep their form: closer than capsules, and slower. None: no shape is read.
+    ///     package_dirs: folders that are searched first for `package://`, before the variables ROS_PACKAGE_PATH and
+    ///         AMENT_PREFIX_PATH and the folders above the file.
+    ///     trusted: whether a xacro file may do everything that xacro offers: execute any expression, read the
+    ///         environment and any file. False: the file may come from anyone; whatever the page on robots does not
+    ///         list is refused.
     ///
     /// Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
     /// `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
@@ -88,15 +90,17 @@ impl PyRobot {
     ///     base: body whose frame is the reference frame; None: "world".
     ///     tip: body or site at the end of the chain, or a list of several; None: the only leaf body.
     ///     hold, collision: as in `from_urdf`.
-    ///     trusted: whether the model may name files outside its folder, and plugins. False: it may come from anyone.
+    ///     trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
+    ///         anyone.
     ///
-    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
-    /// follow their master. Geoms that collide become bodies; ellipsoids, planes and height fields are named, not read.
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples
+    /// linearly follow their master. Geoms that collide become bodies, except ellipsoids, planes and height fields,
+    /// which are listed in `unread_collision_shapes`.
     ///
     /// Raises:
     ///     BeetleIkError: MuJoCo is not installed.
     ///     UnknownNameError: no body or site of that name; the message lists them.
-    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
+    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or a joint coupled in
     ///         another way.
     #[staticmethod]
     #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives"), trusted=false),
@@ -114,13 +118,14 @@ impl PyRobot {
         python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision, trusted))
     }
 
-    /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, such as
-    /// "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra "robots".
+    /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
+    /// example "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra
+    /// "robots".
     ///
     /// Args:
     ///     name: a name of robot_descriptions; of example-robot-data, that of a folder or of a URDF.
     ///     base, tip, hold: as in `from_urdf`.
-    ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take no SRDF.
+    ///     srdf, collision: as in `from_urdf`; None: the default of that constructor. MuJoCo models take no SRDF.
     ///     trusted: as in `from_urdf` and `from_mjcf`.
     ///
     /// Raises:
@@ -241,7 +246,7 @@ impl PyRobot {
     }
 }
 
-/// Whether a file is xacro: by its name or, as many end in ".urdf", by what it contains.
+/// Whether a file is xacro: by its name or, since many end in ".urdf", by its content.
 fn is_xacro(source: &str) -> bool {
     let file = Path::new(source);
     let contains_xacro = || std::fs::read_to_string(file).is_ok_and(|text| text.contains("<xacro:"));
@@ -258,7 +263,7 @@ fn read_collision(name: Option<&str>) -> PyResult<CollisionShapes> {
     }
 }
 
-/// Reads `collision`, also where it is no text: `True` is a natural mistake.
+/// Reads `collision`. A value that is no text, for example `True`, gets the error that lists the names.
 fn collision_name<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str>> {
     let readable = value.is_none() || value.is_instance_of::<PyString>();
     if readable { optional_text(value) } else { Err(unknown_collision(&summary(value))) }
@@ -268,7 +273,7 @@ fn unknown_collision(got: &str) -> PyErr {
     invalid(format!("collision must be one of 'primitives', 'fit', 'hulls' or None, got {got}"))
 }
 
-/// Reads the names of tips: a list, or one.
+/// Reads one or several names of tips.
 fn read_tips(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     if value.is_instance_of::<PyString>() {
         return text(value).map(|name| vec![name.to_owned()]);
@@ -280,7 +285,7 @@ fn read_tips(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     }
 }
 
-/// Reads a list of folders, or one.
+/// Reads one or several folders.
 fn read_folders(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     let folders = match value.extract::<PathBuf>() {
         Ok(folder) => vec![folder],

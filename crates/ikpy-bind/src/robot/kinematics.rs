@@ -13,9 +13,9 @@ use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
-    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. Of a robot with several tips
-    /// those of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`, that of any link of the robot;
-    /// `all_link_names` lists them.
+    /// Returns the pose of the tip by forward kinematics: (4, 4) for q (n,), (m, 4, 4) for q (m, n). A robot with
+    /// several tips gives the poses of all, (tips, 4, 4) or (m, tips, 4, 4), in the order of `tips`. With `link`,
+    /// returns the pose of any link of the robot; `all_link_names` lists them.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -75,9 +75,10 @@ impl PyRobot {
         table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
     }
 
-    /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-    /// then angular rows, along the axes of the base. Of a robot with several tips those of all, (tips, 6, n) or (m, tips, 6, n).
-    /// With `link`, that of the origin of any link of the robot; `all_link_names` lists them.
+    /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or
+    /// m), then angular rows, along the axes of the base. A robot with several tips gives the Jacobians of all, (tips,
+    /// 6, n) or (m, tips, 6, n). With `link`, returns the Jacobian at the origin of any link of the robot;
+    /// `all_link_names` lists them.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -105,7 +106,8 @@ impl PyRobot {
         }
     }
 
-    /// Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero.
+    /// Draws m configurations uniformly within the limits, (m, n); joints without limits within one turn, or 2 m,
+    /// around zero.
     #[pyo3(signature = (m, seed=0))]
     fn random_configurations<'py>(
         &self,
@@ -120,7 +122,7 @@ impl PyRobot {
 }
 
 impl PyRobot {
-    /// Matrices of this `shape`, one for each of several tips, at one configuration or many.
+    /// Returns matrices of this `shape`, one for each of several tips, at one configuration or many.
     fn of_all_tips<'py>(
         &self,
         py: Python<'py>,

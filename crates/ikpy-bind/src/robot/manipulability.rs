@@ -103,17 +103,18 @@ impl PyRobot {
         Ok(row(q.py(), gradient))
     }
 
-    /// Returns the manipulability of the tip of each moving link, moved by the joints before it, times the volume of the unit
-    /// ball (pi in the plane): (links,), the tip's last. The sum measures the manipulability of the whole arm.
+    /// Returns the manipulability of each moving link (links,), the tip's last: of the link's tip, moved by the joints
+    /// before it, times the volume of the unit ball (pi in the plane). The sum measures the manipulability of the whole
+    /// arm.
     ///
-    /// A link with fewer joints before it than directions has zero. `motion` as in `manipulability`.
+    /// It is zero for a link with fewer joints before it than directions. `motion` is as in `manipulability`.
     #[pyo3(signature = (q, *, motion="position"))]
     fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (measure, values) = self.measure_at(q, motion)?;
         Ok(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec()))
     }
 
-    /// Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` as in `manipulability`.
+    /// Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` is as in `manipulability`.
     #[pyo3(signature = (q, *, motion="position"))]
     fn velocity_ellipsoid(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<PyVelocityEllipsoid> {
         let (measure, values) = self.measure_at(q, motion)?;
@@ -122,7 +123,7 @@ impl PyRobot {
 }
 
 impl PyRobot {
-    /// Reads the arguments of the methods above.
+    /// Reads the arguments of the manipulability methods.
     fn measure_at(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<(Manipulability, Vec<f64>)> {
         let motion: Motion = motion.parse().map_err(raise)?;
         let q = vector("joint angles", q)?;

@@ -21,10 +21,10 @@ use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::tip_keys::TipKeys;
 
-/// (link, a (3,), b (3,), radius (m)).
+/// Capsule of a link: (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
-/// (link, shape or file, placement (4, 4), colour (4,)).
+/// Visual shape: (link, shape or file, placement (4, 4), colour (4,)).
 type VisualParts<'py> = (String, Py<PyAny>, Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray1<f64>>>);
 
 fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'py>> {
@@ -42,14 +42,16 @@ fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'
 /// A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
 /// Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
 ///
-/// Joint vectors hold the n independent joints in chain order (rad, m), those of several chains one chain after another, shared ones
-/// once; mimic joints follow them, and joints beside the chains are held. Poses are 4x4 matrices in the frame of the robot's base.
+/// A joint vector q holds the n independent joints in chain order (rad, m): with several tips one chain after another,
+/// shared joints once. Mimic joints follow their masters, and joints beside the chains are held. Poses are 4x4 matrices
+/// in the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
-    /// Made on first use: most results only store it. Holds numbers alone, so that no cycle can pass through it.
+    /// Limits as a Python object, made at the first access. They hold only numbers, so that no reference cycle passes
+    /// through them.
     limits: PyOnceLock<Py<PyLimits>>,
-    /// Its tips, for results.
+    /// Names of the tips, for results.
     pub tips: TipKeys,
 }
 
@@ -98,19 +100,19 @@ impl PyRobot {
         self.core.joints().iter().map(|joint| joint.kind.name()).collect()
     }
 
-    /// Names of the tips' links: one for a chain. Dicts of targets, tasks, paths and tolerances have these keys, and `errors` of
-    /// results.
+    /// Names of the tips' links, one for a single chain. They are the keys of dicts of targets, tasks, paths and
+    /// tolerances, and of `errors` in results.
     #[getter]
     fn tips(&self) -> Vec<&str> {
         self.core.tips().collect()
     }
 
-    /// For drawings: the names of the links from the base to each tip.
+    /// Returns the names of the links from the base to each tip, for drawings.
     fn _links_to_tips(&self) -> Vec<Vec<&str>> {
         self.core.links_to_tips()
     }
 
-    /// Names of the links along the chain (of several, that to the first tip), base first, tip last.
+    /// Names of the links along the chain, base first, tip last; with several tips, along the chain to the first.
     #[getter]
     fn link_names(&self) -> Vec<&str> {
         self.core.link_names().collect()
@@ -146,8 +148,9 @@ impl PyRobot {
         row(py, self.core.joints().iter().map(|joint| joint.velocity).collect())
     }
 
-    /// The structure that the closed form of the inverse kinematics rests on, and how many solutions a pose has at most, such as
-    /// "spherical wrist; at most 8 solutions"; or "none: " and the reason. Decided at the first call.
+    /// Structure of the arm on which its closed-form inverse kinematics rests, and the largest number of solutions of a
+    /// pose, for example "spherical wrist; at most 8 solutions"; or "none: " and the reason. Determined at the first
+    /// access.
     #[getter]
     fn closed_form(&self) -> String {
         self.core.closed_form()
@@ -160,39 +163,40 @@ impl PyRobot {
         Ok(limits.clone_ref(py))
     }
 
-    /// The limits that the maker rates the arm for: `limits`, with acceleration and jerk limits where it publishes them
-    /// (`panda` and `fr3`, from the maker's "Robot and interface specifications"). Give them as `limits=` where they are
-    /// wanted; nothing uses them on its own.
+    /// The maker's rated limits: `limits`, plus acceleration and jerk limits where the maker publishes them (`panda`
+    /// and `fr3`, from the maker's "Robot and interface specifications"). Pass them as `limits=`: no call uses them by
+    /// default.
     #[getter]
     fn rated_limits(&self) -> PyLimits {
         PyLimits::rated(&self.core)
     }
 
-    /// The bodies on the links, by which collisions are found: those given by `with_capsules`, attached by `with_attached`, or
-    /// read from the collision shapes of a file.
+    /// Bodies of the links, used for collision tests: given by `with_capsules`, attached by `with_attached`, or read
+    /// from the collision shapes of a file.
     #[getter]
     fn bodies(&self) -> Vec<PyBody> {
         self.core.bodies().iter().map(|body| PyBody { core: body.clone() }).collect()
     }
 
-    /// A capsule around each of the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment from a
-    /// (3,) to b (3,) in the frame of the link. Spheres and capsules are their own.
+    /// Capsules that enclose the `bodies`, each (link, a, b, radius): all points within the radius (m) of the segment
+    /// from a (3,) to b (3,) in the frame of the link. Spheres and capsules are unchanged.
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
         capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
-    /// Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
-    /// of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+    /// Quality of the capsules fitted to meshes, each (link, file, volume ratio, largest distance): the volume of the
+    /// capsules over that of the mesh, NaN for an open mesh, and the largest distance (m) of the capsules from the
+    /// mesh.
     #[getter]
     fn mesh_fits(&self) -> Vec<(String, String, f64, f64)> {
         let fits = self.core.mesh_fits().iter();
         fits.map(|fit| (fit.link.clone(), fit.file.clone(), fit.volume_ratio, fit.largest_distance)).collect()
     }
 
-    /// Reads the meshes of the collision shapes whose files were found when the robot was loaded from a URDF file, each (link,
-    /// `obstacles.Mesh` in the frame of the link).
+    /// Reads the collision meshes of a robot from a URDF, each (link, `obstacles.Mesh` in the frame of the link). Only
+    /// files that were found when the URDF was loaded are read.
     ///
     /// Raises:
     ///     InvalidInputError: a file that is no longer there, or cannot be read.
@@ -204,32 +208,33 @@ impl PyRobot {
         links.zip(read).map(|(link, mesh)| Ok((link, wrapped(py, &mesh)?))).collect()
     }
 
-    /// Collision shapes that did not become `bodies`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` and
-    /// `"hulls"` read meshes.
+    /// Collision shapes that did not become `bodies`, for example "a mesh of link 'hand'".
+    /// `from_urdf(..., collision="fit")` and `"hulls"` read meshes.
     #[getter]
     fn unread_collision_shapes(&self) -> Vec<String> {
         self.core.unread_collision_shapes().to_vec()
     }
 
-    /// The visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of `bik.obstacles`, or the
-    /// path of a mesh file, as the URDF names it where it was not found; the placement takes it to the frame of the link, to scale.
-    /// Colours are red, green, blue and opacity, from 0 to 1; materials of the file come before them.
+    /// Visual shapes of a URDF, each (link, shape, placement (4, 4), colour (4,) or None). The shape is one of
+    /// `bik.obstacles`, or the path of a mesh file, as written in the URDF if the file was not found. The placement
+    /// maps it to the frame of the link and includes its scale. Colours are red, green, blue and opacity, from 0 to 1;
+    /// materials of a mesh file take precedence.
     #[getter]
     fn visuals<'py>(&self, py: Python<'py>) -> PyResult<Vec<VisualParts<'py>>> {
         self.core.visuals().iter().map(|visual| visual_parts(py, visual)).collect()
     }
 
-    /// Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
-    /// an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
-    /// ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the
-    /// first call, always alike.
+    /// Pairs of links that are tested against each other, each (link, link). Links fixed to each other are left out.
+    /// Without an SRDF and `with_collision_pairs`, three more kinds of pairs are left out: neighbours, links that touch
+    /// with all joints in the middle of their ranges or in nearly all of 1,000 random configurations, and links that
+    /// come no nearer than 20 mm in 10,000. Determined at the first access, with a fixed seed.
     #[getter]
     fn collision_pairs(&self, py: Python<'_>) -> Vec<(String, String)> {
         let pairs = py.detach(|| self.core.collision_pairs());
         pairs.into_iter().map(|[one, other]| (one.to_owned(), other.to_owned())).collect()
     }
 
-    /// Named configurations (n,) of an SRDF, such as "ready".
+    /// Named configurations (n,) of an SRDF, for example "ready".
     #[getter]
     fn stances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.core.stances().iter().map(|stance| (stance.name.as_str(), row(py, stance.q.clone()))).into_py_dict(py)

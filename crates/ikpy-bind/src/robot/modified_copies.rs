@@ -42,8 +42,9 @@ impl PyRobot {
         self.core.with_limits(change).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy on a mobile base, whose joints come first in `q`. Poses are then those in the frame of a new first link,
-    /// "world"; the base pose of this robot is how it is mounted. In named configurations the base is at zero.
+    /// Returns a copy on a mobile base, whose joints come first in `q`. Poses then refer to a new first link, "world",
+    /// and the base pose of this robot becomes its mounting on the mobile base. In named configurations the base is at
+    /// zero.
     ///
     /// Args:
     ///     kind: "planar": base_x, base_y (m) and base_yaw (rad). "floating": base_x, base_y, base_z (m) and base_rx, base_ry,
@@ -85,7 +86,8 @@ impl PyRobot {
         self.core.with_mobile_base(base, &limits).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+    /// Returns a copy with other values (rad, m) of joints beside the chain, for example
+    /// `with_held({"finger_joint": 0.04})`.
     ///
     /// Raises:
     ///     UnknownNameError: no held joint of that name; the message lists them.
@@ -96,13 +98,13 @@ impl PyRobot {
         self.core.with_held(held).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, such as a grasped part.
+    /// Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, for example a grasped part.
     ///
     /// Args:
     ///     link: the link that carries it.
     ///     shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`.
-    ///     touch: links that it may touch, besides those that move with `link`.
-    ///     name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
+    ///     touch: links that the shape may touch, besides those that move with `link`.
+    ///     name: name of the body in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -122,7 +124,7 @@ impl PyRobot {
         self.core.with_attached(link, &shape.get().core, &touch, name).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy with these pairs of links tested against each other, and no others: each (link, link). To leave some out:
+    /// Returns a copy that tests exactly these pairs of links against each other, each (link, link). To exclude a link:
     /// `robot.with_collision_pairs([pair for pair in robot.collision_pairs if "camera" not in pair])`.
     ///
     /// Raises:
@@ -135,18 +137,19 @@ impl PyRobot {
         self.core.with_collision_pairs(pairs).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy with what an SRDF says: `path_or_xml` is a file, or text that contains "<". Pairs of links that it disables
-    /// are not tested against each other, and its states that give all joints of the robot become `stances`.
+    /// Returns a copy with the disabled pairs and named states of an SRDF; `path_or_xml` is a file, or text that
+    /// contains "<". Disabled pairs of links are not tested against each other, and states that give all joints of the
+    /// robot become `stances`.
     ///
     /// Raises:
-    ///     UrdfError: no SRDF, or that of another robot.
+    ///     UrdfError: not an SRDF, or the SRDF of another robot.
     fn with_srdf(&self, path_or_xml: &Bound<'_, PyAny>) -> PyResult<Self> {
         self.core.with_srdf(&path_or_text("path_or_xml", path_or_xml)?).map(Self::from).map_err(raise)
     }
 
-    /// Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
-    /// b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the tip:
-    /// set a tool first. The gap that a prismatic joint opens between two links is not covered.
+    /// Returns a copy with collision capsules: one of `radius` (m) along each link, or the given ones, each (link, a,
+    /// b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the
+    /// tip, so set a tool first. The gap that a prismatic joint opens between two links is not covered.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -190,7 +193,7 @@ pub fn read_hold(value: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
     Ok(held.into_iter().collect())
 }
 
-/// (link, a, b, radius).
+/// Reads a capsule (link, a, b, radius).
 fn read_capsule(i: usize, value: &Bound<'_, PyAny>) -> PyResult<LinkCapsule> {
     type Parts<'py> = (String, Bound<'py, PyAny>, Bound<'py, PyAny>, f64);
     let (link, a, b, radius) = value

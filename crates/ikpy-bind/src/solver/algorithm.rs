@@ -21,7 +21,7 @@ macro_rules! solvers {
     (derivative_free: $($simple:ident = $simple_class:ident),+; with_more: $($richer:ident = $richer_class:ident),+ $(;)?) => {
         /// Names of the derivative-free solvers, for messages.
         pub(super) const DERIVATIVE_FREE: &[&str] = &[$(<$simple_class as PyClass>::NAME),+];
-        /// Names of the others.
+        /// Names of the solvers that need more than values, for messages.
         const WITH_MORE: &[&str] = &[$(<$richer_class as PyClass>::NAME),+];
 
         pub(super) fn add_classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -30,7 +30,7 @@ macro_rules! solvers {
             Ok(())
         }
 
-        /// Returns the algorithm in a Python value; None for anything else.
+        /// Returns the algorithm in a Python value; None if it is no solver.
         pub(super) fn algorithm(value: &Bound<'_, PyAny>) -> Option<Algorithm> {
             $(if let Ok(solver) = value.cast::<$simple_class>() {
                 return Some(solver.get().0.clone().into());
@@ -65,7 +65,7 @@ pub fn solver_names() -> String {
     format!("{} or MultiStart of one of them", [DERIVATIVE_FREE, WITH_MORE].concat().join(", "))
 }
 
-/// The error for a `solver` argument that is no solver.
+/// Returns the error for a `solver` argument that is no solver.
 pub(super) fn not_a_solver(value: &Bound<'_, PyAny>) -> PyErr {
     let object =
         if value.is_instance_of::<PyString>() { ": give an object, such as bik.LevenbergMarquardt()" } else { "" };

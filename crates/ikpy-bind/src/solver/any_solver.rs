@@ -13,7 +13,7 @@ pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
     known_solver(solver).ok_or_else(|| not_a_solver(solver))
 }
 
-/// Returns the solver in a Python value; None for anything else.
+/// Returns the solver in a Python value; None if it is no solver.
 pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
     let multi_start = || value.cast::<PyMultiStart>().ok().map(|solver| AnySolver::MultiStart(solver.get().0.clone()));
     algorithm(value).map(AnySolver::Single).or_else(multi_start)

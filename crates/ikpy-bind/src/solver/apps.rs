@@ -48,11 +48,11 @@ impl PyApps {
 
 options! {
     PyApps, "APPS" {
-        /// eta of eq. (13), or "auto".
+        /// Learning rate eta of eq. (13), or "auto".
         learning_rate: LearningRate,
         /// Largest change of a joint per iteration (rad or m).
         step_limit: f64,
-        /// E_0, or None.
+        /// Error threshold E_0, or None.
         error_threshold: Option<f64>,
     }
 }

@@ -53,7 +53,7 @@ impl PyBas {
 
 options! {
     PyBas, "BAS" {
-        /// "star", "chain" or "greedy".
+        /// Variant of the algorithm: "star", "chain" or "greedy".
         variant: BasVariant,
         /// Ratio of antenna length to error (rad per m).
         c1: f64,

@@ -7,7 +7,7 @@ use crate::error::raise;
 use crate::options::options;
 
 /// Levenberg-Marquardt with the analytic Jacobian, inside the limits: joints at a bound are held, and the step is solved
-/// again for the others.
+/// again for the other joints.
 ///
 /// Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
 ///

@@ -13,7 +13,7 @@ use crate::options::NewArguments;
 /// Restarts a solver from random starts when it stalls or makes too little progress.
 ///
 /// Args:
-///     solver: any other solver, such as `BAS` or `LevenbergMarquardt`.
+///     solver: any other solver, for example `BAS` or `LevenbergMarquardt`.
 ///     max_starts: largest number of starts; None: as many as the evaluation budget allows.
 #[pyclass(name = "MultiStart", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]

@@ -69,7 +69,7 @@ impl PyPso {
         Ok(Self(solver))
     }
 
-    /// "constriction" or "inertia".
+    /// Form of the velocity update: "constriction" or "inertia".
     #[getter]
     fn form(&self) -> String {
         self.0.form.to_string()
@@ -102,13 +102,13 @@ impl PyPso {
         self.0.velocity_limit
     }
 
-    /// "always" or "improving".
+    /// Rule for accepting a position: "always" or "improving".
     #[getter]
     fn accept(&self) -> String {
         self.0.accept.to_string()
     }
 
-    /// "absorbing" or "random".
+    /// Behaviour at the walls of the box: "absorbing" or "random".
     #[getter]
     fn walls(&self) -> String {
         self.0.walls.to_string()

@@ -1,4 +1,4 @@
-//! The options that all swarms have.
+//! Options common to all swarms.
 
 use ikcore::solver::Schedule;
 use pyo3::PyResult;

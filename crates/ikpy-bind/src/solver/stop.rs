@@ -14,14 +14,14 @@ use crate::options::{NewArguments, Shown, keywords};
 
 static STATUS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 
-/// `beetle_ik.Status`, an IntEnum with the names and numbers of the core.
+/// Returns the class `beetle_ik.Status`, an IntEnum with the names and numbers of the core.
 pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     let class = STATUS.get_or_try_init(py, || {
         let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
         let options = [("module", "beetle_ik")].into_py_dict(py)?;
         let enums = py.import("enum")?;
         let class = enums.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
-        // A printed status is its name; IntEnum would print the number.
+        // Prints the name of a status; IntEnum would print its number.
         let plain = enums.getattr("Enum")?;
         class.setattr("__str__", plain.getattr("__str__")?)?;
         class.setattr("__format__", plain.getattr("__format__")?)?;
@@ -40,7 +40,7 @@ fn documentation() -> String {
     format!("{summary}\n\n{}", members.collect::<String>())
 }
 
-/// The member of `Status`.
+/// Returns the member of `Status` for a status of the core.
 pub fn status(py: Python<'_>, status: Status) -> PyResult<Bound<'_, PyAny>> {
     status_class(py)?.call1((status as u8,))
 }
@@ -123,7 +123,7 @@ impl PyStop {
         Stop {
             max_evaluations: match (self.max_evaluations, self.max_time) {
                 (Some(count), _) => count,
-                // A time without a count means no limit on the count.
+                // Lifts the limit on evaluations if only a time is given.
                 (None, Some(_)) => usize::MAX,
                 (None, None) => standard.max_evaluations,
             },

@@ -83,7 +83,7 @@ swarm! {
 }
 
 swarm! {
-    /// Firefly algorithm (Yang 2009): needs only values. In turn, each firefly attracts all less bright ones.
+    /// Firefly algorithm (Yang 2009): needs only values. Each firefly in turn attracts all less bright fireflies.
     ///
     /// Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     /// max_generations=None, stall_generations=50)`.
@@ -116,7 +116,7 @@ swarm! {
     /// Args:
     ///     population: size of a generation.
     ///     elite_share: fraction that survives unchanged, rounded up.
-    ///     crossover_share: fraction of the others produced by crossover; the rest is produced by mutation.
+    ///     crossover_share: fraction of the remaining members produced by crossover; mutation produces the rest.
     ///     tournament: size of a tournament; its best member becomes a parent.
     ///     mutation_rate: probability that a coordinate of a mutant changes; at least one does. 1 changes all, as in MATLAB.
     ///     mutation_scale: initial standard deviation of mutations, as a fraction of the box's width.
@@ -124,7 +124,7 @@ swarm! {
     PyGenetic, "Genetic", Genetic {
         /// Fraction that survives unchanged.
         elite_share: f64,
-        /// Fraction of the others produced by crossover.
+        /// Fraction of the remaining members produced by crossover.
         crossover_share: f64,
         /// Size of a tournament.
         tournament: usize,
@@ -187,7 +187,7 @@ swarm! {
         step_decay: f64,
         /// Ratio of delta to the distance between the antennae.
         step_over_antennae: f64,
-        /// "printed" or "downhill".
+        /// Sign of eq. (28): "printed" or "downhill".
         direction: BeetleDirection,
     }
 }
@@ -209,7 +209,7 @@ swarm! {
         weight: f64,
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
-        /// "generation" or "immediate".
+        /// Time of replacement: "generation" or "immediate".
         update: TrialUpdate,
     }
 }

@@ -12,10 +12,10 @@ use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::solver::{known_solver, solver_names};
 
-/// The arguments as Python gives them; the rule is read first, since it decides how a path is sampled.
+/// Arguments of `track` and `Tracker` as given. The rule is read beforehand: it decides how a path is sampled.
 pub struct TrackArguments<'a, 'py> {
     pub rule: TickRule,
-    /// Task and tolerance of the only tip; several tips have their own.
+    /// Task and tolerance of the only tip; the tasks of several tips are passed separately.
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub surroundings: Surroundings,
@@ -24,7 +24,7 @@ pub struct TrackArguments<'a, 'py> {
 }
 
 impl TrackArguments<'_, '_> {
-    /// The options of the core, with the `limits` of the call.
+    /// Converts the arguments to options of the core, with the `limits` of the call.
     pub fn read(self, limits: Option<Limits>) -> PyResult<TrackOptions> {
         let (task, tolerance) = self.only;
         Ok(TrackOptions {
@@ -42,7 +42,7 @@ impl TrackArguments<'_, '_> {
     }
 }
 
-/// A rule, a solver, or the library's own rule.
+/// Reads the `solver` argument: a tick rule, a solver, or None for the model-based rule.
 pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     let Some(solver) = solver else { return Ok(TickRule::default()) };
     if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {

@@ -42,9 +42,9 @@ in_progress!(PyControlSession, ControlSession);
 
 #[pymethods]
 impl PyControlSession {
-    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
-    /// (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
-    /// last accepted configuration.
+    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position
+    /// (3,) (m), or a pose (4, 4) if the first target was one. The command is inside the limits, and within the
+    /// velocity limits from the last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = tip_pose("target", target)?;
         Ok(copied(py, self.session().command(&target).map_err(raise)?))

@@ -27,8 +27,8 @@ use crate::traversal::traversed;
 pub struct PyModelFreeResult {
     core: ModelFreeRecord,
     columns: Columns,
-    /// Commands at which the positions were measured (k, n) (rad, m): equal to q for `BroydenBAS`, one antenna away from it
-    /// for `ZNNBAS`.
+    /// Commands at which the positions were measured (k, n) (rad, m): equal to q for `BroydenBAS`, one antenna away
+    /// from q for `ZNNBAS`.
     #[pyo3(get)]
     command: Py<PyArrayDyn<f64>>,
     /// The limits in force.
@@ -118,13 +118,14 @@ impl PyModelFreeResult {
 
 /// Follows a path without a model: the controller commands joint positions and measures the tip.
 ///
-/// If the path has orientations, the controller follows these too, and the plant must measure poses. A radian of error counts
-/// as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
+/// If the path has orientations, the controller follows these too, and the plant must measure poses; a radian of error
+/// counts as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
 ///
 /// Args:
-///     plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object with such a method
-///         `move`; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
-///         else, the run ends with the record so far; on the first measurement, the exception propagates.
+///     plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object whose
+///         method `move` does so; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an
+///         exception or returns anything else, the run ends with the record so far; on the first measurement, the
+///         exception propagates.
 ///     path: reference positions, or poses, over time.
 ///     start: (n,), configuration at t = 0 (rad, m).
 ///     dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
@@ -143,6 +144,14 @@ impl PyModelFreeResult {
 ///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
 ///     LimitError: a start outside the limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
+///
+/// For example:
+///
+///     >>> arm = bik.Robot.planar([0.5, 0.4, 0.3])
+///     >>> path = bik.paths.circle([0.6, 0.3, 0.0], 0.2, 5.0)
+///     >>> run = bik.track_model_free(bik.KinematicPlant(arm), path, [0.4, 0.5, 0.6], dt=0.01)
+///     >>> run.settled_error < 1e-6
+///     True
 #[pyfunction]
 #[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9,
                     rotation_tolerance=1e-9, seed=0, progress=None))]
@@ -196,7 +205,7 @@ fn run(
     }
     match record {
         Ok(record) => Ok((record, plant.exception)),
-        // Nothing was recorded: the plant's own exception is the best message.
+        // Raises the plant's own exception if nothing was recorded: it is the best message.
         Err(error) => Err(plant.exception.unwrap_or_else(|| raise(error))),
     }
 }

@@ -17,7 +17,7 @@ use crate::robot::PyRobot;
 use crate::traversal::traversed;
 
 /// A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
-/// an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
+/// an arm whose model is wrong, pass a modified robot, for example `robot.with_errors(...)`.
 ///
 /// Args:
 ///     robot: the arm as built.
@@ -71,7 +71,7 @@ impl PyKinematicPlant {
         self.seed
     }
 
-    /// Moves the arm to q (n,) (rad, m), and returns what the sensor measures: the position of the tip (3,) (m), or its
+    /// Moves the arm to q (n,) (rad, m), and returns the measurement of the sensor: the position of the tip (3,) (m), or its
     /// pose (4, 4).
     #[pyo3(name = "move")]
     fn move_to<'py>(&self, py: Python<'py>, q: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -115,7 +115,7 @@ impl PyKinematicPlant {
 }
 
 impl PyKinematicPlant {
-    /// Returns a plant at the start of its noise; an error unless `start` fits its robot.
+    /// Returns a plant at the start of its noise; an error unless `start` fits the robot.
     pub fn fresh(&self, start: &[f64]) -> PyResult<KinematicPlant> {
         self.core.robot().check("start", start).map_err(raise)?;
         Ok(self.core.clone())
@@ -125,7 +125,7 @@ impl PyKinematicPlant {
 /// A callable of q, and the exception that it raised.
 pub struct PythonPlant<'py> {
     call: Bound<'py, PyAny>,
-    /// What it has to return.
+    /// Description of the value that the callable must return.
     wanted: &'static str,
     pub exception: Option<PyErr>,
 }

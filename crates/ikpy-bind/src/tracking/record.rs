@@ -41,7 +41,7 @@ pub fn counts(py: Python<'_>, counts: &[usize]) -> Py<PyArray1<i64>> {
     row(py, counts.iter().map(|count| *count as i64).collect()).unbind()
 }
 
-/// Defines the getters of a class that has such `columns`. Four of them mean something else without a model, and take their
+/// Defines the getters of a class with `columns`. Four of them differ in meaning without a model, and take their
 /// docstrings as arguments.
 macro_rules! record {
     (

@@ -35,15 +35,15 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
-    /// What was asked of each tip.
+    /// Errors by tip.
     tips: TipErrors,
-    /// What is around the arm, and its configuration; `None` if nothing is to be kept clear of.
+    /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
-    /// Found when asked for.
+    /// Nearest two bodies, computed at the first access.
     around: OnceLock<Around>,
 }
 
-/// The nearest two bodies: `None` if nothing is to be kept clear of, `Some(None)` if nothing can touch.
+/// Nearest two bodies: `None` without obstacles and self-collision, `Some(None)` if nothing can touch.
 type Around = Option<Option<NearestContact>>;
 
 traversed!(PyStep: limits);
@@ -52,8 +52,9 @@ outcome! {
     PyStep = |result|
     /// Whether the tip is within the tolerances.
     success,
-    /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links; HELD_BY_OBSTACLE if one
-    /// keeps the tip from the target; IMPROVED nearer than in the previous step, otherwise CAPPED.
+    /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
+    /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; IMPROVED if nearer than in the previous step;
+    /// otherwise CAPPED.
     status: result.core.status,
     message: result.sentence(),
     /// Evaluations of the forward kinematics.
@@ -84,7 +85,8 @@ impl PyStep {
         self.core.error.rotation
     }
 
-    /// False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step.
+    /// Whether the step keeps all limits; False if a joint cannot be brought within its position limits, or slowed down
+    /// to its velocity limit.
     #[getter]
     fn inside_limits(&self) -> bool {
         self.core.inside_limits
@@ -128,18 +130,18 @@ impl PyStep {
 }
 
 impl PyStep {
-    /// `motion`: the configuration to command and the joint velocity over the step.
+    /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
         Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
     }
 
-    /// The step of an arm with these tips.
+    /// Adds the errors by tip.
     pub fn of_tips(self, tips: TipErrors) -> Self {
         Self { tips, ..self }
     }
 
-    /// The step of an arm that keeps to `space`, at `q`.
+    /// Adds the clear space of an arm, and its configuration `q`.
     pub fn among(self, space: Option<Arc<ClearSpace<'static>>>, q: Vec<f64>) -> Self {
         Self { among: space.map(|space| (space, q)), ..self }
     }
@@ -148,7 +150,7 @@ impl PyStep {
         self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.nearest(q)))
     }
 
-    /// What happened, what to try, and what is in the way.
+    /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> String {
         let message = self.core.message();
         match (self.core.status, self.around()) {

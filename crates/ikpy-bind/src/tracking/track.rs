@@ -32,7 +32,7 @@ use crate::traversal::traversed;
 pub struct PyTrackResult {
     core: Record,
     columns: Columns,
-    /// What was asked of each tip.
+    /// Errors by tip.
     tips: TipErrors,
     /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
     #[pyo3(get)]
@@ -57,7 +57,7 @@ record! {
     PyTrackResult = |result| result.core,
     /// Configurations (k, n) (rad, m).
     q,
-    /// Positions of the tip (k, 3) (m); of several tips those of the first target, `positions` has all.
+    /// Positions of the tip (k, 3) (m); with several tips, of the first target: `positions` has all.
     position,
     /// Evaluations of the forward kinematics in each step (k,).
     step_evaluations,
@@ -92,14 +92,14 @@ impl PyTrackResult {
         })
     }
 
-    /// Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; of a pair as seen from
-    /// its first tip.
+    /// Positions of each target's tip, by the keys of the call or the name of the only tip: {tip: (k, 3) (m)}; for a
+    /// pair, in the frame of its first tip.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.points(py, &self.core.position, &self.core.tips.positions)
     }
 
-    /// Reference positions of each target, as `positions`.
+    /// Reference positions of each target, in the form of `positions`.
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.points(py, &self.core.reference, &self.core.tips.references)
@@ -111,9 +111,9 @@ impl PyTrackResult {
         self.core.limit_margin
     }
 
-    /// The joint trajectory. Without acceleration and jerk limits it is linear between the ticks: its velocities are exactly
-    /// `qd`. With them it is a cubic spline that keeps them at every instant, and passes each configuration at a sixth of
-    /// its acceleration times dt^2 (rad, m).
+    /// The joint trajectory. Without acceleration and jerk limits it is linear between the ticks, with the velocities
+    /// `qd`. With them it is a cubic spline that keeps them at every instant; it passes each configuration at a
+    /// distance of a sixth of its acceleration times dt^2 (rad, m).
     #[getter]
     fn trajectory(&self) -> PyResult<PyTrajectory> {
         let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
@@ -172,7 +172,7 @@ impl PyTrackResult {
         })
     }
 
-    /// Points of each target (k, 3), of the only one those of `track`.
+    /// Returns the points of each target (k, 3); for the only tip the points of `track`.
     fn points<'py>(&self, py: Python<'py>, track: &[[f64; 3]], several: &[[f64; 3]]) -> PyResult<Bound<'py, PyDict>> {
         let rows = track.len();
         let points = if several.is_empty() { track } else { several };
@@ -184,20 +184,20 @@ impl PyTrackResult {
 
 /// Follows a path with the tip of the robot, tick by tick, inside the limits.
 ///
-/// In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the last
-/// accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits reduce the
-/// box further, so that joints can still brake before their position limits; the arm starts at rest.
+/// In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the
+/// last accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits
+/// reduce the box further, so that joints can still brake before their position limits; the arm starts at rest.
 ///
 /// Args:
 ///     robot: the arm.
-///     path: reference positions or poses over time. For a robot with several `tips` a dict of paths, such as {"left_tool": path}, which
-///         have one time; a constant pose (4, 4) or position (3,) counts as a path. A tip left out is free, and a pair
-///         ("left_tool", "right_tool") is the second as seen from the first: it is held there before anything else, so that both
-///         lag where one arm cannot follow.
+///     path: reference positions or poses over time. For a robot with several `tips`, a dict of paths of equal
+///         duration, for example {"left_tool": path}; a constant pose (4, 4) or position (3,) counts as a path, and a
+///         tip left out is free. The key ("left_tool", "right_tool") gives the second tip in the frame of the first.
+///         This relative pose has priority, so that both arms lag where one cannot follow.
 ///     start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
 ///         or, without goals, one far from singularities and limits.
 ///     dt: time step (s).
-///     task: which part of the path counts, one of `tasks`, or a dict for several tips; None: all of it.
+///     task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
 ///     limits: limits on the joint motion; None: the robot's.
@@ -211,8 +211,8 @@ impl PyTrackResult {
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     seed: seed of the random draws; the same seed gives the same bits.
-///     limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
-///         "start".
+///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
+///         at its "start".
 ///     ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
 ///         that meets the moving path, after which the arm is on it. The tip is off the path until then.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -223,7 +223,18 @@ impl PyTrackResult {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
 ///     LimitError: a start outside its limits, or a negative limit.
-///     UnsupportedLimit: jerk limits, which this tracker does not keep.
+///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
+///         region; position, acceleration or jerk limits that vary in time, among obstacles.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> path = bik.paths.circle([0.5, 0.1, 0.4], 0.2, 5.0)
+///     >>> track = bik.track(robot, path, dt=0.01)
+///     >>> track.status
+///     <Status.SOLVED: 0>
+///     >>> track.q.shape
+///     (501, 6)
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
@@ -272,7 +283,7 @@ pub fn track(
     PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
 }
 
-/// A path, or a target that stays where it is.
+/// A path, or a constant target.
 enum Followed<'py> {
     Path(Bound<'py, PyPath>),
     Constant(Target),
@@ -289,7 +300,7 @@ fn read_path<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Followed<'p
     }
 }
 
-/// The paths at ticks of `dt` (s); all have one time.
+/// Samples the paths at ticks of `dt` (s); all paths must have one duration.
 fn sampled(py: Python<'_>, asked: &Asked<Followed<'_>>, dt: f64, velocities: bool) -> PyResult<Vec<Reference>> {
     let mut longest: Option<(f64, usize)> = None;
     let mut references = vec![];
@@ -322,7 +333,7 @@ fn sampled(py: Python<'_>, asked: &Asked<Followed<'_>>, dt: f64, velocities: boo
     all.map(|(followed, reference)| reference.map_or_else(|| constant(followed), Ok)).collect()
 }
 
-/// A target that stays where it is as the samples of a path.
+/// Returns a constant target as the samples of a path.
 fn constant_reference(target: &Target, dt: f64, rows: usize) -> PyResult<Reference> {
     let rotations = match target {
         Target::Pose(frame) => Some(vec![*Pose::from(*frame).rotation.matrix(); rows]),

@@ -35,7 +35,7 @@ use crate::traversal::traversed;
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
-///     task: as in `track`; also of tips that get their targets later.
+///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
 ///         sample them.
@@ -48,12 +48,20 @@ use crate::traversal::traversed;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
+///
+/// For example:
+///
+///     >>> robot = bik.Robot.named("ur5e")
+///     >>> tracker = bik.Tracker(robot, [0.0, -1.5, 1.5, -1.5, -1.5, 0.0], dt=0.01)
+///     >>> step = tracker.step([0.45, 0.13, 0.47])
+///     >>> step.q.shape, step.inside_limits
+///     ((6,), True)
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
     /// Task and tolerances of each tip.
     settings: TipSettings,
-    /// What the last targets were for.
+    /// Keys of the last targets.
     keys: Mutex<TipKeys>,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
@@ -117,23 +125,25 @@ impl PyTracker {
         Ok(Self { session, settings, keys, runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
-    /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot with several `tips` it is
-    /// a dict, such as {"left_tool": T}; a tip left out is free, and a pair ("left_tool", "right_tool") is the second as seen from the
-    /// first. A pair that is where it is to be is held there, whatever else has to give way.
+    /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
+    /// with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
+    /// ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
+    /// is held there, with priority over all other targets.
     ///
-    /// Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
-    /// model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
-    /// otherwise the arm goes on towards the last target. A loop may also pass the last target again in each tick until the
-    /// next one comes: for two intervals of a stream of 10 Hz or more, the same target again counts as None. A target that is
-    /// not finite raises an error, after which the tracker is as before.
+    /// Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
+    /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
+    /// most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
+    /// target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
+    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
     ///
     /// Args:
-    ///     target: target of the tip, or of several, at the end of the tick; None: no new one.
+    ///     target: target of the tip, or of several tips, at the end of the tick; None: no new target.
     ///     velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
     ///         None: from the difference to the previous target.
-    ///     stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
-    ///         model-based rule follows the motion of the targets up to now, over 0.25 s at most, under acceleration or jerk
-    ///         limits; without these a stamp is refused. A target older than the last one is ignored.
+    ///     stamp: time at which the target was measured, on the tracker's own clock, `time` (s); None: the end of the
+    ///         tick. The model-based rule follows the motion of the targets up to now, over 0.25 s at most, under
+    ///         acceleration or jerk limits; without these a stamp is refused. A target older than the last one is
+    ///         ignored.
     #[pyo3(signature = (target, *, velocity=None, stamp=None))]
     fn step(
         &self,
@@ -172,12 +182,12 @@ impl PyTracker {
         Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
     }
 
-    /// Stops as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives. Pairs of tips that
-    /// are held stay held. The stop is the one that was certified with the last command; the arm does not give way to what moves, and
-    /// stands afterwards.
+    /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
+    /// arrives. Held pairs of tips stay held. The stop is the one that was certified with the last command: the arm
+    /// does not give way to moving obstacles, and stays at rest afterwards.
     ///
     /// Returns:
-    ///     How long the stop takes (s), to within a tick; 0 without acceleration and jerk limits.
+    ///     Duration of the stop (s), to within a tick; 0 without acceleration and jerk limits.
     fn stop(&self) -> f64 {
         self.session().stop()
     }
@@ -200,8 +210,8 @@ impl PyTracker {
         self.session().reset_moving(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
 
-    /// What the arm keeps clear of, a tuple; None: nothing. Set it between ticks to where the obstacles are now. The stop that was
-    /// certified before goes on if the new ones are in the way.
+    /// Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
+    /// new obstacles are in the way, the arm carries on with the stop certified before.
     #[getter]
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyTuple>>> {
         let session = self.session();
@@ -224,7 +234,7 @@ impl PyTracker {
 }
 
 impl PyTracker {
-    /// What the last targets were for.
+    /// Locks the keys of the last targets.
     fn keys(&self) -> std::sync::MutexGuard<'_, TipKeys> {
         self.keys.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }

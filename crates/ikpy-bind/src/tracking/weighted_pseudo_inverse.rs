@@ -65,7 +65,7 @@ impl PyWeightedPseudoInverse {
         self.0.gain
     }
 
-    /// "euler" or "rk4".
+    /// Integration scheme: "euler" or "rk4".
     #[getter]
     fn integrator(&self) -> &'static str {
         self.0.integrator.name()
@@ -118,7 +118,7 @@ impl PyWeightedPseudoInverse {
 }
 
 impl PyWeightedPseudoInverse {
-    /// As a tick rule.
+    /// Returns the tick rule.
     pub fn rule(&self) -> TickRule {
         TickRule::WeightedPseudoInverse(self.0.clone())
     }

@@ -76,7 +76,7 @@ impl PyZnnbas {
         Ok(Self { core, antenna })
     }
 
-    /// k of eq. (14) (1/s).
+    /// Gain k of eq. (14) (1/s).
     #[getter]
     fn gain(&self) -> f64 {
         self.core.gain
@@ -97,19 +97,19 @@ impl PyZnnbas {
         }
     }
 
-    /// alpha, in ticks.
+    /// Delay alpha of eq. (13), in ticks.
     #[getter]
     fn delay_steps(&self) -> usize {
         self.core.delay_steps
     }
 
-    /// "sliding" or "held".
+    /// Kind of delay: "sliding" or "held".
     #[getter]
     fn delay(&self) -> String {
         self.core.delay.to_string()
     }
 
-    /// "always" or "improving".
+    /// Rule for accepting a position: "always" or "improving".
     #[getter]
     fn accept(&self) -> String {
         self.core.accept.to_string()

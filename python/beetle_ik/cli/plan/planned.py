@@ -1,4 +1,4 @@
-"""Options and output that both planners share."""
+"""Options and output shared by both planners."""
 
 import math
 from collections.abc import Callable
@@ -39,7 +39,7 @@ Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; d
 def options(
     velocity: str | None, acceleration: str | None, jerk: str | None, max_evaluations: int | None
 ) -> dict[str, Any]:
-    """Returns the keywords that both planners take."""
+    """Returns the keywords common to both planners."""
     chosen: dict[str, Any] = {
         "limits": Limits(
             velocity=limit("--velocity-limit", velocity),

@@ -26,7 +26,7 @@ to four evaluations per step where the beetle needs hundreds.
 
 
 def run(context: Context) -> Report:
-    """Run all of it."""
+    """Runs all experiments of the paper."""
     comparison = compare(context)
     whole = {one.name: Spent(one.evaluations, one.missed) for one in comparison.precise}
     parts = (

@@ -1,4 +1,4 @@
-"""What accuracy costs: the beetle beside trackers that use more than the size of the error."""
+"""Cost of accuracy: beetle antennae search beside trackers that use more than the size of the error."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ direction, there is no reason to search at random.
 
 @dataclass(frozen=True)
 class Point:
-    """What an accuracy costs."""
+    """Accuracy of a tracker, and its cost."""
 
     error: float
-    """Mean over the second half (m)."""
+    """Mean error over the second half (m)."""
     evaluations: float
-    """A step."""
+    """Evaluations of a step, on average."""
     time: float
-    """A step, on average (s)."""
+    """Time of a step, on average (s)."""
 
 
 def accuracy(context: Context) -> Part:
-    """Error against evaluations for all trackers, and what the paper says of the pseudo-inverse."""
+    """Compares error and evaluations of all trackers, and checks the paper's claim about the pseudo-inverse."""
     bands = context.pick(full=_BANDS, short=_BANDS_SHORT)
     curves = {
         name: [_point(run(band)) for band in bands]
@@ -63,7 +63,7 @@ def accuracy(context: Context) -> Part:
 
 
 def pseudo_inverse_claim(beetles: Mapping[str, list[Point]], inverse: Point) -> Claim:
-    """The paper's reason to leave the Jacobian."""
+    """Judges the paper's reason for avoiding the Jacobian."""
     near = {name: min(points, key=lambda point: abs(point.error - inverse.error)) for name, points in beetles.items()}
     return Claim.judged(
         "BAS saves the computation that methods based on the pseudo-inverse of the Jacobian need.",

@@ -1,4 +1,4 @@
-"""The boxes in which a step is searched, and what a method costs in each."""
+"""Search boxes of a step, and the cost of a method in each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,15 +15,15 @@ from .settings import DT, FIVE_LINK, IIWA, STEPS, Run, Solver, Task
 
 @dataclass(frozen=True, kw_only=True)
 class ErrorBox:
-    """A solver that searches a box as long as the error: drawn anew after a few generations, about the best so far.
+    """A solver in a box as wide as the error, drawn anew after a few generations about the best point so far.
 
-    It has what BAS has by eq. (12): a search that contracts with the error.
+    Its search contracts with the error, like BAS by eq. (12).
     """
 
     solver: Solver
-    """What searches each box; its generations are those of one box."""
+    """Solver in each box; its generations are those of one box."""
     reach: float
-    """Half the width of the box over the error (rad/m), as c1 of eq. (12)."""
+    """Ratio of half the box's width to the error (rad/m), like c1 of eq. (12)."""
 
 
 Setting: TypeAlias = Solver | ErrorBox
@@ -31,37 +31,37 @@ Setting: TypeAlias = Solver | ErrorBox
 
 @dataclass(frozen=True)
 class Cost:
-    """What a run needed for its error band."""
+    """Cost of a run within its error band."""
 
     evaluations: float
-    """A step, on average."""
+    """Evaluations of a step, on average."""
     missed: int
-    """Steps that ended outside."""
+    """Steps that ended outside the band."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
-    """An arm that starts on its circle, and what a step searches."""
+    """An arm that starts on its circle, and the search region of a step."""
 
     name: str
     run: Callable[[Setting, int, float], Cost]
-    """Follow the circle with a setting, a seed and a band (m)."""
+    """Follows the circle with a setting, a seed and a band (m)."""
 
 
 def track(
     task: Task, solver: Solver | None, *, seed: int, band: float, limits: bik.Limits | None = None
 ) -> bik.TrackResult:
-    """Follow the circle from a start on it."""
+    """Follows the circle from a start on it."""
     return task.track(solver, band=band, seed=seed, start=task.on_path, limits=limits)
 
 
 def evaluations_a_step(result: Run) -> float:
-    """On average."""
+    """Returns the evaluations of a step, on average."""
     return result.evaluations / (len(result.time) - 1)
 
 
 def missed_steps(result: bik.TrackResult) -> int:
-    """Steps that ended outside the band."""
+    """Counts the steps that ended outside the band."""
     return int((result.position_error[1:] > result.position_tolerance).sum())
 
 
@@ -81,9 +81,9 @@ class Followed:
     """The circle, followed step by step in boxes as long as the error."""
 
     q: NDArray[np.float64]
-    """(STEPS + 1, n), with the start."""
+    """Configurations (STEPS + 1, n), start included."""
     errors: NDArray[np.float64]
-    """(STEPS,) (m)"""
+    """Errors (STEPS,) (m)."""
     evaluations: int
 
     @property
@@ -99,7 +99,7 @@ class Followed:
 
 
 def follow_in_error_boxes(task: Task, setting: ErrorBox, *, seed: int, band: float, most: int) -> Followed:
-    """Follow the circle, with at most about so many evaluations a step."""
+    """Follows the circle with about `most` evaluations a step at most."""
     random = np.random.default_rng(seed)
     joints, errors, evaluations = [task.on_path], [], 0
     for target in task.circle.position(np.arange(1, STEPS + 1) * DT):
@@ -119,7 +119,7 @@ def _step(
     most: int,
     random: np.random.Generator,
 ) -> tuple[NDArray[np.float64], float, int]:
-    """Search boxes until the error is within the band: configuration, error and evaluations."""
+    """Searches boxes until the error is within the band; returns configuration, error and evaluations."""
     lower = np.maximum(start - DT * task.velocity, task.robot.lower)
     upper = np.minimum(start + DT * task.velocity, task.robot.upper)
     q, error, spent = start, float(np.linalg.norm(task.robot.fk(start)[:3, 3] - target)), 1
@@ -141,7 +141,7 @@ def _step(
 
 
 WHOLE = Box(name="whole box", run=_within(IIWA))
-# The circle asks for no more than 0.02 rad a step.
+# The circle needs at most 0.02 rad a step.
 TRUST = Box(name="trust box", run=_within(IIWA, bik.Limits(velocity=0.1)))
 SCALED = Box(name="box as long as the error", run=_within(IIWA))
 PLANAR = Box(name="five-link arm", run=_within(FIVE_LINK))

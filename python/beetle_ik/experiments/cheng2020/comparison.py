@@ -1,4 +1,4 @@
-"""A method of the comparison with all its runs, and what the tables say of them."""
+"""A compared method with all its runs, and its statistics for the tables."""
 
 from dataclasses import dataclass
 
@@ -14,24 +14,24 @@ from .settings import STEADY, excess_velocity, roughness, steady_error
 
 @dataclass(frozen=True)
 class Compared:
-    """A method with its runs, one a seed."""
+    """A method with its runs, one for each seed."""
 
     method: Method
     results: list[bik.TrackResult]
 
     @property
     def name(self) -> str:
-        """The method's."""
+        """Name of the method."""
         return self.method.name
 
     @property
     def evaluations(self) -> Spread:
-        """A step."""
+        """Evaluations of a step."""
         return Spread.of([evaluations_a_step(result) for result in self.results])
 
     @property
     def time(self) -> Spread:
-        """Of all steps of a run (s)."""
+        """Time of all steps of a run (s)."""
         return Spread.of([result.elapsed for result in self.results])
 
     @property
@@ -41,7 +41,7 @@ class Compared:
 
     @property
     def axis_errors(self) -> list[float]:
-        """The same along x, y and z, over all runs."""
+        """Mean error along x, y and z over the second half of all runs (m)."""
         away = np.array([np.abs(result.position - result.reference)[STEADY] for result in self.results])
         return [float(error) for error in away.mean(axis=(0, 1))]
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "On an arm with servos"
-_CIRCULAR = 0.05  # of the radius: by how much the radius may vary
+_CIRCULAR = 0.05  # allowed variation of the radius, as a fraction
 
 _TEXT = """
 The paper sends the joint angles found by BAS to a real iiwa, and reads a circle back from it. We have no iiwa, and send
@@ -40,7 +40,7 @@ command every 0.2 s.
 
 
 def hardware(context: Context) -> Part:
-    """Angles resolved by BAS, replayed by the servos of a simulated arm."""
+    """Replays angles resolved by BAS on the servos of a simulated arm."""
     setting = STAR[IIWA.name]
     resolved = IIWA.track(setting.solver, band=setting.band, seed=context.seed, start=IIWA.on_path)
     try:
@@ -59,7 +59,7 @@ def hardware(context: Context) -> Part:
 
 
 def circle_claim(radii: NDArray[np.float64] | None, missing: str = "") -> Claim:
-    """Distances of the tip from the axis of the circle (m), or why there are none."""
+    """Judges the distances of the tip from the axis of the circle (m); `missing` says why there are none."""
     radius = 0.1
     off = float("nan") if radii is None else float(np.abs(radii - radius).max())
     return Claim.judged(
@@ -75,7 +75,7 @@ def circle_claim(radii: NDArray[np.float64] | None, missing: str = "") -> Claim:
 
 
 def _send(plant: sim.MujocoPlant, angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Tips (k, 3) at the ends of the steps."""
+    """Returns the tips (k, 3) at the ends of the steps."""
     plant.reset(angles[0])
     tips = [plant.tip]
     for q in angles[1:]:
@@ -85,7 +85,7 @@ def _send(plant: sim.MujocoPlant, angles: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _radii(tips: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distances from the middle of the circle, seen from above; the first steps, when servos take up load, left out."""
+    """Returns distances from the middle of the circle, seen from above, without the steps when servos take up load."""
     radii: NDArray[np.float64] = np.linalg.norm(tips[5:, :2] - [0.3, 0.3], axis=1)
     return radii
 

@@ -24,34 +24,34 @@ class Draws:
     """Random options, rounded to two digits."""
 
     def __init__(self, seed: int) -> None:
-        """Draws of one method; the same seed draws the same options."""
+        """Starts the draws of one method; the same seed draws the same options."""
         self._random = np.random.default_rng(seed)
 
     def even(self, low: float, high: float) -> float:
-        """Uniform."""
+        """Draws uniformly."""
         return float(f"{self._random.uniform(low, high):.2g}")
 
     def log(self, low: float, high: float) -> float:
-        """Uniform in the logarithm."""
+        """Draws uniformly in the logarithm."""
         return float(f"{math.exp(self._random.uniform(math.log(low), math.log(high))):.2g}")
 
     def count(self, low: int, high: int) -> int:
-        """A whole number, uniform in the logarithm."""
+        """Draws a whole number, uniformly in the logarithm."""
         return round(self.log(low, high))
 
     def chance(self) -> bool:
-        """Heads or tails."""
+        """Draws heads or tails."""
         return bool(self._random.random() < 0.5)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A method, how to draw a setting for it, and what the paper prints."""
+    """A method, the draw of its settings, and the results printed in the paper."""
 
     name: str
     kind: type[Solver]
     draw: Callable[[Draws, int], Solver]
-    """A setting that spends about so many evaluations a step at most."""
+    """Draws a setting that spends about the given evaluations a step at most."""
     printed_time: Spread
     """Table 2, quoted in section IV-A.4b (s)."""
     printed_level: str | Printed
@@ -102,7 +102,7 @@ def _fireflies(draws: Draws, limit: int) -> Solver:
         absorption=draws.log(0.1, 3.0),
         randomness=draws.log(0.05, 0.6),
         randomness_decay=draws.even(0.85, 0.99),
-        # In a generation each firefly moves towards every brighter one.
+        # A firefly moves towards every brighter one in each generation.
         max_generations=max(2 * limit // (population * (population - 1)), 1),
     )
 

@@ -33,7 +33,7 @@ _SEEDS = 25
 _SEEDS_SHORT = 3
 
 _PUBLISHED = {FIVE_LINK.name: 2e-5, IIWA.name: 1e-5}  # m, steady-state error
-_AROUND = 0.3  # relative: what the paper's "around" has to mean
+_AROUND = 0.3  # relative tolerance for the paper's "around"
 _BANDS = (10.0, 1.0, 0.1)  # times the band of the settings
 _BAND_SEEDS = 3
 _CONSTANTS, _CONSTANTS_SHORT = (0.3, 1.0, 3.0), (1.0, 3.0)  # c1 and c2
@@ -59,7 +59,7 @@ with joint velocities of at most {model_speed} rad/s, which change by {model} ra
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """One arm with one reading of the walk, over many seeds."""
+    """Runs of one arm with one reading of the walk, over many seeds."""
 
     task: Task
     walk: str
@@ -73,7 +73,7 @@ class Case:
 
     @property
     def latest(self) -> int:
-        """Steps to the band, of the slowest seed."""
+        """Steps of the slowest seed until the error is in its band."""
         return max(steps_to_band(result) for result in self.results)
 
     @property
@@ -88,7 +88,7 @@ class Case:
 
 
 def motion(context: Context) -> Part:
-    """Both arms under their limits over many seeds, and the planar one without."""
+    """Follows the circles with both arms under their limits over many seeds, and with the planar arm without limits."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     cases = []
     settings = [(task, walk, by_arm[task.name]) for task in (FIVE_LINK, IIWA) for walk, by_arm in WALKS.items()]
@@ -158,7 +158,7 @@ def motion(context: Context) -> Part:
 
 
 def _by_band(case: Case, seeds: range) -> dict[float, float]:
-    """Mean error over the second half (m) by error band (m), the rest as set."""
+    """Returns the mean error over the second half (m) by error band (m), with the other settings unchanged."""
     found = {}
     for factor in _BANDS:
         band = factor * case.setting.band
@@ -168,7 +168,7 @@ def _by_band(case: Case, seeds: range) -> dict[float, float]:
 
 
 def _shares(case: Case, constants: Sequence[float], seeds: range) -> list[tuple[float, float, float]]:
-    """c1, c2 and the mean error over the band, of the settings whose every step is in the band after the approach."""
+    """Returns c1, c2 and mean error over band, for settings whose every step after the approach is in the band."""
     found = []
     for c1, c2 in product(constants, constants):
         setting = replace(case.setting, c1=c1, c2=c2)
@@ -221,7 +221,7 @@ def _table(cases: list[Case]) -> Table:
 
 
 def tracking_claim(stays: dict[str, bool]) -> Claim:
-    """Whether the runs of each case (arm and walk) are soon in their band for good."""
+    """Judges whether the runs of each case (arm and walk) soon enter their band and stay there."""
     return Claim.judged(
         "Both arms track their circles well, with the variable velocity limits and without.",
         source="Sections IV-A.1 and IV-A.2, Figures 2 and 3",
@@ -234,7 +234,7 @@ def tracking_claim(stays: dict[str, bool]) -> Claim:
 
 
 def error_claim(arm: str, errors: dict[float, float]) -> Claim:
-    """The steady error of an arm; `errors` (m) by error band (m), which the paper does not give."""
+    """Judges the steady error of an arm; `errors` (m) by error band (m), which the paper does not give."""
     published = _PUBLISHED[arm]
     sources = {FIVE_LINK.name: "Section IV-A.1, Figure 2", IIWA.name: "Section IV-A.4, Figure 7"}
     return Claim.judged(
@@ -253,7 +253,7 @@ def error_claim(arm: str, errors: dict[float, float]) -> Claim:
 
 
 def limit_claim(excess: float, unclipped: float, runs: int) -> Claim:
-    """Largest excess (rad/s) over the limit in all runs, and what it is where nothing clips."""
+    """Judges the largest excess (rad/s) over the limit in all runs, and the excess without clipping."""
     return Claim.judged(
         "The resolved joint velocities always stay within the variable limits.",
         source="Sections IV-A.1 and IV-A.2, Figures 2(d) and 3",

@@ -1,4 +1,4 @@
-"""One arm on its circle in four panels, as Figures 2 and 3 have them."""
+"""One arm on its circle in four panels, like Figures 2 and 3."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _POSTURES = 6
 
 
 def draw_motion(task: Task, result: bik.TrackResult) -> Drawing:
-    """Arm and circle, large; joint positions and error beside them; below, the velocity of each joint in its limit."""
+    """Draws arm and circle, joint positions and error beside them, and joint velocities in their limits below."""
     planar = task is FIVE_LINK
     count = result.q.shape[1]
     with drawing(8.2) as figure:
@@ -57,7 +57,7 @@ def draw_motion(task: Task, result: bik.TrackResult) -> Drawing:
 
 
 def _postures(result: bik.TrackResult) -> list[Any]:
-    """Positions of the joints (links, 3) at a few moments, evenly spread."""
+    """Returns the positions of the joints (links, 3) at a few moments, evenly spread."""
     rows = np.linspace(0, len(result.q) - 1, _POSTURES, endpoint=False).astype(int)
     return [result.robot.link_poses(result.q[row])[:, :3, 3] for row in rows]
 

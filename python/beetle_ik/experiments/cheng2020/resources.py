@@ -1,4 +1,4 @@
-"""Convergence, memory and time: what the paper says of BAS without a figure or a table."""
+"""Convergence, memory and time: claims on BAS that the paper makes without a figure or a table."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from .tuning import COMMAND
 TITLE = "Convergence, memory and time"
 _TARGETS = 200
 _TARGETS_SHORT = 30
-_ENOUGH = 100  # targets that a verdict needs
+_ENOUGH = 100  # targets needed for a verdict
 _PASSES = (200, 2000)
 _WALKS: tuple[Literal["star", "chain"], ...] = ("star", "chain")
 _C1 = (1.0, 3.0, 10.0)
 _NEAR = 1e-4  # m
-_BEETLE_HOLDS = 6  # base and best of the pass, where it stands, direction, two antennae
-# Configurations that a member of a population stands for.
+_BEETLE_HOLDS = 6  # base and best of the pass, present position, direction, two antennae
+# Configurations held for each member of a population.
 _A_MEMBER = {"GA": 2, "PSO": 3, "FA": 1, "QPSO": 2}
 
 _TEXT = """
@@ -53,18 +53,18 @@ class Reached:
     c1: float
     count: int
     reached: list[int]
-    """After few passes, and after many."""
+    """Targets reached after few passes, and after many."""
     farthest: float
-    """Largest error that was left in the end (m)."""
+    """Largest final error (m)."""
 
     @property
     def name(self) -> str:
-        """What was varied."""
+        """Name of the varied settings."""
         return f"{self.walk}, c₁ = {self.c1:g}"
 
 
 def resources(context: Context, precise: list[Compared]) -> Part:
-    """Three claims, and the tables behind two of them."""
+    """Judges three claims, and tabulates the data of two of them."""
     count = context.pick(full=_TARGETS, short=_TARGETS_SHORT)
     cases: list[tuple[Literal["star", "chain"], float]] = [(walk, c1) for walk in _WALKS for c1 in _C1]
     reached = [_reach(*case, count, context.seed) for case in context.each("cheng2020: convergence", cases)]
@@ -126,7 +126,7 @@ def _memory_table(held: dict[str, int]) -> Table:
 
 
 def configurations(name: str, setting: Setting) -> int:
-    """Joint vectors that a method holds at once."""
+    """Counts the joint vectors that a method holds at once."""
     if name == BEETLE:
         return _BEETLE_HOLDS
     solver = setting.solver if isinstance(setting, ErrorBox) else setting
@@ -135,7 +135,7 @@ def configurations(name: str, setting: Setting) -> int:
 
 
 def convergence_claim(reached: list[Reached]) -> Claim:
-    """Targets reached, by walk and c₁."""
+    """Judges the targets reached, by walk and c₁."""
     enough = min(one.count for one in reached) >= _ENOUGH
     return Claim.judged(
         "BAS converges with probability 1, with properly chosen step sizes.",
@@ -151,7 +151,7 @@ def convergence_claim(reached: list[Reached]) -> Claim:
 
 
 def memory_claim(held: dict[str, int]) -> Claim:
-    """Configurations held at once, by method."""
+    """Judges the configurations held at once, by method."""
     return Claim.judged(
         "BAS has smaller data scales than GA and PSO, and suits platforms with limited storage.",
         source="Section I, contribution 3",
@@ -164,7 +164,7 @@ def memory_claim(held: dict[str, int]) -> Claim:
 
 
 def real_time_claim(slowest: float) -> Claim:
-    """The mean time of a step in the slowest run (s)."""
+    """Judges the mean time of a step in the slowest run (s)."""
     return Claim.judged(
         "BAS may be feasible for real-time applications.",
         source="Section III",

@@ -10,7 +10,7 @@ from .methods import BEETLE, BUDGET
 from .settings import PARAMETERS, ROUNDING
 
 ErrorBoxes: TypeAlias = Mapping[str, tuple[float, float]]
-"""Swarms in boxes as long as the error, by name: mean error (m) at the budget, roughness (rad/s) at the precision."""
+"""Swarms in boxes as wide as the error, by name: mean error (m) at the budget, roughness (rad/s) at the precision."""
 _IN_WHOLE, _IN_ERROR_BOXES = "swarms search the whole box of each step", "swarms search a box as long as the error"
 _ROUGHER = 2.0  # times the roughness of BAS
 _PRINTED_ORDER = ("BAS", "PSO", "QPSO", "FA", "GA")
@@ -20,7 +20,7 @@ _PRINTED_LEVELS = {"BAS": 1e-5, "PSO": 1e-4, "GA": 1e-3}  # m
 def rival_claims(
     section: str, precise: list[Compared], budgeted: list[Compared], boxed: ErrorBoxes
 ) -> list[Claim | Check]:
-    """All of them; `section` shows them. BAS comes first in both lists."""
+    """Returns all claims and checks on the methods, for the given section. BAS comes first in both lists."""
     errors = {one.name: one.error.mean for one in budgeted}
     return [
         more_accurate_claim(section, errors, {name: error for name, (error, _) in boxed.items()}),
@@ -36,7 +36,7 @@ def rival_claims(
 
 
 def more_accurate_claim(section: str, errors: dict[str, float], boxed: dict[str, float]) -> Claim:
-    """The order of the errors (m) of Figure 7, by method; those of swarms in boxes as long as the error."""
+    """Judges the order of the errors (m) of Figure 7, by method; `boxed` are errors in boxes as wide as the error."""
     return Claim.judged(
         "In the same running time BAS is more accurate than GA, PSO, FA and QPSO.",
         source="Section IV-A.4a, Table 1",
@@ -53,7 +53,7 @@ def more_accurate_claim(section: str, errors: dict[str, float], boxed: dict[str,
 
 
 def levels_claim(section: str, errors: dict[str, float]) -> Claim:
-    """The errors (m) themselves."""
+    """Judges the levels of the errors (m)."""
     return Claim.judged(
         "In the same running time the error of BAS is at the level of 10⁻⁵ m, that of PSO 10⁻⁴ m, that of GA 10⁻³ m.",
         source="Section IV-A.4a, Figure 7",
@@ -66,12 +66,12 @@ def levels_claim(section: str, errors: dict[str, float]) -> Claim:
 
 
 def is_level(error: float, level: float) -> bool:
-    """Whether this power of ten is the nearest."""
+    """Whether `level` is the power of ten nearest to the error."""
     return level / 10**0.5 <= error <= level * 10**0.5
 
 
 def order_claim(section: str, evaluations: dict[str, float]) -> Claim:
-    """From fast to slow, by the evaluations a step."""
+    """Judges the order from fast to slow, by the evaluations of a step."""
     found = sorted(evaluations, key=evaluations.__getitem__)
     return Claim.judged(
         "From fast to slow: BAS, PSO, QPSO, FA, GA.",
@@ -86,7 +86,7 @@ def order_claim(section: str, evaluations: dict[str, float]) -> Claim:
 
 
 def oscillations_claim(section: str, roughness: dict[str, float], boxed: dict[str, float]) -> Claim:
-    """How the joint velocities change from step to step (rad/s, rms), by method; of swarms in boxes likewise."""
+    """Judges the rms change of joint velocities from step to step (rad/s), by method, also of swarms in boxes."""
     beetle = roughness[BEETLE]
     return Claim.judged(
         "At 1 mm PSO and GA cannot decrease the oscillations of the joint velocities; BAS stays far below the limits.",
@@ -117,7 +117,7 @@ def _limits(section: str, compared: list[Compared]) -> Check:
 
 
 def shown_excess(excess: float) -> str:
-    """An excess over a limit (rad/s); what is below the spacing of doubles is none."""
+    """Formats an excess over a limit (rad/s); anything below the spacing of doubles counts as none."""
     return "none" if excess <= 2.3e-16 else f"{number(excess, 2)} rad/s"
 
 

@@ -1,4 +1,4 @@
-"""Figures 7 and 8, Tables 1 and 2: the beetle beside four swarms."""
+"""Figures 7 and 8, Tables 1 and 2: beetle antennae search beside four swarms."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "The beetle beside four swarms"
-_TESTS = 25  # as Table 2
+_TESTS = 25  # tests of Table 2
 _TESTS_SHORT = 2
-_FEW = 3  # tests of the swarms in boxes as long as the error
+_FEW = 3  # tests of the swarms in boxes as wide as the error
 
 _TEXT = """
 The paper gives five methods the same task, the iiwa's circle, and compares them twice. In each step all of them search
@@ -64,7 +64,7 @@ the error, as in the next section but one, the four swarms get below half of the
 
 @dataclass(frozen=True)
 class Comparison:
-    """All methods, BAS first: their runs at equal precision and at equal budget."""
+    """Runs of all methods, BAS first, at equal precision and at equal budget."""
 
     precise: list[Compared]
     budgeted: list[Compared]
@@ -84,13 +84,13 @@ def compare(context: Context) -> Comparison:
     ]
     few = seeds[: context.pick(full=_FEW, short=1)]
     names = context.each("cheng2020: swarms in boxes as long as the error", RIVALS)
-    near = 0.5 * budgeted[0].error.mean  # of the beetle: where a rival may stop
+    near = 0.5 * budgeted[0].error.mean  # a rival may stop at half the beetle's error
     boxed = {name: _in_error_boxes(name, few, near) for name in names}
     return Comparison(precise, budgeted, boxed)
 
 
 def _in_error_boxes(name: str, seeds: range, near: float) -> tuple[float, float]:
-    """Mean error (m) with the budget of Table 1, and roughness (rad/s) at the precision of Table 2."""
+    """Returns the mean error (m) with the budget of Table 1, and the roughness (rad/s) at the precision of Table 2."""
 
     def runs(band: float, tuned_for: float, most: int) -> list[Followed]:
         setting = all_tuned()[SCALED.name, tuned_for, name].setting
@@ -109,7 +109,7 @@ def _runs(method: Method, setting: Setting, seeds: range, band: float) -> Compar
 
 
 def rivals(comparison: Comparison) -> Part:
-    """The comparison as the paper makes it."""
+    """Repeats the comparison of the paper."""
     precise, budgeted = comparison.precise, comparison.budgeted
     blocks: list[Block] = [
         _TEXT.format(tried=TRIED, finalists=FINALISTS, seeds=len(SEEDS), tests=len(precise[0].results)),
@@ -236,7 +236,7 @@ def _draw_budgeted(compared: list[Compared]) -> Drawing:
 
 
 def _draw_runs(figure: Drawing, compared: list[Compared]) -> list[Axes]:
-    """Joint velocities of one run of each method, below each other; the axes left of them, for the errors."""
+    """Draws joint velocities of one run of each method, one below another; returns the axes left of them."""
     panels = figure.subplots(len(compared), 2, sharex=True)
     for (_, velocity), one in zip(panels, compared, strict=True):
         result = one.results[0]

@@ -1,4 +1,4 @@
-"""What the published gap is made of: the size of the box that is searched, at three accuracies."""
+"""Origin of the published gap: the size of the search box, at three accuracies."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ _WORDS = {1e-3: "1 mm", 1e-4: "0.1 mm", 1e-5: "10 µm"}
 
 @dataclass(frozen=True)
 class Spent:
-    """What a method needs for every step to end within the band, over many seeds."""
+    """Evaluations of a method until every step ends within the band, over many seeds."""
 
     evaluations: Spread
-    """A step."""
+    """Evaluations of a step."""
     missed: int
-    """Steps that did not."""
+    """Steps that ended outside the band."""
 
 
 Costs: TypeAlias = dict[tuple[str, float, str], Spent]
-"""By box, band (m) and method."""
+"""Cost by box, band (m) and method."""
 
 _TEXT = """
 Does the beetle itself explain Table 2? By eq. (12) its antennae are c₁ times as long as the distance from tip to
@@ -59,7 +59,7 @@ so tight that the box of a step is small anyway.
 
 
 def search_box(context: Context, whole: dict[str, Spent]) -> Part:
-    """The methods in all boxes; `whole` are those of the whole box at 1 mm, by method."""
+    """Compares the methods in all boxes; `whole` are their costs in the whole box at 1 mm."""
     costs: Costs = {(WHOLE.name, BANDS[0], name): spent for name, spent in whole.items()}
     cases = [(box, band) for box in BOXES for band in (BANDS if box is not PLANAR else BANDS[:1])]
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
@@ -87,7 +87,7 @@ def _spent(box: Box, band: float, name: str, seeds: range) -> Spent:
 
 
 def over_beetle(costs: Costs, box: Box, band: float) -> dict[str, float]:
-    """Evaluations of each rival over those of the beetle."""
+    """Returns the evaluations of each rival divided by those of the beetle."""
     beetle = costs[box.name, band, BEETLE].evaluations.mean
     return {name: costs[box.name, band, name].evaluations.mean / beetle for name in RIVALS}
 
@@ -113,7 +113,7 @@ def _finding(costs: Costs) -> str:
 
 
 def lead_claims(costs: Costs) -> list[Claim]:
-    """Both claims that the paper makes over the four rivals at equal precision."""
+    """Judges both claims of the paper over the four rivals at equal precision."""
     return [
         Claim.judged(
             "At the same precision of 1 mm BAS is much faster than GA, PSO, FA and QPSO (9 to 47 times).",
@@ -145,7 +145,7 @@ def lead_claims(costs: Costs) -> list[Claim]:
 
 
 def _checks(costs: Costs) -> list[Check]:
-    """What the text of this section says of the boxes."""
+    """Checks the statements that this section makes on the boxes."""
     fine, scaled = over_beetle(costs, TRUST, BANDS[-1]), [over_beetle(costs, SCALED, band) for band in BANDS]
     return [
         Check(
@@ -216,7 +216,7 @@ def _settings_table() -> Table:
 
 
 def _draw(costs: Costs) -> Drawing:
-    """A panel a box, a line a method."""
+    """Draws a panel for each box, and a line for each method."""
     with drawing(3.6) as figure:
         panels = figure.subplots(1, len(_DRAWN), sharex=True, sharey=True)
         for axes, box in zip(panels, _DRAWN, strict=True):

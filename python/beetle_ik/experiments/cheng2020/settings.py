@@ -1,4 +1,4 @@
-"""What the paper sets, and what we had to choose because it does not.
+"""Settings from the paper, and our choices where it gives none.
 
 The paper states the circles, the velocity limits, T and Ts. It states neither c1, c2, n and the error band nor the
 link lengths and the start; ours are chosen so that its sentences about Figures 2 to 6 come true.
@@ -25,11 +25,11 @@ ROUNDING = 1e-12  # rad/s, by which a velocity may exceed its limit
 _RIPPLE = 0.004  # rad/s, W of eq. (7); omega is 1 rad/s
 
 
-# What the sentences of the paper depend on, and what it says of it.
+# Settings on which the paper's sentences depend, and its values.
 PARAMETERS: dict[str, float | Printed] = {
     "T [s]": DURATION,
     "Ts [s]": DT,
-    "c₁": Printed.NOT_IN_COPY,  # Figure 5 may give those that it compares
+    "c₁": Printed.NOT_IN_COPY,  # Figure 5 may give the compared values
     "c₂": Printed.NOT_IN_COPY,  # Figure 6
     "n": Printed.NOT_IN_COPY,  # Figure 4
     "error band": Printed.NOT_STATED,
@@ -53,15 +53,15 @@ class Task:
     on_path: NDArray[np.float64]
     """A start on the circle."""
     off_path: NDArray[np.float64]
-    """A start off the circle, so that there is an approach to see."""
+    """A start off the circle, from which there is an approach."""
 
     @property
     def limits(self) -> bik.Limits:
-        """Eq. (7): H + W sin(t); positions as the robot has them."""
+        """Limits by eq. (7), H + W sin(t), with the robot's position limits."""
         return bik.Limits(velocity=bik.Sinusoid(mean=self.velocity, amplitude=_RIPPLE, angular_frequency=1.0))
 
     def velocity_limit(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Eq. (7) as numbers: rad/s at these times (s)."""
+        """Returns the limit of eq. (7) (rad/s) at these times (s)."""
         limit: NDArray[np.float64] = self.velocity + _RIPPLE * np.sin(time)
         return limit
 
@@ -75,9 +75,9 @@ class Task:
         limits: bik.Limits | None = None,
         task: bik.tasks.Position | None = None,
     ) -> bik.TrackResult:
-        """Follow the circle: from off the path and under the paper's limits where nothing else is said.
+        """Follows the circle, by default from a start off it and under the paper's limits.
 
-        A tick's limit is that at its start, as in the paper.
+        The limit of a tick is the limit at its start, as in the paper.
         """
         return bik.track(
             self.robot,
@@ -116,27 +116,27 @@ IIWA = Task(
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """A beetle, and the error band in which it may rest."""
+    """Options of the beetle, and the error band within which it rests."""
 
     walk: Literal["star", "chain"]
     c1: float
     c2: float = 1.0
     explorations: int
     band: float
-    """m"""
+    """Error band (m)."""
 
     @property
     def solver(self) -> bik.papers.BAS:
-        """The beetle."""
+        """Beetle antennae search with these options."""
         return bik.papers.BAS(variant=self.walk, c1=self.c1, c2=self.c2, explorations=self.explorations)
 
 
-# The literal reading: all explorations of a pass start from the same point, eq. (8), (9) and (11).
+# Literal reading: all explorations of a pass start from the same point, eq. (8), (9) and (11).
 STAR = {
     FIVE_LINK.name: Setting(walk="star", c1=1.0, explorations=50, band=4e-5),
     IIWA.name: Setting(walk="star", c1=3.0, explorations=50, band=1.7e-5),
 }
-# The original beetle: it walks on from wherever it went (step vii of Algorithm 1).
+# Original beetle: each exploration starts where the last one ended (step vii of Algorithm 1).
 CHAIN = {
     FIVE_LINK.name: Setting(walk="chain", c1=0.3, explorations=30, band=5e-5),
     IIWA.name: Setting(walk="chain", c1=1.0, explorations=30, band=2.2e-5),
@@ -145,26 +145,26 @@ WALKS = {"star": STAR, "chain": CHAIN}
 
 
 def steady_error(result: Run) -> float:
-    """Mean error over the second half (m)."""
+    """Returns the mean error over the second half (m)."""
     return float(result.position_error[STEADY].mean())
 
 
 def worst_error(result: bik.TrackResult) -> float:
-    """Largest error over the second half (m)."""
+    """Returns the largest error over the second half (m)."""
     return float(result.position_error[STEADY].max())
 
 
 def roughness(result: bik.TrackResult) -> float:
-    """How much the joint velocities oscillate: rms change from step to step over the second half (rad/s)."""
+    """Returns the oscillation of the joint velocities: rms change from step to step over the second half (rad/s)."""
     return float(np.sqrt(np.mean(np.diff(result.qd[STEADY], axis=0) ** 2)))
 
 
 def steps_to_band(result: bik.TrackResult) -> int:
-    """Steps until the error is first within its band; the number of steps where it never is."""
+    """Returns the steps until the error is first in its band; the number of all steps if it never is."""
     within = result.position_error <= result.position_tolerance
     return int(within.argmax()) if within.any() else len(within) - 1
 
 
 def excess_velocity(result: bik.TrackResult) -> float:
-    """By how much a joint is faster than its limit, at most (rad/s); negative where none comes near it."""
+    """Returns the largest excess of a joint speed over its limit (rad/s); negative if all are slower."""
     return float(np.max(np.abs(result.qd[1:]) - result.velocity_limit[1:]))

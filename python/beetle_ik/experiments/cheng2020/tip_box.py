@@ -1,4 +1,4 @@
-"""Eq. (5): the tip kept in a box."""
+"""Eq. (5): the tip within a box."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TITLE = "The tip kept in a box"
 _SEEDS = 10
 _SEEDS_SHORT = 1
 
-# Lower and upper corner (m). Each cuts three sides off its circle, by 0.2 m or 0.03 m; the arms start on the fourth.
+# Lower and upper corner (m). A box cuts three sides off its circle, by 0.2 m or 0.03 m; the arm starts on the fourth.
 _BOXES = {
     FIVE_LINK.name: np.array([[3.5, 0.5, -np.inf], [np.inf, 1.5, np.inf]]),
     IIWA.name: np.array([[0.23, 0.23, -np.inf], [np.inf, 0.37, np.inf]]),
@@ -50,27 +50,27 @@ class Boxed:
 
     @property
     def outside(self) -> float:
-        """How far the tip is beyond a face, at most (m); negative inside."""
+        """Largest distance of the tip beyond a face (m); negative inside."""
         tips = np.concatenate([result.position for result in self.results])
         return float(np.maximum(self.box[0] - tips, tips - self.box[1]).max())
 
     @property
     def away(self) -> float:
-        """How far the tip is from the point of the box nearest to its target, at most (m)."""
+        """Largest distance of the tip from the point of the box nearest to its target (m)."""
         nearest = [np.clip(result.reference, *self.box) for result in self.results]
         tips = [result.position for result in self.results]
         return float(np.linalg.norm(np.array(tips) - np.array(nearest), axis=2).max())
 
     @property
     def is_kept(self) -> bool:
-        """Whether no step broke box or limits, and all were as near to their targets as the band and the box allow."""
+        """Whether no step broke box or limits, and each was as near to its target as band and box allow."""
         excess = max(excess_velocity(result) for result in self.results)
-        # The tip is led along the inside of a face, up to half a band from it, and the beetle rests within its band.
+        # The tip moves along the inside of a face, up to half a band from it, and the beetle rests within its band.
         return self.outside < 0.0 and excess <= ROUNDING and self.away <= 2.0 * STAR[self.task.name].band
 
 
 def tip_box(context: Context) -> Part:
-    """Both arms on circles that leave their boxes."""
+    """Follows circles that leave their boxes with both arms."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     boxed = [
         Boxed(task, [_track(task, seed) for seed in seeds])
@@ -93,7 +93,7 @@ def _track(task: Task, seed: int, *, kept: bool = True) -> bik.TrackResult:
 
 
 def region_claim(beyond: float) -> Claim:
-    """Eq. (5); `beyond` is how far Algorithm 1 as printed leaves our boxes (m)."""
+    """Judges eq. (5); `beyond` is the largest distance by which Algorithm 1 as printed leaves our boxes (m)."""
     return Claim.judged(
         "The end-effector stays within specific spaces, pₘᵢₙ < p(t) < pₘₐₓ.",
         source="Section II-B, eq. (5)",

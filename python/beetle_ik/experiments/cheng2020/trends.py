@@ -1,4 +1,4 @@
-"""Figures 4, 5 and 6: what n, c1 and c2 do."""
+"""Figures 4, 5 and 6: effects of n, c1 and c2."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ _TEXT_C2 = """
 **Longer steps.** c₂ behaves like c₁, since with c₁ fixed it only scales the step. In the chain walk only the product
 c₁c₂ matters: with the product fixed at {product}, the planar arm needs {costs} evaluations for c₁ = {lengths}.
 """
-_LENGTHS = (0.1, 0.3, 1.0)  # c₁, with the product kept
+_LENGTHS = (0.1, 0.3, 1.0)  # c₁, with the product of c₁ and c₂ constant
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """One option of the beetle over a range, the others as set."""
+    """One option of the beetle over a range, the other options fixed."""
 
     figure: str
     symbol: str
@@ -65,7 +65,7 @@ class Sweep:
     measured: tuple[float, ...]
     drawn: tuple[float, ...]
     short: tuple[float, ...]
-    """Measured in a quick pass, what the claims are about; the first two are drawn."""
+    """Values of a quick pass, which decide the claims; the first two are drawn."""
     text: str
 
 
@@ -101,7 +101,7 @@ _SWEEPS = (_EXPLORATIONS, _ANTENNA, _STEP)
 
 @dataclass(frozen=True)
 class Measured:
-    """What many seeds gave for one value of the option: mean and standard deviation over the seeds."""
+    """Results for one value of the option: mean and standard deviation over many seeds."""
 
     value: float
     steps: Spread
@@ -110,24 +110,24 @@ class Measured:
 
 
 Measurements: TypeAlias = dict[tuple[str, str], list[Measured]]
-"""By arm and walk, in the order of the option's values."""
+"""Results by arm and walk, in the order of the option's values."""
 
 
 def trends(context: Context) -> Part:
-    """All three sweeps on both arms, for both readings of the walk."""
+    """Measures all three sweeps on both arms, for both readings of the walk."""
     found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
     numbers = _in_words(found["figure_5"], _seeds(context))
     blocks: list[Block] = [_TEXT]
     for sweep in _SWEEPS:
         runs = _runs(sweep, context.pick(full=sweep.drawn, short=sweep.short[:2]))
         blocks += [sweep.text.format(**numbers), runs, _table(sweep, found[sweep.figure])]
-    if not context.short:  # two points a line, of one seed, show no trend
+    if not context.short:  # two points of one seed show no trend
         blocks.append(_overview(found, len(_seeds(context))))
     return Section(TITLE, blocks), _claims(found)
 
 
 def _in_words(by_c1: Measurements, seeds: range) -> dict[str, str]:
-    """The numbers of the text."""
+    """Returns the numbers of the text."""
     optima = {
         arm: min(rows, key=lambda row: row.evaluations.mean) for (arm, walk), rows in by_c1.items() if walk == "star"
     }
@@ -171,7 +171,7 @@ def _claims(found: dict[str, Measurements]) -> list[Claim]:
 
 
 def explorations_claim(found: Measurements) -> Claim:
-    """The fewest explorations beside the most."""
+    """Judges the effect of explorations by the fewest and the most."""
     ends = {f"{walk}, {arm}": (rows[0], rows[-1]) for (arm, walk), rows in found.items()}
     return Claim.judged(
         "With more explorations n the error converges faster and the joint velocity oscillates less, at more cost.",
@@ -191,7 +191,7 @@ def explorations_claim(found: Measurements) -> Claim:
 
 
 def length_claim(symbol: str, source: str, found: Measurements) -> Claim:
-    """Neighbours of 1 beside each other: below and above it."""
+    """Judges the effect of a length by the neighbours of 1, below and above."""
     changes = {}
     for (arm, walk), rows in found.items():
         by_value = {row.value: row for row in rows}
@@ -251,7 +251,7 @@ def _table(sweep: Sweep, found: Measurements) -> Table:
 
 
 def _runs(sweep: Sweep, values: tuple[float, ...]) -> Figure:
-    """One run each of the five-link arm, as the paper draws them."""
+    """Draws one run of the five-link arm for each value, as in the paper."""
     setting = STAR[FIVE_LINK.name]
     joints = FIVE_LINK.on_path.size
     with drawing(6.0) as figure:

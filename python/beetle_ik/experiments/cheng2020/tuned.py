@@ -1,4 +1,4 @@
-"""The settings that `tuning.py` chose, from `tuned.json`."""
+"""Settings chosen by `tuning.py`, from `tuned.json`."""
 
 import json
 from dataclasses import dataclass
@@ -9,23 +9,23 @@ from .boxes import ErrorBox, Setting
 from .methods import METHODS
 
 FILE = Path(__file__).with_name("tuned.json")
-BUDGETED = "whole box, by budget"  # the smallest error with so many evaluations a step
+BUDGETED = "whole box, by budget"  # the smallest error within an evaluation budget of each step
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """The setting that tuning chose."""
+    """A setting chosen by tuning, and its cost."""
 
     setting: Setting
     evaluations: float
-    """A step, mean over the tuning seeds."""
+    """Evaluations of a step, mean over the tuning seeds."""
     missed: int
-    """Steps outside the band, of all tuning seeds."""
+    """Steps of all tuning seeds outside the band."""
 
 
 @cache
 def all_tuned() -> dict[tuple[str, float, str], Tuned]:
-    """By box, goal and method."""
+    """Returns all chosen settings, by box, goal and method."""
     kinds = {method.name: method.kind for method in METHODS}
     found = {}
     for record in json.loads(FILE.read_text(encoding="utf-8")):

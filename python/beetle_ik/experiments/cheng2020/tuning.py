@@ -1,6 +1,6 @@
 """Tunes the methods and writes `tuned.json`: `python -m beetle_ik.experiments.cheng2020.tuning`.
 
-Every method gets the same number of settings for every box and band, BAS included, on seeds that nothing else uses.
+Every method, BAS included, gets the same number of settings for every box and band, on seeds of its own.
 """
 
 import json
@@ -15,20 +15,20 @@ from .tuned import BUDGETED, FILE, Tuned
 
 COMMAND = "python -m beetle_ik.experiments.cheng2020.tuning"
 TRIED = 64  # settings of each method
-FINALISTS = 6  # of them: the cheapest on the first seed, run on all
+FINALISTS = 6  # cheapest settings on the first seed, which run on all seeds
 SEEDS = range(1001, 1009)
-MAY_MISS = 1e-3  # share of steps that may end outside the band
-NO_BAND = 1e-14  # m: out of reach
+MAY_MISS = 1e-3  # fraction of steps that may end outside the band
+NO_BAND = 1e-14  # m: a band out of reach
 
 
 def settings(method: Method, limit: int) -> list[Solver]:
-    """The settings that are tried, the same ones for every box and band."""
+    """Returns the settings that are tried, the same for every box and band."""
     draws = Draws(sum(map(ord, method.name)))
     return [method.draw(draws, limit) for _ in range(TRIED)]
 
 
 def _boxed(method: Method) -> list[Setting]:
-    """The settings again, each in boxes as long as the error; BAS has its own way to do that."""
+    """Returns the settings in boxes as wide as the error; BAS contracts its search by itself."""
     if method.name == BEETLE:
         return list(settings(method, PATIENCE))
     draws = Draws(1)
@@ -58,13 +58,13 @@ def _mean(costs: list[Cost]) -> float:
 
 
 def _rank(costs: list[Cost]) -> tuple[float, float]:
-    """The cheapest of those that miss hardly a step."""
+    """Returns the sort key of a setting: the cheapest of those that miss hardly a step comes first."""
     missed = sum(cost.missed for cost in costs)
     return max(missed - MAY_MISS * STEPS * len(costs), 0.0), _mean(costs)
 
 
 def _tune_budget(method: Method) -> Tuned:
-    """The smallest error with the budget of Figure 7."""
+    """Finds the smallest error with the budget of Figure 7."""
     first = sorted(settings(method, BUDGET), key=lambda solver: _error(solver, SEEDS[:1]))
     best = min(first[:FINALISTS], key=lambda solver: _error(solver, SEEDS))
     runs = [track(IIWA, best, seed=seed, band=NO_BAND) for seed in SEEDS]
@@ -79,7 +79,7 @@ def _error(solver: Solver, seeds: range) -> float:
 
 
 def main() -> None:
-    """Tune everything and write the file, a line each."""
+    """Tunes all methods and writes the file, one line for each."""
     chosen = []
     for method in METHODS:
         cases = [(box, band) for box in BOXES for band in (BANDS if box is not PLANAR else BANDS[:1])]

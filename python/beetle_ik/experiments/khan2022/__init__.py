@@ -34,7 +34,7 @@ ZNNBAS needs long ticks, eq. (16) and a slow path.
 
 
 def run(context: Context) -> Report:
-    """Run all of it."""
+    """Runs all experiments of the paper."""
     parts = [
         part(context)
         for part in (

@@ -1,4 +1,4 @@
-"""Remark 1: the constant antenna and that of eq. (16) at equal gain."""
+"""Remark 1: the constant antenna and the antenna of eq. (16) at equal gain."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _GAINS = (10.0, 100.0)
 _LENGTHS = (0.003, 0.01, 0.03, 0.1, 0.3)
 _C1 = (0.1, 0.3, 1.0, 3.0)
 _SEEDS = 3
-_HERE = 1e-2  # m^2, at which a run counts as arrived
+_HERE = 1e-2  # m^2, at which a run has arrived
 
 _LAWS = ((50.0, 0.3), (100.0, 0.3), (300.0, 0.3), (100.0, 0.6), (100.0, 1.0))  # k and c1
-_DURATIONS = (50.0, 25.0, 12.5)  # s, of the M: its last stroke takes a quarter
-_LOW, _HIGH = 3.2, 4.0  # of rms error over v / (k c1)
+_DURATIONS = (50.0, 25.0, 12.5)  # s, durations of the M; its last stroke takes a quarter
+_LOW, _HIGH = 3.2, 4.0  # bounds of rms error over v / (k c1)
 _SLACK = 1.25
 
 _TEXT = """
@@ -45,32 +45,32 @@ that does not move is reached to rounding.
 
 @dataclass(frozen=True)
 class Antenna:
-    """One antenna at one gain, on the M; means over the seeds."""
+    """Results of one antenna at one gain, on the M; means over the seeds."""
 
     gain: float
     length: float | None
-    """Lambda (rad); None: by eq. (16)."""
+    """Lambda (rad); None: from eq. (16)."""
     c1: float | None
     arrival: float
-    """When h at theta first falls below 1e-2 m^2 (s)."""
+    """Time at which h at theta first falls below 1e-2 m^2 (s)."""
     late_h: float
-    """h at theta from 40 to 50 s (m^2)."""
+    """Mean h at theta from 40 to 50 s (m^2)."""
     late_sent_h: float
-    """The same at theta'."""
+    """Mean h at theta' from 40 to 50 s (m^2)."""
 
     @property
     def name(self) -> str:
-        """Words for tables and claims."""
+        """Name in tables and claims."""
         antenna = f"λ = {self.length:g}" if self.length is not None else f"c₁ = {self.c1:g}"
         return f"k = {self.gain:g}, {antenna}"
 
     def no_worse(self, other: Antenna) -> bool:
-        """Whether it arrives no later and is no less exact."""
+        """Whether this antenna arrives no later than the other and is no less exact."""
         return self.arrival <= other.arrival and self.late_h <= other.late_h
 
 
 def antennae(context: Context) -> Part:
-    """Both antennae at two gains, and the law of the error."""
+    """Compares both antennae at two gains, and checks the law of the error."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=1))
     settings = [(k, length, None) for k in _GAINS for length in _LENGTHS] + [(k, None, c) for k in _GAINS for c in _C1]
     tried = [_run(gain, length, c1, seeds) for gain, length, c1 in context.each("khan2022: Remark 1", settings)]
@@ -97,7 +97,7 @@ def antennae(context: Context) -> Part:
 
 
 def remark_1(tried: Sequence[Antenna]) -> Claim:
-    """Both antennae at the same gains."""
+    """Judges both antennae at the same gains."""
     constant = [antenna for antenna in tried if antenna.length is not None]
     adaptive = [antenna for antenna in tried if antenna.length is None]
     return Claim.judged(
@@ -112,7 +112,7 @@ def remark_1(tried: Sequence[Antenna]) -> Claim:
 
 
 def law(factors: Sequence[float]) -> Check:
-    """Rms errors over v / (k c1)."""
+    """Checks the rms errors over v / (k c1)."""
     return Check(
         statement="With the antenna of eq. (16) ZNNBAS lags in proportion to v/(k c₁).",
         rule=f"The rms error is {number(_LOW / _SLACK, 2)} to {number(_HIGH * _SLACK, 2)} times v/(k c₁).",
@@ -131,7 +131,7 @@ def _run(gain: float, length: float | None, c1: float | None, seeds: range) -> A
 
 
 def _law_factor(gain: float, c1: float, duration: float, *, seed: int) -> float:
-    """The rms error along the last stroke of the M, over v / (k c1)."""
+    """Returns the rms error along the last stroke of the M, over v / (k c1)."""
     speed = 4.0 * STROKE / duration
     return float(
         follow(letter(duration), bik.papers.ZNNBAS(gain=gain, c1=c1), seed=seed).late_h ** 0.5 * gain * c1 / speed

@@ -1,4 +1,4 @@
-"""The constants of Algorithm 1: the sign of the gain, and how much each of them matters."""
+"""The constants of Algorithm 1: the sign of the gain, and the influence of each constant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 TITLE = "The constants of Algorithm 1"
 _GAIN, _LENGTH, _DELAY = 10.0, 0.1, 10
-_UNITS = {"ticks of 1 ms": (1, 100), "ticks of 10 ms": (10, 1000), "seconds": (1, 10_000)}  # delays of a unit [ms]
+_UNITS = {"ticks of 1 ms": (1, 100), "ticks of 10 ms": (10, 1000), "seconds": (1, 10_000)}  # delays by unit [ms]
 _DELAYS = (1, 3, 10, 30, 100, 200, 300, 500, 1000, 10_000)
 _DELAYS_SHORT = (1, 10, 100, 1000, 10_000)
 _FACTORS = (0.1, 0.3, 1.0, 3.0, 10.0)
@@ -64,7 +64,7 @@ def constants(context: Context) -> Part:
 
 
 def core_parameter(delays: Mapping[str, Mapping[float, float]], others: Mapping[str, Mapping[float, float]]) -> Claim:
-    """Late h (m^2) over each constant from a tenth to ten times its printed value; over α by its unit."""
+    """Judges late h (m^2) over each constant from a tenth to ten times its printed value; α by its unit."""
     by_unit, rivals = (
         {name: max(over.values()) / min(over.values()) for name, over in errors.items()} for errors in (delays, others)
     )
@@ -81,7 +81,7 @@ def core_parameter(delays: Mapping[str, Mapping[float, float]], others: Mapping[
 
 
 def printed_gain(first: Sequence[float], last: Sequence[float]) -> Claim:
-    """H at the start and at the end of runs with k = -10 (m^2)."""
+    """Judges h at the start and at the end of runs with k = -10 (m^2)."""
     return Claim.judged(
         "The gain is k = -10.",
         source="Algorithm 1, line 5, with eq. (14)",

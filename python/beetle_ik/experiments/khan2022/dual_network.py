@@ -23,7 +23,7 @@ import beetle_ik as bik
 
 from .settings import Array
 
-_ROWS = 3  # of a position
+_ROWS = 3  # rows of a position
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,15 +31,15 @@ class DualNetwork:
     """The options of the network."""
 
     feedback: float = 20.0
-    """K (1/s)."""
+    """Feedback gain K (1/s)."""
     drift_free: float = 0.0
-    """mu (1/s): 0 leaves the velocity of least norm."""
+    """Weight mu (1/s); 0 gives the velocity of least norm."""
     time_constant: float = 1e-3
-    """epsilon (s)."""
+    """Time constant epsilon (s)."""
     inner_steps: int = 1
     """Steps of the network in a tick."""
     limit_gain: float = 10.0
-    """kappa (1/s)."""
+    """Gain kappa of the position limits (1/s)."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def track(
     upper: Array | None = None,
     velocity: float = 2.0,
 ) -> Tracked:
-    """Follow `path` from `start` within positions `lower`, `upper` (n,) (rad) and |qd| <= `velocity` (rad/s).
+    """Follows `path` from `start` within positions `lower`, `upper` (n,) (rad) and |qd| <= `velocity` (rad/s).
 
     The joints take Euler steps of `dt`, the network implicit ones: it is stiff.
     """
@@ -94,12 +94,12 @@ def track(
 
 
 def _step(u: Array, constraint: Array, c: Array, box: tuple[Array, Array], ratio: float) -> Array:
-    """One implicit Euler step, h / epsilon = `ratio`, with the set of bounds that P meets held as it is at `u`."""
+    """Returns u after one implicit Euler step, h / epsilon = `ratio`, with the active bounds of `u` fixed."""
     w = constraint @ constraint.T
     inside = w @ u - c - u
     bound = np.clip(inside, *box)
     free = (bound == inside).astype(float)
-    # P(z) = z where free, the bound elsewhere.
+    # Projection P(z): z where free, the bound elsewhere.
     slope = w - free[:, None] * (w - np.eye(len(u)))
     rest = (1.0 - free) * (bound + c)
     return np.asarray(np.linalg.solve(np.eye(len(u)) + ratio * slope, u + ratio * rest))

@@ -33,12 +33,12 @@ from .settings import (
 
 TITLE = "Figures 2 and 3: the M and the star"
 _SEEDS, _SEEDS_SHORT = 15, 2
-_TICKS = (1e-2, DT, 1e-4)  # s; the paper gives none
-_TRACED = 0.05  # of the path's height
+_TICKS = (1e-2, DT, 1e-4)  # s; the paper gives no tick
+_TRACED = 0.05  # fraction of the path's height
 _SETTLED = 10.0  # s
 _STEADY = 0.01  # m
 _REACHED = 1e-3  # m
-_BACK_TO_LINK_7 = bik.pose([0.0, 0.0, -0.045])  # from the flange
+_BACK_TO_LINK_7 = bik.pose([0.0, 0.0, -0.045])  # seen from the flange
 
 _TEXT = """
 All runs start in the home position, with the arm erect, and make exactly one measurement per tick: 50,000 in 50 s at 1
@@ -58,7 +58,7 @@ meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, a
 """
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)  # told apart by identity: a path has no hash
+@dataclass(frozen=True, kw_only=True, eq=False)  # compared by identity: a path has no hash
 class Case:
     """A path with constants of the controller, with limits or without."""
 
@@ -81,21 +81,21 @@ _CASES = (_M, _M_LIMITED, _M_ADAPTIVE, *_STARS.values(), _SMALL_STAR, _STAR_ADAP
 
 @dataclass(frozen=True)
 class Runs:
-    """A case over several seeds. What stays of a run is a few numbers: only the first is kept whole."""
+    """A case over several seeds. A run is reduced to a few numbers; only the first is kept whole."""
 
     first: Run
     late_h: Spread
-    """h at theta from 40 to 50 s (m^2)."""
+    """Mean h at theta from 40 to 50 s (m^2)."""
     late_sent_h: Spread
-    """The same at theta', where the arm is."""
+    """Mean h at theta', where the arm is, from 40 to 50 s (m^2)."""
     least_h: float
-    """Least h at theta from 40 to 50 s, of the run where that is largest (m^2)."""
+    """Least h at theta from 40 to 50 s, the largest of all runs (m^2)."""
     arrivals: dict[float, float]
-    """When h first fell below each of ARRIVED, the median of the runs (s)."""
+    """Time at which h first fell below each of ARRIVED, median of the runs (s)."""
 
 
 def figures(context: Context) -> Part:
-    """Both paths, with the printed constants; within limits; over ticks; and with the antenna of eq. (16)."""
+    """Follows both paths with the printed constants, within limits, over ticks, and with the antenna of eq. (16)."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     cases = context.pick(full=_CASES, short=tuple(case for case in _CASES if case.dt >= DT))
     found = {case: _run(case, seeds) for case in context.each("khan2022: Figures 2 and 3", cases)}
@@ -176,7 +176,7 @@ def _claims(found: dict[Case, Runs], worst: Mapping[str, float]) -> list[Claim]:
 
 
 def letter_arrival(arrivals: Mapping[str, float]) -> Claim:
-    """`arrivals` (s) by reading."""
+    """Judges the arrivals (s) on the M by reading."""
     return Claim.judged(
         "On the M the objective approaches zero in less than 10 s.",
         source="Section 4.1, Figures 2(d) and 2(e)",
@@ -190,7 +190,7 @@ def letter_arrival(arrivals: Mapping[str, float]) -> Claim:
 
 
 def letter_error(mean: float, least: float, sent_mean: float) -> Claim:
-    """Mean and least h at theta, and mean at theta' (m^2), from 40 to 50 s."""
+    """Judges mean and least h at theta, and mean h at theta' (m^2), from 40 to 50 s."""
     return Claim.judged(
         "From 40 to 50 s the error on the M goes down to 10⁻⁵.",
         source="Section 4.1, Figure 2(d)",
@@ -211,7 +211,7 @@ def letter_error(mean: float, least: float, sent_mean: float) -> Claim:
 
 
 def star_arrival(arrivals: Mapping[str, float]) -> Claim:
-    """`arrivals` (s) by reading."""
+    """Judges the arrivals (s) on the star by reading."""
     return Claim.judged(
         "On the star the objective approaches zero in less than 3 s.",
         source="Section 4.1, Figures 3(d) and 3(e)",
@@ -225,7 +225,7 @@ def star_arrival(arrivals: Mapping[str, float]) -> Claim:
 
 
 def traced(statement: str, source: str, errors: Mapping[str, float], height: float) -> Claim:
-    """Rms errors (m) at theta and at theta', and the height of the path (m)."""
+    """Judges rms errors (m) at theta and at theta' against the height of the path (m)."""
     return Claim.judged(
         statement,
         source=source,
@@ -239,7 +239,7 @@ def traced(statement: str, source: str, errors: Mapping[str, float], height: flo
 
 
 def no_spikes(motions: Mapping[str, tuple[float, float]], fastest: float) -> Claim:
-    """Rms error of the tool (m) and rms joint speed, at theta and at theta'; the arm's fastest joint (rad/s)."""
+    """Judges rms tool error (m) and rms joint speed at theta and theta', against the arm's fastest joint (rad/s)."""
     return Claim.judged(
         "It optimises “without showing any spikes of noise or undesirable behavior of manipulator”.",
         source="Section 4.1",
@@ -257,7 +257,7 @@ def no_spikes(motions: Mapping[str, tuple[float, float]], fastest: float) -> Cla
 
 
 def limits_kept(worst: Mapping[str, float]) -> Claim:
-    """How far the worst point of the first stroke is out of reach within the arm's limits (m), by end-effector."""
+    """Judges the largest distance of the first stroke from the arm's reach within its limits (m), by end-effector."""
     return Claim.judged(
         "The joints stay within their limits, eq. (7) and (11), and the M is followed.",
         source="Sections 2.2 and 3.1, Figure 2",
@@ -271,7 +271,7 @@ def limits_kept(worst: Mapping[str, float]) -> Claim:
 
 
 def star_equation(apart: float) -> Claim:
-    """Largest distance of a point of eq. (20) from the hypotrochoid (m)."""
+    """Judges the largest distance of a point of eq. (20) from the hypotrochoid (m)."""
     return Claim.judged(
         "Eq. (20) with a = (0, 1, 0) and b = (0, 0, 1) is a hypotrochoid, a star.",
         source="Section 4.1, eq. (20)",
@@ -284,7 +284,7 @@ def star_equation(apart: float) -> Claim:
 
 
 def out_of_reach(points: Array, arm: bik.Robot = IIWA) -> float:
-    """How far the farthest of `points` (k, 3) is from what the arm reaches within its limits (m)."""
+    """Returns the largest distance of `points` (k, 3) from the arm's reach within its limits (m)."""
     return max(float(bik.solve(arm, point).position_error) for point in points)
 
 
@@ -295,7 +295,7 @@ def _settled(run: Run) -> tuple[dict[str, float], float]:
 
 
 def _late_motions(run: Run) -> dict[str, tuple[float, float]]:
-    """Error of the tool (m) and speed of one joint (rad/s) from 40 to 50 s, rms, at theta and at theta'."""
+    """Returns rms tool error (m) and rms speed of one joint (rad/s) from 40 to 50 s, at theta and at theta'."""
     return {
         name: (rms(h[run.late]), rms((np.diff(joints[run.late], axis=0) / DT) ** 2))
         for name, h, joints in (
@@ -312,7 +312,7 @@ def _farthest_from_star() -> float:
 
 
 def _centimetres(runs: Runs) -> str:
-    """How far the commanded tool is off its path (rms)."""
+    """Formats the rms distance of the commanded tool from its path in centimetres."""
     return number(100.0 * runs.late_sent_h.mean**0.5)
 
 

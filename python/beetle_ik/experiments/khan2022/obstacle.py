@@ -1,4 +1,4 @@
-"""A beetle that keeps clear of an obstacle, beside null-space avoidance: after the authors' paper of 2020."""
+"""Obstacle avoidance by the beetle, beside null-space avoidance: after the authors' paper of 2020."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 TITLE = "A beetle among obstacles: after Khan, Li and Luo 2020"
 ARM = IIWA.with_capsules(radius=0.06)
 MARGIN = 0.03  # m
-_INSIDE = 0.02  # m: how deep the arm that sees no obstacle reaches into it
+_INSIDE = 0.02  # m: depth by which the arm enters an obstacle that it ignores
 _POINTS = 120
 _FOLLOWED = 1e-4  # m
-_FACTORS = (1, 10, 100, 1000)  # evaluations of the beetle over those of the null space
+_FACTORS = (1, 10, 100, 1000)  # evaluations of the beetle over those of null-space avoidance
 
 _TEXT = """
 Two authors of this line of work wrote of obstacles before: A. H. Khan, S. Li and X. Luo, “Obstacle Avoidance and
@@ -46,20 +46,20 @@ margin it steps aside at once; the beetle creeps along the margin.
 
 @dataclass(frozen=True)
 class Round:
-    """A round of the circle (k points)."""
+    """One round of the circle (k points)."""
 
     error: Array
     """Distance of the tool from the circle (k,) (m)."""
     clearance: Array
     """Smallest distance of the arm from the ball and from itself (k,) (m)."""
     evaluations: Array
-    """Of forward kinematics, at each point (k,)."""
+    """Evaluations of the forward kinematics at each point (k,)."""
     step: Array
     """Largest joint step to each point (k,) (rad)."""
 
 
 def obstacle(context: Context) -> Part:
-    """One round by each method."""
+    """Runs one round by each method."""
     points = circle(1.0).position(np.linspace(0.0, 1.0, _POINTS + 1))
     ball = _ball(points)
     free = _round(points, ball, lambda point, start, _: bik.solve(ARM, point, start=start))
@@ -87,7 +87,7 @@ def obstacle(context: Context) -> Part:
 
 
 def keeps_clear(errors: Array, distances: Array) -> Check:
-    """Tool errors and smallest distances of null-space avoidance (k,) (m)."""
+    """Checks tool errors and smallest distances of null-space avoidance (k,) (m)."""
     return Check(
         statement="Null-space avoidance stays on the circle and keeps the margin.",
         rule=f"At each point the error is below {number(1e3 * _FOLLOWED, 1)} mm and the distance at least the margin.",
@@ -98,7 +98,7 @@ def keeps_clear(errors: Array, distances: Array) -> Check:
 
 
 def is_farther(beetle: Array, null_space: Array) -> Check:
-    """Tool errors at equal evaluations (k,) (m)."""
+    """Checks tool errors at equal evaluations (k,) (m)."""
     return Check(
         statement="At equal evaluations the beetle is farther from the circle than null-space avoidance.",
         rule="The rms error of the beetle is the larger one.",
@@ -109,7 +109,7 @@ def is_farther(beetle: Array, null_space: Array) -> Check:
 
 
 def _round(points: Array, ball: bik.obstacles.Obstacle, solve: Callable[[Array, Array, int], bik.Solution]) -> Round:
-    """Solves each point from the solution of the one before."""
+    """Solves each point from the solution of the point before."""
     q, evaluations = [np.asarray(ON_CIRCLE)], []
     for i, point in enumerate(points):
         solution = solve(point, q[-1], i)
@@ -133,7 +133,7 @@ def _beetle(points: Array, ball: bik.obstacles.Obstacle, evaluations: Array, fac
 
 
 def _ball(points: Array) -> bik.obstacles.Sphere:
-    """A ball beside the elbow, where the arm that does not know of it is half way round."""
+    """Returns a ball beside the elbow of the arm half way round the circle."""
     q = np.asarray(ON_CIRCLE)
     for point in points[: len(points) // 2]:
         q = np.asarray(bik.solve(ARM, point, start=q).q)

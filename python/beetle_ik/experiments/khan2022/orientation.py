@@ -23,7 +23,7 @@ _RUNS: tuple[tuple[str, bik.papers.ZNNBAS | bik.BroydenBAS, float, float], ...] 
     ("BroydenBAS", _SECANTS, 1e-4, 1e-4),
     ("BroydenBAS", _SECANTS, 1e-3, 1e-4),
 )
-"""Controllers, and the noise of the sensor on each axis (m, rad)."""
+"""Controllers, and the standard deviation of the sensor's noise on each axis (m, rad)."""
 _NOISELESS_SECANTS = 2
 
 _TEXT = """
@@ -35,7 +35,7 @@ orientation of the start along the circle.
 
 
 def orientation(context: Context) -> Part:
-    """The circle by each controller, with the orientation free and with it held."""
+    """Follows the circle by each controller, with the orientation free and with it constant."""
     free = circle(context.pick(full=_DURATION, short=_DURATION_SHORT))
     paths = (free, free.with_orientation(_ORIENTATION))
     found = [
@@ -65,7 +65,7 @@ def orientation(context: Context) -> Part:
 
 
 def holds(off: float, turned: float) -> Check:
-    """Rms errors of BroydenBAS (m, rad) with the orientation held."""
+    """Checks rms errors of BroydenBAS (m, rad) with a constant orientation."""
     return Check(
         statement="`BroydenBAS` holds position and orientation on an arm built otherwise than drawn.",
         rule=f"Over the second half of the circle both errors are below {number(_HELD, 1)} (m and rad, rms).",
@@ -78,7 +78,7 @@ def holds(off: float, turned: float) -> Check:
 def _off(
     path: bik.Path, run: tuple[str, bik.papers.ZNNBAS | bik.BroydenBAS, float, float], seed: int
 ) -> tuple[float, float]:
-    """Distance from the path (m) and angle from the first orientation (rad), rms over the second half."""
+    """Returns distance from the path (m) and angle from the first orientation (rad), rms over the second half."""
     _, controller, noise, rotation_noise = run
     plant = bik.KinematicPlant(_BUILT, noise=noise, rotation_noise=rotation_noise, seed=seed)
     result = bik.track_model_free(plant, path, ON_CIRCLE, dt=DT, controller=controller, seed=seed)
@@ -89,6 +89,6 @@ def _off(
 
 
 def _angles(rotations: Array) -> Array:
-    """Angles of rotation matrices (k, 3, 3) (rad), accurate near zero."""
+    """Returns the angles of rotation matrices (k, 3, 3) (rad), accurate near zero."""
     chords = np.linalg.norm(rotations - np.eye(3), axis=(1, 2)) / np.sqrt(8.0)
     return np.asarray(2.0 * np.arcsin(np.minimum(chords, 1.0)))

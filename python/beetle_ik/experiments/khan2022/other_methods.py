@@ -1,4 +1,4 @@
-"""What section 1 says of other methods, and what it says ZNNBAS does better: measured side by side."""
+"""Claims of section 1 on other methods and on the advantages of ZNNBAS, measured side by side."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from .settings import (
 )
 
 TITLE = "Section 1: other methods, and claims about this one"
-FEEDBACK = 20.0  # 1/s, of the position, for both methods that have a model
-COARSE = 0.01  # s, the tick of methods that have a model
+FEEDBACK = 20.0  # 1/s, position feedback of both methods with a model
+COARSE = 0.01  # s, tick of the methods with a model
 _TRACED = 0.02  # m
-_NEAR = (1e-3**0.5, 1e-4)  # m: where h "approaches zero" for the M, and what counts as reached for Cheng's beetle
-_SHARE = 0.1  # of a tick of 1 ms: more computing would be "expensive"
-_SPEEDS = (12.5, 5.0, 2.5)  # s, of the M
-_SHORTER = 0.2  # of the command's step, at a tenth of the tick, if it moved continuously
+_NEAR = (1e-3**0.5, 1e-4)  # m: "approaches zero" on the M, and the band of Cheng's beetle
+_SHARE = 0.1  # fraction of a tick of 1 ms above which computing is "expensive"
+_SPEEDS = (12.5, 5.0, 2.5)  # s, durations of the M
+_SHORTER = 0.2  # bound on steps at a tenth of the tick over those at the tick, for continuous motion
 
 _TEXT = """
 The paper compares ZNNBAS with the pseudo-inverse of the Jacobian and the dual neural network, without running either.
@@ -55,7 +55,7 @@ Joints: TypeAlias = tuple[Array, Array]
 
 @dataclass(frozen=True)
 class Method:
-    """A way to follow a path from a configuration on it, within limits or without."""
+    """A method that follows a path from a configuration on it, within limits or without."""
 
     knows: str
     run: Callable[[bik.Path, Array, bik.Limits, int], Joints]
@@ -113,7 +113,7 @@ _PATHS = (
 
 
 def other_methods(context: Context) -> Part:
-    """The table of methods, and the claims of section 1 that a run can decide."""
+    """Tabulates the methods, and judges the claims of section 1 that a run can decide."""
     paths = context.pick(full=_PATHS, short=_PATHS[:1])
     methods = context.each("khan2022: methods", list(_METHODS.items()))
     rows = [_row(name, method, paths, context.seed) for name, method in methods]
@@ -133,7 +133,7 @@ def other_methods(context: Context) -> Part:
 
 
 def expensive(seconds: float, of_znnbas: float) -> Claim:
-    """Computing time of one tick of the pseudo-inverse (s), and of one of ZNNBAS."""
+    """Judges the computing time of a tick of the pseudo-inverse (s) against that of a tick of ZNNBAS."""
     return Claim.judged(
         "Computing the Jacobian and its pseudo-inverse along the path in real time is “computationally expensive”.",
         source="Sections 1 and 2.1",
@@ -149,7 +149,7 @@ def expensive(seconds: float, of_znnbas: float) -> Claim:
 
 
 def real_time(seconds: float) -> Claim:
-    """Computing time of one tick of ZNNBAS (s)."""
+    """Judges the computing time of one tick of ZNNBAS (s)."""
     return Claim.judged(
         "ZNNBAS resolves the redundancy in real time.",
         source="Abstract, section 1",
@@ -162,7 +162,7 @@ def real_time(seconds: float) -> Claim:
 
 
 def continuous(steps: Mapping[str, Sequence[float]]) -> Claim:
-    """Rms steps of a joint (rad) at a tick, and at a tenth of it, at theta and at theta'."""
+    """Judges rms steps of a joint (rad) at a tick, and at a tenth of it, at theta and at theta'."""
     return Claim.judged(
         "Unlike discrete swarms, whose particles jump from point to point, ZNNBAS moves continuously.",
         source="Sections 1 and 5",
@@ -180,7 +180,7 @@ def continuous(steps: Mapping[str, Sequence[float]]) -> Claim:
 
 
 def any_path(slow: Mapping[str, float], quick: Mapping[str, float]) -> Claim:
-    """Late rms errors at theta (m) by path: in 50 s, and in less."""
+    """Judges late rms errors at theta (m) by path: in 50 s, and in less."""
     errors = {**slow, **quick}
     return Claim.judged(
         "It works for any other tracking path as well.",
@@ -197,7 +197,7 @@ def any_path(slow: Mapping[str, float], quick: Mapping[str, float]) -> Claim:
 
 
 def global_solution(reached: Mapping[float, int], targets: int) -> Claim:
-    """How many of so many random targets within reach were reached, by how near counts as reached (m)."""
+    """Judges the number of random targets that are reached, by the distance (m) that counts as reached."""
     return Claim.judged(
         "By the random search of BAS it avoids local minima and converges to a global solution.",
         source="Section 5",
@@ -250,7 +250,7 @@ def _seconds_per_tick_of_znnbas() -> float:
 
 
 def _steps(ticks: Sequence[float], seed: int) -> dict[str, list[float]]:
-    """Rms steps of a joint (rad) by tick, at theta and at theta'."""
+    """Returns rms steps of a joint (rad) by tick, at theta and at theta'."""
     results = [follow(letter(10.0), PUBLISHED, seed=seed, dt=dt) for dt in ticks]
     return {
         name: [rms(np.diff(joints[run.late], axis=0) ** 2) for run, joints in zip(results, moves, strict=True)]

@@ -14,12 +14,12 @@ from .settings import STAR, Array, Run, star_as_printed
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-_EVERY = 50  # rows of 1 ms between points that are drawn
-_POSTURES = (0.0, 0.03, 0.25, 0.5, 1.0)  # shares of the run at which the arm is drawn
+_EVERY = 50  # rows of 1 ms from one drawn point to the next
+_POSTURES = (0.0, 0.03, 0.25, 0.5, 1.0)  # fractions of the run at which the arm is drawn
 
 
 def draw_run(run: Run, robot: bik.Robot) -> Drawing:
-    """All panels of one run."""
+    """Draws all panels of one run."""
     with drawing(10.0) as figure:
         grid = figure.add_gridspec(3, 2, height_ratios=[2.6, 1.0, 1.0])
         top = grid[0, :].subgridspec(1, 2, width_ratios=[1.5, 1.0])
@@ -33,7 +33,7 @@ def draw_run(run: Run, robot: bik.Robot) -> Drawing:
 
 
 def _draw_arm(space: Any, run: Run, robot: bik.Robot) -> None:
-    """Panels (a) and (f): postures from home to the end, and the path."""
+    """Draws panels (a) and (f): postures from home to the end, and the path."""
     last = len(run.time) - 1
     for i, share in enumerate(_POSTURES):
         alpha = 1.0 if i == len(_POSTURES) - 1 else 0.25
@@ -46,7 +46,7 @@ def _draw_arm(space: Any, run: Run, robot: bik.Robot) -> None:
 
 
 def _draw_front(front: Any, run: Run) -> None:
-    """The path as seen along x, with the tool where it is commanded."""
+    """Draws the path as seen along x, with the commanded tool."""
     rows = slice(None, None, _EVERY)
     reference = run.result.reference
     front.plot(*run.result.position[rows, 1:].T, color=SKY, linewidth=0.4, label="commanded tool")
@@ -82,7 +82,7 @@ def _draw_over_time(panels: list[Any], run: Run) -> None:
 
 
 def draw_stars() -> Drawing:
-    """Eq. (20) as printed beside the hypotrochoid."""
+    """Draws eq. (20) as printed beside the hypotrochoid."""
     time = np.linspace(0.0, STAR.duration, 1001)
     curves: tuple[tuple[str, Array], ...] = (
         ("as printed", np.array([star_as_printed(t) for t in time])),

@@ -1,4 +1,4 @@
-"""Repetitive motion: where the joints are after ten rounds of a circle, and what has added up by then."""
+"""Repetitive motion: joint drift and accumulated error after ten rounds of a circle."""
 
 from __future__ import annotations
 
@@ -44,16 +44,16 @@ a space of three dimensions, in which a tool position has, locally, one configur
 
 @dataclass(frozen=True)
 class Rounds:
-    """How a method fared, round by round (k,)."""
+    """Drift and error of a method, round by round (k,)."""
 
     drift: Array
     """Largest joint difference from the first configuration (rad)."""
     error: Array
-    """Largest distance of the tool from the path (m); of ZNNBAS at theta."""
+    """Largest distance of the tool from the path (m); for ZNNBAS at theta."""
 
 
 def repetition(context: Context) -> Part:
-    """Ten rounds by each method."""
+    """Runs ten rounds by each method."""
     count, duration = context.pick(full=(_ROUNDS, _ROUND), short=(3, _ROUND_SHORT))
     one = circle(duration)
     path = bik.paths.from_function(lambda t: one.position(t % duration), count * duration)
@@ -80,7 +80,7 @@ def repetition(context: Context) -> Part:
 
 
 def not_repeatable(drift: float, rounds: int) -> Claim:
-    """Joint difference by the pseudo-inverse after so many rounds (rad)."""
+    """Judges the joint drift of the pseudo-inverse after `rounds` rounds (rad)."""
     return Claim.judged(
         "The pseudo-inverse does not produce repeatable results.",
         source="Section 1, on reference 23",
@@ -93,7 +93,7 @@ def not_repeatable(drift: float, rounds: int) -> Claim:
 
 
 def adds_up(open_loop: Array, fed_back: Array) -> Claim:
-    """Largest tool errors of the rounds (m), in open loop and with feedback."""
+    """Judges the largest tool errors of the rounds (m), in open loop and with feedback."""
     growth = float(open_loop[-1] / open_loop[0])
     return Claim.judged(
         "Methods that know the model operate in open loop, so that position errors accumulate.",
@@ -108,7 +108,7 @@ def adds_up(open_loop: Array, fed_back: Array) -> Claim:
 
 
 def closes(drift: float, rounds: int) -> Check:
-    """Joint difference by BroydenBAS after so many rounds (rad)."""
+    """Checks the joint drift of BroydenBAS after `rounds` rounds (rad)."""
     return Check(
         statement="`BroydenBAS` repeats its joint motion without a criterion for it.",
         rule=f"After {rounds} rounds no joint is {number(_CLOSED, 1)} rad from where it began.",
@@ -119,7 +119,7 @@ def closes(drift: float, rounds: int) -> Check:
 
 
 def _runs(path: bik.Path, context: Context) -> dict[str, Array]:
-    """Joints (k, n) by method."""
+    """Returns the joints (k, n) by method."""
     ones = np.ones(IIWA.dof)
 
     def modelled(**options: object) -> Array:

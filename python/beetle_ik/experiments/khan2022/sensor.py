@@ -1,4 +1,4 @@
-"""Noise-tolerant tracking: both controllers without a model behind a sensor that errs."""
+"""Noise-tolerant tracking: both model-free controllers with an imperfect sensor."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOISE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # m, standard deviation on 
 _BIAS = (1e-4, 1e-3, 1e-2, 5e-2)  # m
 _DRIFT = (1e-5, 1e-4, 1e-3, 5e-3)  # m/s
 _ALONG = np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)
-_FACTOR = 3.0  # times the noise of the sensor, three axes together
+_FACTOR = 3.0  # multiple of the sensor's noise over three axes
 _UP_TO = 1e-3  # m
 
 _CONTROLLERS: dict[str, bik.papers.ZNNBAS | bik.BroydenBAS] = {
@@ -44,17 +44,17 @@ class Sensor:
     """The exact arm behind a sensor whose bias (m) and drift (m/s) point in one direction."""
 
     def __init__(self, bias: float, drift: float) -> None:
-        """At time zero."""
+        """Starts at time zero."""
         self._bias, self._drift, self._ticks = bias, drift, 0
 
     def move(self, q: Array) -> Array:
-        """Where the tool is said to be (3,)."""
+        """Returns the measured position of the tool (3,)."""
         self._ticks += 1
         return np.asarray(IIWA.fk(q)[:3, 3] + _ALONG * (self._bias + self._drift * DT * self._ticks))
 
 
 def sensor(context: Context) -> Part:
-    """Growing noise, bias and drift."""
+    """Runs over growing noise, bias and drift."""
     noise, bias, drift = (context.pick(full=over, short=over[1::3]) for over in (_NOISE, _BIAS, _DRIFT))
     plants: list[tuple[str, Sequence[float], Callable[[float], Any]]] = [
         ("noise [m]", noise, lambda size: bik.KinematicPlant(IIWA, noise=size, seed=context.seed)),
@@ -88,7 +88,7 @@ def sensor(context: Context) -> Part:
 
 
 def averages(errors: dict[float, float]) -> Check:
-    """True rms errors of BroydenBAS (m) by standard deviation of the sensor (m)."""
+    """Checks true rms errors of BroydenBAS (m) by standard deviation of the sensor (m)."""
     factors = {size: error / (size * np.sqrt(3.0)) for size, error in errors.items()}
     return Check(
         statement="`BroydenBAS` keeps within a few times the noise of its sensor.",
@@ -101,7 +101,7 @@ def averages(errors: dict[float, float]) -> Check:
 
 
 def _errors(plant: Any, controller: bik.papers.ZNNBAS | bik.BroydenBAS, seed: int) -> tuple[float, float]:
-    """True rms errors (m) in the second half: where the arm is sent, and at the accepted state."""
+    """Returns true rms errors (m) in the second half, at the commanded and at the accepted configurations."""
     result = bik.track_model_free(plant, circle(_DURATION), ON_CIRCLE, dt=DT, controller=controller, seed=seed)
     half = slice(len(result.time) // 2, None)
     sent, accepted = (

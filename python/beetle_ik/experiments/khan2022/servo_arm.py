@@ -1,4 +1,4 @@
-"""An arm that is not the arm of the drawing, and an arm with servos, which no command moves at once."""
+"""Two imperfect arms: one built otherwise than drawn, and one with servos that follow commands with a lag."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "An arm that differs from its drawing, and an arm with servos"
-_DURATION = 150.0  # s, of the circle, for ZNNBAS on servos
-_PRINTED = 5.0  # s, of the circle with the printed constants
+_DURATION = 150.0  # s, duration of the circle for ZNNBAS on servos
+_PRINTED = 5.0  # s, duration of the circle with the printed constants
 _REPLAYED = 30.0  # s
 _REPLAY_TICK = 0.2  # s
 _TICKS = (0.005, 0.01, 0.02, 0.05, 0.2)  # s
@@ -48,7 +48,7 @@ let the target run ahead. `BroydenBAS` needs ticks of 10 ms or more, and is more
 
 
 def servo_arm(context: Context) -> Part:
-    """Model errors on the exact arm, then both controllers on the servo arm."""
+    """Measures model errors on the exact arm, then both controllers on the servo arm."""
     errors = _on_wrong_arm(context)
     decided: list[Claim | Check] = [immune(errors)]
     try:
@@ -86,7 +86,7 @@ def servo_arm(context: Context) -> Part:
 
 
 def immune(errors: Mapping[str, float]) -> Claim:
-    """Late rms errors (m): the model's angles on the arm built wrong, and ZNNBAS on both arms."""
+    """Judges late rms errors (m): the model's angles on the arm built wrong, and ZNNBAS on both arms."""
     drawn, wrong, replayed = (errors[name] for name in ("ZNNBAS, as drawn", "ZNNBAS, built wrong", "model"))
     return Claim.judged(
         "Errors of the model harm methods in open loop; the controller without a model does not depend on it.",
@@ -102,7 +102,7 @@ def immune(errors: Mapping[str, float]) -> Claim:
 
 
 def on_servos_as_printed(error: float) -> Check:
-    """True late rms error of the printed constants on servos (m)."""
+    """Checks the true late rms error of the printed constants on servos (m)."""
     return Check(
         statement="ZNNBAS with the printed constants and ticks of 1 ms does not work on servos.",
         rule=f"The tool is over {number(100 * _MISSED, 1)} cm off the circle (rms).",
@@ -113,7 +113,7 @@ def on_servos_as_printed(error: float) -> Check:
 
 
 def follows_on_servos(dt: float, error: float) -> Check:
-    """The best tick (s) and its true late rms error (m)."""
+    """Checks the best tick (s) and its true late rms error (m)."""
     return Check(
         statement="ZNNBAS follows the circle on servos, with long ticks, eq. (16) and a slow path.",
         rule=f"At the best tick the tool is within {number(1e3 * _FOLLOWED, 1)} mm of the circle (rms).",
@@ -124,7 +124,7 @@ def follows_on_servos(dt: float, error: float) -> Check:
 
 
 def corrects(missed: float, kept: float) -> Check:
-    """Largest errors on the servo arm built wrong (m): the model's angles, and BroydenBAS with a noisy sensor."""
+    """Checks largest errors on the servo arm built wrong (m): the model's angles, and BroydenBAS with noise."""
     return Check(
         statement="`BroydenBAS` corrects the wrong model on servos, with a noisy sensor.",
         rule=f"The model's angles miss by over {number(100 * _MISSED, 1)} cm; `BroydenBAS` stays within "
@@ -137,11 +137,11 @@ def corrects(missed: float, kept: float) -> Check:
 
 
 def _as_built() -> bik.Robot:
-    """The iiwa with a link 2 cm too long and joints off by 2 degrees in turn."""
+    """Returns the iiwa with a link 2 cm too long and joints off by 2 degrees in turn."""
     return bik.Robot.from_dh(
         a=np.zeros(7),
         alpha=np.radians([-90, 90, 90, -90, -90, 90, 0]),
-        d=[0.36, 0.0, 0.44, 0.0, 0.40, 0.0, 0.126],  # 0.42 is drawn
+        d=[0.36, 0.0, 0.44, 0.0, 0.40, 0.0, 0.126],  # drawn as 0.42
         theta=np.radians([2, -2, 2, -2, 2, -2, 2]),
         convention="standard",
         name="iiwa14 as built",
@@ -162,7 +162,7 @@ def _on_wrong_arm(context: Context) -> dict[str, float]:
 
 
 def _on_servos(controller: bik.papers.ZNNBAS | bik.BroydenBAS, dt: float, duration: float, seed: int) -> Array:
-    """Where the tool was, and where it should have been, at the ends of the ticks (k, 2, 3)."""
+    """Returns actual and desired tool positions at the ends of the ticks (k, 2, 3)."""
     path = circle(duration)
     plant = sim.MujocoPlant(IIWA, dt=dt)
     plant.reset(ON_CIRCLE)
@@ -179,13 +179,13 @@ def _on_servos(controller: bik.papers.ZNNBAS | bik.BroydenBAS, dt: float, durati
 
 
 def _late(run: Array) -> float:
-    """True rms error of the second half (m)."""
+    """Returns the true rms error of the second half (m)."""
     half = run[len(run) // 2 :]
     return rms(((half[:, 0] - half[:, 1]) ** 2).sum(axis=1))
 
 
 def _replay(context: Context) -> tuple[float, float]:
-    """Largest errors on the servo arm built wrong (m): angles of the model, and BroydenBAS."""
+    """Returns the largest errors on the servo arm built wrong (m): of the model's angles, and of BroydenBAS."""
     path = circle(_REPLAYED)
     angles = bik.track(IIWA, path, ON_CIRCLE, dt=_REPLAY_TICK).q
     plant = sim.MujocoPlant(_as_built(), dt=_REPLAY_TICK, noise=_NOISE, seed=context.seed)

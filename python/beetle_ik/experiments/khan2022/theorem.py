@@ -1,4 +1,4 @@
-"""Definitions 1 and 2 and Theorem 1: is the decrease monotone, and does it end at zero?"""
+"""Definitions 1 and 2 and Theorem 1: monotone decrease, and convergence to zero."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TITLE = "Theorem 1 and Definition 2"
 _POINT = np.array([0.1, 0.4, 0.3])  # the middle of the M
 _STILL = 10.0  # s
 _LONG, _LONG_SHORT = 200.0, 60.0  # s; four times the paper's
-_ROUND = 25.0  # s, of the circle that a long run repeats
+_ROUND = 25.0  # s, duration of the circle that a long run repeats
 _ZERO = 1e-10  # m^2
 _CONSTANT, _ADAPTED = "constant, printed", "eq. (16), k = 100"
 _STATE, _SENT = "θ", "θ′"
@@ -44,14 +44,14 @@ of the time.
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """One algorithm with a target that stands still, and on the M."""
+    """Runs of one algorithm with a fixed target, and on the M."""
 
     point: Run
     letter: Run
 
 
 def theorem(context: Context) -> Part:
-    """Both algorithms, on a point and on the M; and long runs with both antennae."""
+    """Runs both algorithms on a point and on the M, and long runs with both antennae."""
     variants = {
         "always: eq. (14), (15)": PUBLISHED,
         "improving: the proof": bik.papers.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10, accept="improving"),
@@ -107,7 +107,7 @@ def theorem(context: Context) -> Part:
 
 
 def monotone(rising: Mapping[str, float]) -> Claim:
-    """Share of the ticks in which h rises (%), by what the target does."""
+    """Judges the fraction of ticks in which h rises (%), by motion of the target."""
     return Claim.judged(
         "The objective decreases monotonically.",
         source="Definition 1 and Theorem 1",
@@ -119,7 +119,7 @@ def monotone(rising: Mapping[str, float]) -> Claim:
 
 
 def goes_back(share: float) -> Claim:
-    """Share of the ticks with a rise at which the state moved all the same (%)."""
+    """Judges the fraction of ticks with a rise of h in which the state moved all the same (%)."""
     return Claim.judged(
         "The joint state is updated only if the objective decreases; otherwise the arm is brought back.",
         source="Proof of Theorem 1",
@@ -132,9 +132,9 @@ def goes_back(share: float) -> Claim:
 
 
 def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration: float) -> Claim:
-    """H (m^2) to a quarter and to the end of runs of `duration` (s), by target and place, printed constants.
+    """Judges h (m^2) at a quarter and at the end of runs of `duration` (s), by target and place, printed constants.
 
-    `adaptive` is that at the end by eq. (16), with a still target.
+    `adaptive` is h at the end with the antenna of eq. (16) and a fixed target.
     """
     return Claim.judged(
         "As time goes to infinity the tool traces the reference: x̂(t) → x_r(t).",
@@ -153,7 +153,7 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
 
 
 def proof_holds(share: float) -> Check:
-    """Share of the ticks in which h rises by the proof's algorithm, still target (%)."""
+    """Checks the fraction of ticks in which h rises by the proof's algorithm with a fixed target (%)."""
     return Check(
         statement='`ZNNBAS(accept="improving")`, the algorithm of the proof, never lets h rise for a fixed target.',
         rule="h(θ) rises in no tick.",
@@ -164,12 +164,12 @@ def proof_holds(share: float) -> Check:
 
 
 def rises(h: Array) -> float:
-    """Share of the ticks after which h is larger than before (%)."""
+    """Returns the fraction of ticks after which h is larger than before (%)."""
     return 100.0 * float(np.mean(np.diff(h) > 0.0))
 
 
 def moved_uphill(run: Run) -> float:
-    """Share of the ticks whose measured h rose over the delay in which theta moved all the same (%)."""
+    """Returns the fraction of ticks with a rise of measured h over the delay in which theta moved all the same (%)."""
     delay = PUBLISHED.delay_steps
     h, q = run.sent_h, run.result.q
     rose = h[delay + 1 :] > h[1:-delay]
@@ -178,9 +178,9 @@ def moved_uphill(run: Run) -> float:
 
 
 def _long_runs(duration: float, context: Context) -> dict[tuple[str, str, str], tuple[float, float]]:
-    """Mean of h (m^2) up to a quarter of a long run and up to its end, over a tenth of it each.
+    """Returns the mean of h (m^2) at a quarter of a long run and at its end, each over a tenth of the run.
 
-    By antenna, target, and place: the state θ, or θ′, where the arm is.
+    Keys are antenna, target, and place: the state θ, or θ′, where the arm is.
     """
     one = circle(_ROUND)
     targets = {"still": lambda _: _POINT, "on a circle": lambda t: one.position(t % _ROUND)}

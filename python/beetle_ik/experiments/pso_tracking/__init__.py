@@ -22,7 +22,7 @@ the bee colony's, and on the same servos the pseudo-inverse does not beat all of
 
 
 def run(context: Context) -> Report:
-    """Run all of it."""
+    """Runs all experiments of the paper."""
     parts = (postures(context), tracking(context), picture(context))
     return Report.of(_SUMMARY, parts)
 

@@ -1,4 +1,4 @@
-"""Section 2.4: the contour of the arm in a picture, and the posture that it tells."""
+"""Section 2.4: the contour of the arm in a picture, and the posture read from it."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ GUESS = POSE + np.array([0.1, -0.1, 0.1])
 NOISE = 0.08
 _Method: TypeAlias = Literal["threshold", "snake"]
 _NAMES: dict[_Method, str] = {"snake": "active contour", "threshold": "plain threshold"}
-_NEAR = 0.01  # rad: as good as found
-_ASTRAY = 0.02  # rad: not to be returned as right
+_NEAR = 0.01  # rad: counts as found
+_ASTRAY = 0.02  # rad: must not be returned as right
 _SHARE = 0.8
-_ENOUGH = 20  # pictures, to judge a share by
-_OUTSIDE = 6.0  # pixels from the guess, where an active contour begins
+_ENOUGH = 20  # pictures needed to judge a fraction
+_OUTSIDE = 6.0  # pixels from the guess, at which an active contour begins
 
 _TEXT = """
 Pictures of the arm, rendered with noise; a contour, by the active contour of the paper or by a plain threshold; and the
@@ -48,15 +48,15 @@ class Trials:
 
     count: int
     near: int
-    """From a good guess: how many were found."""
+    """Postures found from a good guess."""
     lies: int
-    """From a guess that is off by 1 rad: how many wrong postures were returned as right; threshold alone."""
+    """Wrong postures returned as right from a guess that is off by 1 rad; threshold method alone."""
     seconds: float
-    """Of a picture, on average."""
+    """Average time of a picture (s)."""
 
 
 def picture(context: Context) -> Part:
-    """One pose by both contours, many random ones, and the energy as printed."""
+    """Locates one pose by both contours and many random ones, and tries the energy as printed."""
     image = vision.render(ARM, POSE, noise=NOISE, seed=context.seed)
     found = {method: vision.locate_arm(image, ARM, GUESS, method=method) for method in _NAMES}
     trials = {method: _trials(method, context) for method in _NAMES}
@@ -82,7 +82,7 @@ def picture(context: Context) -> Part:
 
 
 def locates(snake: Trials, threshold: Trials) -> Claim:
-    """By the paper's active contour; the threshold stands beside it."""
+    """Judges the paper's active contour, with the threshold method beside it."""
     return Claim.judged(
         "The active contour model can accurately locate the contour of the arm.",
         source="Section 2.4, eq. (19) to (21)",
@@ -99,7 +99,7 @@ def locates(snake: Trials, threshold: Trials) -> Claim:
 
 
 def threshold_locates(trials: Trials) -> Check:
-    """The library's default."""
+    """Checks the threshold method, which is the library's default."""
     return Check(
         statement="`locate_arm` by threshold finds the arm, and returns no wrong posture as right.",
         rule=f"At least 95 % of random poses within {_NEAR} rad; of guesses off by 1 rad none is returned as right "
@@ -130,7 +130,7 @@ def _trials(method: _Method, context: Context) -> Trials:
 
 
 def _energies(context: Context) -> tuple[float, float]:
-    """Distance of the contour from the arm's outline (pixels, rms, median): eq. (20) as printed, and with squares."""
+    """Returns the median rms distance of the contour from the arm (pixels): with eq. (20) as printed, and squared."""
     from skimage.filters import gaussian
     from skimage.segmentation import active_contour
 

@@ -1,4 +1,4 @@
-"""What the paper says of postures and of its swarm, each claim with the rule that judges it."""
+"""Claims of the paper on postures and on its swarm, each with the rule that judges it."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ class PosturesAt:
 
 
 def least_sine(q: Sequence[float]) -> float:
-    """Smallest |sin q| of q2 and q3: how far the arm is from a straight or folded joint."""
+    """Returns the smallest |sin q| of q2 and q3: zero for a straight or folded joint."""
     return float(np.abs(np.sin(q[1:])).min())
 
 
 def evenness(q: Sequence[float]) -> float:
-    """Smallest over largest |q| of all joints."""
+    """Returns the smallest over the largest |q| of all joints."""
     return float(np.abs(q).min() / np.abs(q).max())
 
 
 def found_best(gaps: Mapping[str, float], runs: int) -> Claim:
-    """How far the best of so many runs stays below the optimum, by reading (a share)."""
+    """Judges the gap between the best of `runs` runs and the optimum, by reading (a fraction)."""
     return Claim.judged(
         "Ten generations of five particles find the best SM₃ and the best SM.",
         source="Sections 2.5 and 3.1, Tables 2 and 3",
@@ -52,7 +52,7 @@ def found_best(gaps: Mapping[str, float], runs: int) -> Claim:
 
 
 def printed_optima(overall: Mapping[str, tuple[float, float]], printed: float) -> Claim:
-    """By place of the joint points: the length (m) that gives the printed SM3, and SM there; the printed SM."""
+    """Judges SM at the length (m) that gives the printed SM3, by region of the joints, against the printed SM."""
     return Claim.judged(
         "SM₃ = 6.9278 and SM = 10.8003 at E = (0.5, 0.5).",
         source="Tables 2 and 3, eq. (15) and (16)",
@@ -70,7 +70,7 @@ def printed_optima(overall: Mapping[str, tuple[float, float]], printed: float) -
 
 
 def text_and_tables(optima: Mapping[str, tuple[float, float]]) -> Claim:
-    """Of each index the optimum of the text and that of the table."""
+    """Judges the optimum of the text against that of the table, for each index."""
     return Claim.judged(
         "The text and the tables give the same optima.",
         source="Section 3.1, Tables 2 and 3",
@@ -83,7 +83,7 @@ def text_and_tables(optima: Mapping[str, tuple[float, float]]) -> Claim:
 
 
 def best_so_far(printed: Mapping[str, Sequence[float]]) -> Claim:
-    """The printed courses over the generations."""
+    """Judges the printed values over the generations."""
     falls = {name: float(np.diff(values).min()) for name, values in printed.items()}
     return Claim.judged(
         "Tables 2 and 3 give the best index of each generation.",
@@ -101,7 +101,7 @@ def best_so_far(printed: Mapping[str, Sequence[float]]) -> Claim:
 
 
 def second_joint_small(at_printed: Mapping[str, PosturesAt], lengths: Mapping[str, PosturesAt]) -> Claim:
-    """By place of the joint points: with links of the length that gives the printed SM3; and by other lengths."""
+    """Judges q2 by region of the joints: at the length that gives the printed SM3, and at other lengths."""
     printed, others = _second_joints(at_printed), _second_joints(lengths)
     return Claim.judged(
         "In the posture that is best for the tip, where SM₃ = 6.9278, the joint angle q₂ is very small.",
@@ -116,7 +116,7 @@ def second_joint_small(at_printed: Mapping[str, PosturesAt], lengths: Mapping[st
 
 
 def _second_joints(lengths: Mapping[str, PosturesAt]) -> dict[str, float]:
-    """|q2| (degrees) where SM3 is largest."""
+    """Returns |q2| (degrees) where SM3 is largest."""
     return {
         f"{name}, {place}": float(np.degrees(abs(q[1])))
         for name, at in lengths.items()
@@ -125,7 +125,7 @@ def _second_joints(lengths: Mapping[str, PosturesAt]) -> dict[str, float]:
 
 
 def straight_arm_singular(least: float) -> Claim:
-    """Least singular value (m) of the tip's Jacobian with links 1 and 2 in a line, link 3 at right angles."""
+    """Judges the least singular value (m) of the tip's Jacobian, links 1 and 2 in a line, link 3 at right angles."""
     return Claim.judged(
         "With q₂ = 0 the arm is singular and loses a degree of freedom.",
         source="Section 3.1, on Figure 6",
@@ -139,7 +139,7 @@ def straight_arm_singular(least: float) -> Claim:
 
 
 def balanced(lengths: Mapping[str, PosturesAt]) -> Claim:
-    """By length of the links."""
+    """Judges the balance of the joint angles by length of the links."""
     measures = {"smallest |sin q| of q₂, q₃": least_sine, "smallest over largest |q|": evenness}
     values = {
         f"{words}, {name}": (of(at.tip), of(at.overall))
@@ -158,7 +158,7 @@ def balanced(lengths: Mapping[str, PosturesAt]) -> Claim:
 
 
 def area_is_balance(ratios: Mapping[str, tuple[float, float]]) -> Claim:
-    """Axis ratios of the tip's ellipse by length: where its area is largest, and the largest there is."""
+    """Judges axis ratios of the tip's ellipse by length: at the largest area, and the largest possible."""
     return Claim.judged(
         "The area of the ellipse evaluates the balance of its axes: a long and thin ellipse has a small area.",
         source="Section 2.2",
@@ -171,7 +171,7 @@ def area_is_balance(ratios: Mapping[str, tuple[float, float]]) -> Claim:
 
 
 def constriction(sums: Sequence[float]) -> Claim:
-    """Values of phi that eq. (18) is tried at."""
+    """Judges eq. (18) at the given values of phi."""
     real = {phi: phi**2 - 4.0 * phi >= 0.0 for phi in sums}
     return Claim.judged(
         "Eq. (18) gives the shrinkage factor for φ = c₁ + c₂ > 3.",
@@ -185,7 +185,7 @@ def constriction(sums: Sequence[float]) -> Claim:
 
 
 def own_search(largest: float) -> Check:
-    """Largest gap over the cases."""
+    """Checks the largest gap over the cases."""
     return Check(
         statement="The library's own search finds the optimum, anywhere and in the first quadrant.",
         rule=f"The largest gap over twelve cases is below {number(_OWN_GAP, 1)}.",

@@ -1,4 +1,4 @@
-"""Tables 2 and 3, Figures 6 and 7: the posture of three equal links that is best for the tip, or for the whole arm."""
+"""Tables 2 and 3, Figures 6 and 7: the best posture of three equal links, for the tip or for the whole arm."""
 
 from __future__ import annotations
 
@@ -46,21 +46,22 @@ if TYPE_CHECKING:
 
 TITLE = SECTION
 _Measure: TypeAlias = Literal["tip", "overall"]
-_MEASURES: tuple[_Measure, ...] = ("tip", "overall")  # of Tables 2 and 3
-_FLOOR = 1e-7  # where a logarithmic scale ends
+_MEASURES: tuple[_Measure, ...] = ("tip", "overall")  # measures of Tables 2 and 3
+_FLOOR = 1e-7  # lower end of a logarithmic scale
 TARGET = (0.5, 0.5, 0.0)  # E, section 3.1
 LENGTH = 0.5  # m; the paper gives none
 ARM = Robot.planar([LENGTH] * 3)
 QUADRANT = ((0.0, 0.0), (np.inf, np.inf))
 _PLACES = ("anywhere", "first quadrant")
-# The paper gives no length. 1.4 m is its swing radius (Table 1); 1.3455 m gives its SM3 of 6.9278.
+# Lengths: the paper gives none. 1.4 m is its swing radius (Table 1); 1.3455 m gives its SM3 of 6.9278.
 LENGTHS = {f"{length:g} m": length for length in (0.3, 0.467, 0.5, 1.0, 1.3455)}
 PRINTED: dict[_Measure, list[float]] = {
     "tip": [6.912, 6.9138, 6.9139, 6.9171, 6.9179, 6.9208, 6.9255, 6.9278, 6.9278, 6.9278],  # Table 2
     "overall": [10.782, 10.7986, 10.7977, 10.7978, 10.7992, 10.7996, 10.7998, 10.8001, 10.8003, 10.8003],  # Table 3
 }
 SYMBOLS = {"tip": "SM₃", "overall": "SM"}
-# By a scan of 4e6 points of the self-motion with links of 0.3, 0.5 and 1 m: SM₃ and SM anywhere and in the quadrant.
+# Optima by a scan of 4e6 points of the self-motion with links of 0.3, 0.5 and 1 m: SM₃ and SM anywhere and in the
+# quadrant.
 SCANNED: dict[float, dict[_Measure, tuple[float, float]]] = {
     0.3: {"tip": (0.727905, 0.727905), "overall": (0.947446, 0.915893)},
     0.5: {"tip": (1.720667, 1.493501), "overall": (2.488703, 1.900676)},
@@ -84,17 +85,17 @@ direction.
 
 
 def index(posture: PlanarPosture, measure: _Measure) -> float:
-    """SM₃ = pi w, or SM."""
+    """Returns SM₃ = pi w, or SM."""
     return _scale(measure) * posture.index
 
 
 def _scale(measure: _Measure) -> float:
-    """From the library's index to the paper's."""
+    """Returns the factor from the library's index to the paper's."""
     return float(np.pi) if measure == "tip" else 1.0
 
 
 def postures(context: Context) -> Part:
-    """The best postures that the swarm finds, for the tip and for the whole arm, over the length of the links."""
+    """Finds the best postures by the swarm, for the tip and for the whole arm, over the length of the links."""
     seeds = context.seeds(50)
     best = {
         measure: max(
@@ -132,7 +133,7 @@ def postures(context: Context) -> Part:
 
 
 def postures_at(length: float) -> PosturesAt:
-    """The best postures of three links of `length` (m), by the library's own search."""
+    """Returns the best postures of three links of `length` (m), by the library's own search."""
     arm = Robot.planar([length] * 3)
     angles: dict[_Measure, tuple[float, ...]] = {
         measure: _wrapped(planar_posture(arm, TARGET, measure=measure).q) for measure in _MEASURES
@@ -142,12 +143,12 @@ def postures_at(length: float) -> PosturesAt:
 
 
 def _wrapped(q: NDArray[np.float64]) -> tuple[float, ...]:
-    """To (-pi, pi] (rad)."""
+    """Wraps angles to (-pi, pi] (rad)."""
     return tuple(float(angle) for angle in np.pi - (np.pi - np.asarray(q)) % (2.0 * np.pi))
 
 
 def _swarm_gaps(seeds: range) -> dict[str, float]:
-    """How far the best of the runs stays below the optimum, by reading."""
+    """Returns the gap between the best of the runs and the optimum, by reading."""
     gaps = {}
     for length, scanned in SCANNED.items():
         arm = Robot.planar([length] * 3)
@@ -164,7 +165,7 @@ def _swarm_gaps(seeds: range) -> dict[str, float]:
 
 
 def _at_printed_tip(region: tuple[tuple[float, float], tuple[float, float]] | None) -> tuple[float, float]:
-    """The length of the links (m) at which SM3 is the printed one, and SM there."""
+    """Returns the length of the links (m) that gives the printed SM3, and SM at this length."""
     low, high = 0.3, 4.0  # SM3 grows with the length
     for _ in range(30):
         length = 0.5 * (low + high)
@@ -176,13 +177,13 @@ def _at_printed_tip(region: tuple[tuple[float, float], tuple[float, float]] | No
 
 
 def _least_singular_value() -> float:
-    """Of the Jacobian of the tip, links 1 and 2 in a line, link 3 at right angles (m)."""
+    """Returns the least singular value of the tip's Jacobian (m), links 1 and 2 in a line, link 3 at right angles."""
     jacobian = ARM.jacobian(np.array([0.3, 0.0, 0.5 * np.pi]))[:2]
     return float(np.linalg.svd(jacobian, compute_uv=False).min())
 
 
 def _balance_of_largest(length: float) -> tuple[float, float]:
-    """Shortest over longest axis of the tip's ellipse: where its area is largest, and where that ratio is."""
+    """Returns the axis ratio (shortest over longest) of the tip's ellipse at its largest area, and the best ratio."""
     arm = Robot.planar([length] * 3)
     axes = np.array([arm.velocity_ellipsoid(q).lengths[:2] for q in _self_motion(length)])
     ratios = axes.min(axis=1) / axes.max(axis=1)
@@ -190,7 +191,7 @@ def _balance_of_largest(length: float) -> tuple[float, float]:
 
 
 def _self_motion(length: float, samples: int = 360) -> list[NDArray[np.float64]]:
-    """Postures (3,) (rad) that hold the tip at the target, both elbows."""
+    """Returns postures (3,) (rad) that hold the tip at the target, for both elbows."""
     goal = np.array(TARGET[:2])
     found = []
     for first in np.linspace(-np.pi, np.pi, samples, endpoint=False):
@@ -258,7 +259,7 @@ def _table(measure: _Measure, best: PlanarPosture, runs: int) -> Table:
 
 
 def _rounded(value: float) -> float:
-    """To the digits that differences of printed values have."""
+    """Rounds to the digits that differences of printed values have."""
     return float(f"{value:.2g}")
 
 
@@ -338,7 +339,7 @@ def _figure(name: str, title: str, posture: PlanarPosture, measure: _Measure) ->
 
 
 def draw_arm(axes: Axes, robot: Robot, q: NDArray[np.float64], *, scale: float = 0.25) -> None:
-    """A planar arm with the velocity ellipses of its links' tips, `scale` metres per m/s."""
+    """Draws a planar arm with the velocity ellipses of its links' tips, `scale` metres per m/s."""
     joints = robot.link_poses(q)[1:, :2, 3]
     for i, color in zip(range(2, len(joints)), (GREEN, VERMILION), strict=False):
         part = Robot.planar(np.linalg.norm(np.diff(joints[: i + 1], axis=0), axis=1))
@@ -350,7 +351,7 @@ def draw_arm(axes: Axes, robot: Robot, q: NDArray[np.float64], *, scale: float =
         axes.fill(*outline.T, color=color, alpha=0.12, linewidth=0)
     axes.plot(*joints.T, color=BLUE, linewidth=4, marker="o", markersize=7, label="arm")
     for name, point in zip("ACBE", joints, strict=False):
-        # Beyond the joint, as seen from the middle of the arm: no link is there.
+        # Labels go outward from the middle of the arm, where no link is.
         outward = point - joints.mean(axis=0)
         away = 14.0 * outward / np.linalg.norm(outward)
         axes.annotate(name, point, textcoords="offset points", xytext=tuple(away), ha="center", va="center")

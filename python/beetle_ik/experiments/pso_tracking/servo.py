@@ -1,8 +1,8 @@
 """One joint with a velocity servo, and the three controllers that the paper compares with: our own baselines.
 
-The paper gives neither plant nor gains, so that nothing of its Figure 8 can be met by number. All drive the same plant,
-and the same disturbance acts on it. The PID is there twice: by hand, and tuned by a rule, which is the best of a grid
-over the box that the bee colony searches, with as many trials, by the colony's own criterion.
+The paper gives neither plant nor gains, so nothing of its Figure 8 can be matched by number. All controllers drive the
+same plant under the same disturbance. The PID is tried twice: tuned by hand, and by a rule, which takes the best of a
+grid over the box that the bee colony searches, with as many trials and the colony's criterion.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ _Array = NDArray[np.float64]
 
 DT = 1e-3  # s
 TIME_CONSTANT = 0.05  # s, of the servo
-MOST = 2.0  # rad/s, of the command
+MOST = 2.0  # rad/s, largest command
 DISTURBANCE = 0.05  # rad/s, amplitude
 DISTURBANCE_RATE = 3.0  # rad/s
-MOST_GAINS = (60.0, 120.0, 2.0)  # proportional, integral, derivative, of whatever is tuned
+MOST_GAINS = (60.0, 120.0, 2.0)  # largest proportional, integral and derivative gain in any tuning
 CENTRES = np.array([(q, qd) for q in (-0.5, 0.0, 0.5) for qd in (-0.8, 0.0, 0.8)])
 WIDTH = 0.45
-ADAPTATION = 200.0  # 1/s^2, of the network's weights while it runs
+ADAPTATION = 200.0  # 1/s^2, adaptation rate of the network's weights
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What a joint is to do: positions and velocities at the steps (rad, rad/s)."""
+    """Desired motion of a joint: positions and velocities at the steps (rad, rad/s)."""
 
     time: _Array
     q: _Array
@@ -40,14 +40,14 @@ class Motion:
 
 
 def paper_motion(duration: float) -> Motion:
-    """Joints 1 and 2 of the paper: 0.5 cos(pi t / 2)."""
+    """Returns the motion of joints 1 and 2 in the paper: 0.5 cos(pi t / 2)."""
     time: _Array = np.arange(0.0, duration, DT, dtype=float)
     return Motion(time, 0.5 * np.cos(np.pi / 2 * time), -np.pi / 4 * np.sin(np.pi / 2 * time))
 
 
 @dataclass(frozen=True)
 class Gains:
-    """Of a PID controller."""
+    """Gains of a PID controller."""
 
     proportional: float = 20.0
     integral: float = 10.0
@@ -55,7 +55,7 @@ class Gains:
 
 
 def features(motion: Motion) -> _Array:
-    """Gaussian radial basis functions of the wanted position and velocity: (steps, 9)."""
+    """Evaluates Gaussian radial basis functions of the desired position and velocity: (steps, 9)."""
     wanted = np.stack((motion.q, motion.qd), axis=1)[:, None, :]
     return np.asarray(np.exp(-np.sum((wanted - CENTRES) ** 2, axis=2) / (2 * WIDTH**2)))
 
@@ -69,11 +69,11 @@ def simulate(
     adaptation: float = 0.0,
     feedforward: bool = False,
 ) -> _Array:
-    """Errors (steps,) (rad) of a PID, and where there are `weights` of a network that is added to it and adapts.
+    """Returns the errors (steps,) (rad) of a PID, plus an adaptive network if `weights` are given.
 
-    With `feedforward` the wanted velocity is added to the command.
+    With `feedforward` the desired velocity is added to the command.
 
-    Plant: q' = v, T v' = -v + u + d, |u| bounded, by Euler steps; it begins at the wanted position at rest.
+    Plant: q' = v, T v' = -v + u + d, |u| bounded, by Euler steps; it begins at the desired position at rest.
     """
     q, v, sum_of_errors, before = float(motion.q[0]), 0.0, 0.0, 0.0
     errors = np.empty(len(motion.time))
@@ -97,7 +97,7 @@ def simulate(
 
 
 def best_on_grid(motion: Motion, context: Context) -> Gains:
-    """The gains of least rms error over the first two seconds; as many trials as the bee colony has."""
+    """Returns the gains of least rms error over the first two seconds, from as many trials as the bee colony has."""
     per_axis = context.pick(full=(10, 8, 5), short=(5, 4, 3))
     grid = [np.linspace(0.0, most, count) for most, count in zip(MOST_GAINS, per_axis, strict=True)]
     trial = _beginning(motion)
@@ -106,7 +106,7 @@ def best_on_grid(motion: Motion, context: Context) -> Gains:
 
 
 def bee_pid(motion: Motion, context: Context) -> _Array:
-    """A PID whose gains an artificial bee colony has tuned, on the first two seconds."""
+    """Simulates a PID whose gains a bee colony tuned on the first two seconds."""
     trial = _beginning(motion)
 
     def cost(gains: _Array) -> float:
@@ -117,7 +117,7 @@ def bee_pid(motion: Motion, context: Context) -> _Array:
 
 
 def genetic_network(motion: Motion, context: Context) -> _Array:
-    """A PID and a radial-basis network: weights by a genetic algorithm, then adapted while it runs."""
+    """Simulates a PID with a radial-basis network: weights by a genetic algorithm, then adapted during the run."""
     trial, gains = _beginning(motion), Gains()
     basis = features(trial)
 
@@ -130,24 +130,24 @@ def genetic_network(motion: Motion, context: Context) -> _Array:
 
 
 def controllers(motion: Motion, context: Context) -> dict[str, _Array]:
-    """Errors (steps,) (rad) of each controller."""
+    """Returns the errors (steps,) (rad) of each controller."""
     tuned = best_on_grid(motion, context)
     return {
         "PID, by hand": simulate(motion, Gains()),
         "PID, tuned": simulate(motion, tuned),
-        "PID, tuned, fed forward": simulate(motion, tuned, feedforward=True),  # as the pseudo-inverse is
+        "PID, tuned, fed forward": simulate(motion, tuned, feedforward=True),  # like the pseudo-inverse
         "artificial bee colony": bee_pid(motion, context),
         "GA-RBF": genetic_network(motion, context),
     }
 
 
 def _cost(errors: _Array) -> float:
-    """Rms (rad)."""
+    """Returns the rms error (rad)."""
     return float(np.sqrt(np.mean(errors**2)))
 
 
 def _beginning(motion: Motion) -> Motion:
-    """The first two seconds: what is tuned on."""
+    """Returns the first two seconds, used for tuning."""
     steps = min(len(motion.time), round(2.0 / DT))
     return Motion(motion.time[:steps], motion.q[:steps], motion.qd[:steps])
 
@@ -160,14 +160,14 @@ def _least(
     evaluations: int,
     seed: int,
 ) -> _Array:
-    # From no network at all, or from the gains of the PID by hand: what is tuned is never worse than that.
+    # Starts at the hand-tuned gains, or without a network, so that tuning never makes the controller worse.
     begin = [Gains().proportional, Gains().integral, Gains().derivative] if len(lower) == 3 else np.zeros(len(lower))
     stop = Stop(max_evaluations=evaluations)
     return np.array(minimize(cost, lower, upper, solver=solver, start=begin, stop=stop, seed=seed).x)
 
 
 def settled(errors: _Array, band: float = 2e-3) -> float:
-    """When the error came into `band` (rad) for good (s); NaN if it did not."""
+    """Returns the time at which the error enters `band` (rad) for good (s); NaN if it does not."""
     outside = np.flatnonzero(np.abs(errors) > band)
     if len(outside) == 0:
         return 0.0

@@ -1,6 +1,6 @@
-"""The pseudo-inverse where the paper's comparison does not put it: behind the servos of the other controllers.
+"""The pseudo-inverse behind the servos of the other controllers, a case missing from the paper's comparison.
 
-And eq. (13) as printed, whose sign the library does not offer.
+Also eq. (13) as printed, whose sign the library does not offer.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LONG = 8.0  # s
 
 
 def _weighted_pseudo_inverse(jacobian: _Array) -> _Array:
-    """Eq. (8) with the weights of eq. (11)."""
+    """Returns eq. (8) with the weights of eq. (11)."""
     inverse_weights = np.diag((2.0 * _FASTEST) ** 2)
     return np.asarray(inverse_weights @ jacobian.T @ np.linalg.inv(jacobian @ inverse_weights @ jacobian.T))
 
@@ -34,9 +34,9 @@ def _weighted_pseudo_inverse(jacobian: _Array) -> _Array:
 def on_servos(
     arm: Robot, wanted: Callable[[float], _Array], velocity: Callable[[float], _Array], duration: float
 ) -> _Array:
-    """Joint errors (steps, 3): each joint's velocity command goes to a servo, as in `servo.simulate`.
+    """Returns joint errors (steps, 3) with each velocity command sent to a servo, as in `servo.simulate`.
 
-    Eq. (12) with a closed loop, the posture held through the null space; the arm begins at rest, as theirs do.
+    Uses eq. (12) in closed loop, with the posture held through the null space; the arm begins at rest, as in `servo`.
     """
     q, v = wanted(0.0), np.zeros(3)
     errors = np.empty((round(duration / DT), 3))
@@ -57,7 +57,7 @@ def on_servos(
 def null_space_cost(
     arm: Robot, wanted: Callable[[float], _Array], velocity: Callable[[float], _Array], *, sign: float
 ) -> float:
-    """The mean cost of eq. (14) over eight seconds with q0' = `sign` times its gradient, eq. (12) and (13)."""
+    """Returns the mean cost of eq. (14) over 8 s with q0' = `sign` times its gradient, eq. (12) and (13)."""
     middle, width = 0.5 * (_LOWER + _UPPER), _UPPER - _LOWER
     q, costs = wanted(0.0), []
     for i in range(round(_LONG / _COARSE)):

@@ -1,4 +1,4 @@
-"""Figures 8 to 10: tracking by the weighted pseudo-inverse, and what joint controllers make of the same motion."""
+"""Figures 8 to 10: tracking by the weighted pseudo-inverse, beside joint controllers on the same motion."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ OPEN = Limits(lower=-np.inf, upper=np.inf)
 DURATION = 2.0  # s; after that the reference leaves the range of joint 3
 PRINTED_ERRORS = {"PID, by hand": 1.72e-3, "GA-RBF": 0.91e-3, "artificial bee colony": 1.38e-3}  # section 3.2, rad
 _KINEMATIC, _DRIVEN = "without a servo", "on the same servos"
-_HELD = "K = 50, posture held, 10 ms"  # the variant that is set beside the controllers
+_HELD = "K = 50, posture held, 10 ms"  # the variant that is compared with the controllers
 
 _TEXT = """
 The arm of eq. (1) and (2), with two revolute joints and a prismatic one, follows the tip path of the printed joint
@@ -51,19 +51,19 @@ same feedforward is better still.
 
 
 def wanted(t: float) -> NDArray[np.float64]:
-    """The reference of the joints, its lost factor t put back: 0.5 cos(pi t / 2) twice, 0.2 sin(pi t / 2)."""
+    """Returns the joint reference, with its missing factor t restored: 0.5 cos(pi t / 2) twice, 0.2 sin(pi t / 2)."""
     angle = np.pi / 2 * t
     return np.array([0.5 * np.cos(angle), 0.5 * np.cos(angle), 0.2 * np.sin(angle)])
 
 
 def wanted_velocity(t: float) -> NDArray[np.float64]:
-    """Its derivative."""
+    """Returns the derivative of `wanted`."""
     angle = np.pi / 2 * t
     return np.pi / 2 * np.array([-0.5 * np.sin(angle), -0.5 * np.sin(angle), 0.2 * np.cos(angle)])
 
 
 def _rules() -> dict[str, tuple[float, WeightedPseudoInverse]]:
-    """The variants of Figure 8: tick (s) and rule."""
+    """Returns the variants of Figure 8: tick (s) and rule."""
     time = np.linspace(0.0, DURATION, 401)
     q, qd = (np.array([of(t) for t in time]) for of in (wanted, wanted_velocity))
     posture = Trajectory.from_samples(time, q, qd=qd)
@@ -94,14 +94,14 @@ def _largest(errors: NDArray[np.float64]) -> float:
 
 
 def tracking(context: Context) -> Part:
-    """All of it."""
+    """Runs and judges all tracking experiments."""
     rules = _rules()
     results = {name: _follow(*rules[name]) for name in context.each("pso-tracking: Figure 8", list(rules))}
     motion = paper_motion(context.pick(full=8.0, short=4.0))
     errors = controllers(motion, context)
     held = results[_HELD]
     kinematic, driven = _joint_error(held)[:, 0], on_servos(ARM, wanted, wanted_velocity, DURATION)[:, 0]
-    # All over the two seconds of the path; the controllers run longer, which the figures show.
+    # Errors over the two seconds of the path; the controllers run longer, as the figures show.
     steps = motion.time <= DURATION
     early = {name: _largest(error[steps]) for name, error in errors.items()}
     ranges = {name: float(np.ptp(error[steps])) for name, error in errors.items()}
@@ -132,7 +132,7 @@ def tracking(context: Context) -> Part:
 
 
 def _printed_jacobian_entry() -> tuple[dict[str, float], float]:
-    """J(2,1) as eq. (6) prints it, by its lost signs, and by central differences, at one posture (m/rad)."""
+    """Returns J(2,1) by eq. (6), as printed and with lost signs, and by central differences (m/rad)."""
     q, step = np.array([0.4, -0.3, 0.1]), np.array([1e-6, 0.0, 0.0])
     links = 0.7  # m, each: half the swing radius of Table 1
     first, second = links * np.sin(q[0]), np.sin(q[0] - q[1]) * (links + q[2])

@@ -1,4 +1,4 @@
-"""What the paper says of tracking, each claim with the rule that judges it."""
+"""Claims of the paper on tracking, each with the rule that judges it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from ...report import Check, Claim, number
 
 SECTION = "Tracking: Figures 8 to 10"
-PRINTED_OWN = 0.40e-4  # "m", where all others are in rad
+PRINTED_OWN = 0.40e-4  # "m", although all others are in rad
 _HAND, _TUNED, _FORWARD = "PID, by hand", "PID, tuned", "PID, tuned, fed forward"
-_RIVALS = (_HAND, _TUNED, "artificial bee colony", "GA-RBF")  # of the paper; its PID may be either
+_RIVALS = (_HAND, _TUNED, "artificial bee colony", "GA-RBF")  # rivals of the paper; its PID may be either
 _CLEARLY = 0.95
 _MATCHES = 1e-6  # m/rad
 _WITHIN = 1e-4  # m
@@ -17,7 +17,7 @@ _OURS = "Plant and gains are ours: the paper gives neither."
 
 
 def own_error(errors: Mapping[str, float]) -> Claim:
-    """Largest tip errors (m) by variant."""
+    """Judges the largest tip errors (m) by variant."""
     return Claim.judged(
         "The pseudo-inverse method tracks with a largest error of 0.40 × 10⁻⁴ m.",
         source="Section 3.2",
@@ -32,7 +32,7 @@ def own_error(errors: Mapping[str, float]) -> Claim:
 
 
 def closer(own: Mapping[str, float], rivals: Mapping[str, float], strayed: float) -> Claim:
-    """Largest errors of joint 1 (rad) of the pseudo-inverse by setting, and of the others; and with no posture held."""
+    """Judges largest errors of joint 1 (rad): by setting of the pseudo-inverse, by rival, and without a posture."""
     least = min(rivals[name] for name in _RIVALS)
     return Claim.judged(
         "The joint follows its reference more closely than under PID, GA-RBF and bee-colony control.",
@@ -55,7 +55,7 @@ def closer(own: Mapping[str, float], rivals: Mapping[str, float], strayed: float
 
 
 def jumps(own: Mapping[str, float], rivals: Mapping[str, float]) -> Claim:
-    """Peak-to-peak errors of joint 1 (rad)."""
+    """Judges peak-to-peak errors of joint 1 (rad)."""
     least = min(rivals[name] for name in _RIVALS)
     return Claim.judged(
         "The error jump range is small.",
@@ -72,7 +72,7 @@ def jumps(own: Mapping[str, float], rivals: Mapping[str, float]) -> Claim:
 
 
 def order(rivals: Mapping[str, float]) -> Claim:
-    """Largest errors of joint 1 (rad) by controller."""
+    """Judges the order of the largest errors of joint 1 (rad) by controller."""
     network, bees = rivals["GA-RBF"], rivals["artificial bee colony"]
     return Claim.judged(
         "Of the others GA-RBF is the best, then the bee colony, then PID.",
@@ -89,7 +89,7 @@ def order(rivals: Mapping[str, float]) -> Claim:
 
 
 def printed_rivals(rivals: Mapping[str, float], missing: Sequence[str]) -> Claim:
-    """Largest errors of joint 1 (rad) by controller."""
+    """Judges the largest errors of joint 1 (rad) by controller."""
     return Claim.judged(
         "Largest errors of 1.72 × 10⁻³, 0.91 × 10⁻³ and 1.38 × 10⁻³ rad by PID, GA-RBF and bee colony.",
         source="Section 3.2, Figure 8",
@@ -102,7 +102,7 @@ def printed_rivals(rivals: Mapping[str, float], missing: Sequence[str]) -> Claim
 
 
 def control_time(missing: Sequence[str]) -> Claim:
-    """Nothing to measure."""
+    """Leaves the claim undecided: there is nothing to measure."""
     return Claim.judged(
         "The control time is 2.2 s at most, lower than that of the others.",
         source="Section 3.2, Figure 9",
@@ -115,7 +115,7 @@ def control_time(missing: Sequence[str]) -> Claim:
 
 
 def jacobian_entry(printed: Mapping[str, float], differences: float) -> Claim:
-    """J(2,1) as printed, by the signs that our copy may have lost, and by central differences (m/rad)."""
+    """Judges J(2,1) as printed and with the signs that our copy may have lost, against central differences (m/rad)."""
     return Claim.judged(
         "J(2,1) = L₁ sin q₁ + (L₂ + q₃) sin(q₁ - q₂).",
         source="Eq. (6)",
@@ -129,7 +129,7 @@ def jacobian_entry(printed: Mapping[str, float], differences: float) -> Claim:
 
 
 def null_space(printed: float, without: float, reversed_sign: float) -> Claim:
-    """The mean of eq. (14) with q0' as our copy prints it, without it, and with the opposite sign."""
+    """Judges the mean of eq. (14) with q0' as our copy prints it, without it, and with the opposite sign."""
     return Claim.judged(
         "The null-space velocity of eq. (13) keeps the joints away from their limits.",
         source="Section 2.1, eq. (13) and (14)",
@@ -146,7 +146,7 @@ def null_space(printed: float, without: float, reversed_sign: float) -> Claim:
 
 
 def other_swarms() -> Claim:
-    """Nothing was run."""
+    """Leaves the claim undecided: nothing was run."""
     return Claim.judged(
         "With a contraction factor the swarm converges faster than other particle swarms.",
         source="Section 2.3",
@@ -159,7 +159,7 @@ def other_swarms() -> Claim:
 
 
 def limits_kept(violation: float, error: float) -> Check:
-    """Largest violation (rad, m) and largest tip error (m)."""
+    """Checks the largest violation (rad, m) and the largest tip error (m)."""
     return Check(
         statement="The weighted pseudo-inverse keeps the limits of Table 1.",
         rule=f"No limit is violated, and the largest error is below {number(_WITHIN, 1)} m.",

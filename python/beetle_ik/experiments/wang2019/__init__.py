@@ -24,7 +24,7 @@ polynomial, are faster than the mean of every search for 3 to 5 links, and withi
 
 
 def run(context: Context) -> Report:
-    """Run all of it."""
+    """Runs all experiments of the paper."""
     motions = plan_motions(context)
     of_motions = [part(context, motions) for part in (point_to_point, comparison, freedom)]
     others = [part(context) for part in (obstacle, along_path, table_1, complexity, equations)]

@@ -49,8 +49,8 @@ _PATHS: dict[str, tuple[bik.Path | NDArray[np.float64], float]] = {
     "pentagram": (pentagram(), 0.04),
     "closed curve": (trefoil(), 0.02),
 }  # accuracy in m
-_ALIKE = 2.0  # times, that iterations may differ
-_NOT_MUCH = 1.1  # times the fastest timing, that uniform timing may take
+_ALIKE = 2.0  # largest ratio of iterations
+_NOT_MUCH = 1.1  # multiple of the fastest timing that uniform timing may take
 _ROUNDING = 1e-9  # a plan may use all of the accuracy
 
 _TEXT = f"""
@@ -68,35 +68,35 @@ the library's default.
 
 @dataclass(frozen=True)
 class Case:
-    """One path and objective, all searches over all seeds."""
+    """Plans for one path and objective: all searches over all seeds."""
 
     path: str
     objective: Criterion
     searches: Sequence[Search]
     plans: Plans
     timed: bik.Plan | None
-    """The library's own plan; None for rotation."""
+    """Plan of the library's own method; None for rotation."""
 
     @property
     def accuracy(self) -> float:
-        """What was asked for (m)."""
+        """Required accuracy (m)."""
         return _PATHS[self.path][1]
 
     @property
     def best(self) -> bik.Plan:
-        """The best of all plans."""
+        """Best of all plans."""
         return min(
             (plan for plans in self.plans.values() for plan in plans), key=lambda plan: (not plan.success, plan.cost)
         )
 
     @cached_property
     def retimed(self) -> float:
-        """The fastest timing of the best plan's joint path (s)."""
+        """Duration of the fastest timing of the best plan's joint path (s)."""
         return float(bik.time_optimal(self.best.trajectory.q, ALONG_PATH).duration)
 
 
 def along_path(context: Context) -> Part:
-    """Plan along both paths for both objectives."""
+    """Plans along both paths for both objectives."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     searches = context.pick(full=_SEARCHES, short=_SEARCHES_SHORT)
     which = [(path, objective) for path in _PATHS for objective in UNITS]
@@ -132,7 +132,7 @@ def _case(path: str, objective: Criterion, searches: Sequence[Search], seeds: ra
 
 
 def follows(path: str, cases: Sequence[Case]) -> Claim:
-    """Whether every plan of the beetle swarm stays with the points."""
+    """Judges whether every plan of the beetle swarm stays with the points."""
     mine = [plan for case in cases if case.path == path for plan in case.plans[TPBSO]]
     kept, worst = sum(plan.success for plan in mine), max(from_the_points(plan) for plan in mine)
     accuracy = _PATHS[path][1]
@@ -151,7 +151,7 @@ def follows(path: str, cases: Sequence[Case]) -> Claim:
 
 
 def takes_as_many_iterations(cases: Sequence[Case]) -> Claim:
-    """Whether both paths need about as many iterations."""
+    """Judges whether both paths need about as many iterations."""
     swarm = _SEARCHES[0]
     enough = min(len(case.plans[TPBSO]) for case in cases) > 1
     iterations = {
@@ -180,7 +180,7 @@ def takes_as_many_iterations(cases: Sequence[Case]) -> Claim:
 
 
 def spreads_time_evenly(timed: Sequence[Case]) -> Claim:
-    """Whether equal times for all intervals cost little."""
+    """Judges whether equal times for all intervals cost little."""
     ratios = {case.path: case.best.cost / case.retimed for case in timed}
     return Claim.judged(
         "“The actual time of each movement is not much different”: one total time with equal intervals is enough.",
@@ -207,7 +207,7 @@ def _is_twice_as_fast(timed: Sequence[Case]) -> Check:
 
 
 def _moving(case: Case) -> Figure:
-    """The library's own plan of a case, in its own time."""
+    """Animates the library's own plan of a case in real time."""
     plan = case.timed or case.best
     with drawing(5.0, 5.0) as figure:
         frames = animate(figure, plan)
@@ -252,18 +252,18 @@ def _draw_redundancy(axes: Axes, plan: bik.Plan) -> None:
 
 
 def _whole_turns(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What to add to an angle so that it does not jump."""
+    """Returns the turns to add to an angle so that it does not jump."""
     turns: NDArray[np.float64] = 2 * np.pi * np.round((np.unwrap(angle) - angle) / (2 * np.pi))
     return turns
 
 
 def from_the_points(plan: bik.Plan) -> float:
-    """The largest distance (m) of the tip from a point at its time, eq. (24)."""
+    """Returns the largest distance (m) of the tip from a point at its time, eq. (24)."""
     return float(_distances(plan)[1].max())
 
 
 def _distances(plan: bik.Plan) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """When the points are due (s), and how far the tip is from them then (m)."""
+    """Returns the times of the points (s), and the distances of the tip from them at these times (m)."""
     reference = np.asarray(plan.reference)
     time = np.linspace(0.0, plan.trajectory.duration, len(reference))
     tip = plan.robot.fk(plan.trajectory.at(time)[0])[:, :3, 3]
@@ -295,7 +295,7 @@ def _table(cases: Sequence[Case]) -> Table:
 
 
 def _rows(case: Case) -> Iterator[list[Value]]:
-    """The searches; for least time, the best timing and the library's own plan."""
+    """Yields the searches and, for least time, the best timing and the library's own plan."""
     words = [case.path, WORDS[case.objective]]
     for name, plans in case.plans.items():
         yield [*words, name, Spread.of(costs(plans)), _worst(plans), _kept(plans)]
@@ -306,7 +306,7 @@ def _rows(case: Case) -> Iterator[list[Value]]:
 
 
 def _worst(plans: Sequence[bik.Plan]) -> float:
-    """Largest distance from the path anywhere (mm)."""
+    """Returns the largest distance from the path anywhere (mm)."""
     return 1e3 * max(plan.accuracy for plan in plans)
 
 

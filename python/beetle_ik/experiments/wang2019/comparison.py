@@ -17,7 +17,7 @@ from .settings import GENERATIONS, LINKS, POPULATION, UNITS, WORDS
 TITLE = "Beside PSO and GA"
 _COMMAND = "python -m beetle_ik.experiments.wang2019.tuning"
 _CLOSE = 1.1  # times the mean of TPBSO
-_RIVAL_OF = {"time": "PSO", "joint_travel": "GA"}  # which one the paper calls close
+_RIVAL_OF = {"time": "PSO", "joint_travel": "GA"}  # rival that the paper calls close
 
 _TEXT = f"""
 The paper states neither the budget of each algorithm nor its constants. A beetle evaluates three times per iteration, a
@@ -35,14 +35,14 @@ motion without a detour turns the joints by the same amount.
 
 
 def comparison(_context: Context, motions: Sequence[Motion]) -> Part:
-    """Compare the searches on all motions."""
+    """Compares the searches on all motions."""
     blocks: list[Block] = [_TEXT, _figure_17(motions), _table(motions), _settings()]
     claims = [is_best(motions), is_close_where_said(motions), is_fast(motions)]
     return Section(TITLE, blocks), claims
 
 
 def is_best(motions: Sequence[Motion]) -> Claim:
-    """Whether no rival beats the beetle swarm on any motion."""
+    """Judges whether no rival beats the beetle swarm on any motion."""
     beaten = {contest: list(_beaten(motions, contest)) for contest in CONTESTS}
     enough = _several(motions)
     return Claim.judged(
@@ -59,7 +59,7 @@ def is_best(motions: Sequence[Motion]) -> Claim:
 
 
 def _beaten(motions: Sequence[Motion], contest: str) -> list[str]:
-    """Which rival beats the swarm on which motion."""
+    """Lists the rivals that beat the swarm, with the motions."""
     found = []
     for motion in motions:
         costs = motion.costs(contest)
@@ -82,7 +82,7 @@ def _several(motions: Sequence[Motion]) -> bool:
 
 
 def is_close_where_said(motions: Sequence[Motion]) -> Claim:
-    """Whether PSO is close in time alone, and GA in rotation alone."""
+    """Judges whether PSO is close in time alone, and GA in rotation alone."""
     over = {
         contest: {
             (rival, objective): _over_the_swarm(motions, contest, rival, objective)
@@ -119,13 +119,13 @@ def is_close_where_said(motions: Sequence[Motion]) -> Claim:
 
 
 def _over_the_swarm(motions: Sequence[Motion], contest: str, rival: str, objective: str) -> float:
-    """Geometric mean, over the arms, of a rival's mean cost over the swarm's."""
+    """Returns the geometric mean, over the arms, of a rival's mean cost over the swarm's."""
     tasks = [motion.costs(contest) for motion in motions if motion.objective == objective and motion.is_a_task]
     return float(np.exp(np.mean([np.log(fmean(costs[rival]) / fmean(costs[TPBSO])) for costs in tasks])))
 
 
 def is_fast(motions: Sequence[Motion]) -> Claim:
-    """Whether the swarm gets near its result before the others do."""
+    """Judges whether the swarm comes near its result before its rivals do."""
     tasks = [motion for motion in motions if motion.is_a_task]
     enough = _several(tasks)
     firsts = {
@@ -145,7 +145,7 @@ def is_fast(motions: Sequence[Motion]) -> Claim:
 
 
 def _first(motion: Motion, *, per_iteration: bool) -> str:
-    """The search of the paper that is first to come near the swarm's final mean; the swarm, if several are."""
+    """Returns the paper's search that first comes near the swarm's final mean; the swarm, if several do."""
     searches, plans = (USUAL, motion.usual) if per_iteration else (TUNED[:3], motion.tuned)
     goal = _CLOSE * fmean(motion.costs(EQUAL_EVALUATIONS if per_iteration else EQUAL_TUNING)[TPBSO])
     reached = {}
@@ -232,5 +232,5 @@ def _settings() -> Table:
 
 
 def _short(solver: str) -> str:
-    """Without what is the same for all."""
+    """Removes the options common to all solvers."""
     return solver.replace(", max_generations=None, stall_generations=None", "")

@@ -1,4 +1,4 @@
-"""Tables 2 and 3: how evaluations and time grow."""
+"""Tables 2 and 3: growth of evaluations and time."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .settings import ALONG_PATH, END, FROM_END_TO_END, POPULATION, START, THREE
 TITLE = "Tables 2 and 3"
 _REPEATS = 5
 _REPEATS_SHORT = 1
-_LEFT_OVER = 0.05  # by which counts may miss proportion: a first generation, members that are kept as they are
-_NO_MORE = 1.1  # times the evaluations of the others
+_LEFT_OVER = 0.05  # tolerance of proportionality: first generations and unchanged members distort counts
+_NO_MORE = 1.1  # multiple of the rivals' evaluations
 _ENOUGH = 10**7  # evaluations
 _N_P, _N_I = "members, n_p", "iterations, n_i"
 
@@ -37,7 +37,7 @@ growth do not show.
 
 @dataclass(frozen=True)
 class Growth:
-    """A search before and after something has grown."""
+    """A search before and after one quantity has grown."""
 
     search: str
     what: str
@@ -48,17 +48,17 @@ class Growth:
 
     @property
     def of_evaluations(self) -> float:
-        """How much they grow for what makes them grow."""
+        """Ratio of the growth of evaluations to the growth of the quantity."""
         return self.after.evaluations / self.before.evaluations / (self.high / self.low)
 
     @property
     def exponent(self) -> float:
-        """Of time: 1 where it grows in proportion."""
+        """Exponent of time: 1 for growth in proportion."""
         return math.log(self.after.elapsed / self.before.elapsed) / math.log(self.high / self.low)
 
 
 def complexity(context: Context) -> Part:
-    """Measure by making each quantity grow."""
+    """Measures evaluations and time while each quantity grows."""
     repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
     cases = [*_members(), *_iterations(), *_others()]
     grown = [_grow(case, repeats) for case in context.each("wang2019: Tables 2 and 3", cases)]
@@ -72,7 +72,7 @@ def complexity(context: Context) -> Part:
 
 
 def grows_in_proportion(counted: Sequence[Growth]) -> Claim:
-    """Whether evaluations grow with members and iterations."""
+    """Judges whether evaluations grow in proportion to members and iterations."""
     ratios = [growth.of_evaluations for growth in counted]
     return Claim.judged(
         "Cost grows in proportion to population and iterations, for TPBSO as for PSO and GA.",
@@ -85,7 +85,7 @@ def grows_in_proportion(counted: Sequence[Growth]) -> Claim:
 
 
 def does_no_more(by_members: Mapping[str, Growth]) -> Claim:
-    """Whether an iteration of the beetle swarm costs what an iteration of its rivals costs."""
+    """Judges whether an iteration of the beetle swarm costs no more than an iteration of its rivals."""
     most = by_members[TPBSO].after.evaluations / min(by_members[rival].after.evaluations for rival in RIVALS)
     ratios = [growth.of_evaluations for growth in by_members.values()]
     return Claim.judged(
@@ -162,7 +162,7 @@ def _table(rows: Sequence[Growth]) -> Table:
 
 @dataclass(frozen=True)
 class _Case:
-    """What grows, from where, to where, and the run that it makes longer."""
+    """The quantity that grows, its first and last value, and the run that it makes longer."""
 
     search: str
     what: str

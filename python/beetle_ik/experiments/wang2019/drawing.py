@@ -1,4 +1,4 @@
-"""What several figures show: cost against evaluations, the arm on its way, joint positions and velocities."""
+"""Common parts of figures: cost against evaluations, the moving arm, joint positions and velocities."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _POINTS = 400
-_WITH_PENALTIES = {"time": 17.0, "tip_travel": 17.0, "joint_travel": 100.0}  # costs above: something is broken
+_WITH_PENALTIES = {"time": 17.0, "tip_travel": 17.0, "joint_travel": 100.0}  # higher costs include penalties
 
 
 def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
-    """The arm at a few moments, darker as time goes by, and the way of its tip."""
+    """Draws the arm at a few moments, darker as time goes by, and the path of its tip."""
     times = np.linspace(0.0, plan.trajectory.duration, snapshots)
     for i, q in enumerate(plan.trajectory.at(times)[0]):
         corners = plan.robot.link_poses(q)[:, :2, 3]
@@ -36,14 +36,14 @@ def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
 
 
 def legend_above(axes: Axes, *, columns: int) -> None:
-    """Where it covers nothing."""
+    """Puts the legend above the axes, where it covers nothing."""
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, fontsize="small", columnspacing=1.0)
 
 
 def draw_searches(axes: Axes, searches: Sequence[Search], plans: Plans) -> None:
-    """The mean best cost so far of each search, from where all its plans keep what they must.
+    """Draws the mean best cost so far of each search, from the point where all its plans meet the requirements.
 
-    Shaded is one standard deviation of the first search.
+    The shaded band is one standard deviation of the first search.
     """
     for i, search in enumerate(searches):
         counts = np.unique(np.geomspace(100, search.evaluations, 120).astype(int)).astype(float)
@@ -58,17 +58,17 @@ def draw_searches(axes: Axes, searches: Sequence[Search], plans: Plans) -> None:
 
 
 def draw_bound(axes: Axes, value: float, name: str) -> None:
-    """A value that no plan, or none known, goes below."""
+    """Draws a lower bound, or the best known value."""
     axes.axhline(value, color=BLACK, linestyle="--", linewidth=1.0, label=name)
 
 
 def label(objective: Criterion) -> str:
-    """What an axis of costs is called."""
+    """Returns the label of an axis of costs."""
     return f"{objective.replace('_', ' ')} [{UNITS[objective]}]"
 
 
 def draw_positions(axes: Axes, plan: bik.Plan) -> None:
-    """Joint positions over time."""
+    """Draws joint positions over time."""
     time = np.linspace(0.0, plan.trajectory.duration, _POINTS)
     for j, q in enumerate(plan.trajectory.at(time)[0].T):
         axes.plot(time, q, label=f"joint {j + 1}", **line(j))
@@ -77,7 +77,7 @@ def draw_positions(axes: Axes, plan: bik.Plan) -> None:
 
 
 def draw_velocities(axes: Axes, plan: bik.Plan, limit: float) -> None:
-    """Joint velocities over time; shaded, where the axis reaches so far, is what lies beyond `limit` (rad/s)."""
+    """Draws joint velocities over time, and shades values beyond `limit` (rad/s) if the axis reaches them."""
     time = np.linspace(0.0, plan.trajectory.duration, _POINTS)
     velocities = plan.trajectory.at(time)[1]
     for j, velocity in enumerate(velocities.T):

@@ -1,4 +1,4 @@
-"""Equations that can be tried by themselves: (1), (2), (4), (6), (7) and (13)."""
+"""Separate tests of equations (1), (2), (4), (6), (7) and (13)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ the five chosen numbers; between them it does so only if straight lines join the
 
 
 def equations(context: Context) -> Part:
-    """Try each with random numbers."""
+    """Tries each equation with random numbers."""
     random = np.random.default_rng(context.seed)
     trials = context.pick(full=_TRIALS, short=_TRIALS_SHORT)
     claims = [
@@ -41,12 +41,12 @@ def equations(context: Context) -> Part:
 
 
 def _random_motions(random: np.random.Generator, trials: int) -> tuple[Array, Array]:
-    """Start, via point, end and speed at the via point (trials, 4); the times of both segments (trials, 2)."""
+    """Draws start, via point, end and speed at the via point (trials, 4), and times of both segments (trials, 2)."""
     return random.uniform(-np.pi, np.pi, (trials, 4)), random.uniform(0.1, 3.0, (trials, 2))
 
 
 def joins(motions: Array, times: Array) -> Claim:
-    """Whether both polynomials meet their boundary conditions."""
+    """Judges whether both polynomials meet their boundary conditions."""
     worst = float(np.abs(boundary_residuals(motions, times)).max())
     return Claim.judged(
         "The polynomials (3) and (5) with the coefficients (4) and (6) lead from rest through the via point to rest.",
@@ -59,7 +59,7 @@ def joins(motions: Array, times: Array) -> Claim:
 
 
 def boundary_residuals(motions: Array, times: Array) -> Array:
-    """What is missed of the eleven conditions (trials, 11)."""
+    """Returns the residuals of the eleven conditions (trials, 11)."""
     (start, via, end, speed), (t1, t2) = motions.T, times.T
     zero = np.zeros_like(start)
     first = [  # eq. (4)
@@ -89,7 +89,7 @@ def boundary_residuals(motions: Array, times: Array) -> Array:
 
 
 def _at(coefficients: list[Array], time: Array, order: int) -> Array:
-    """The derivative of this order of a polynomial, its coefficients from the lowest."""
+    """Evaluates the derivative of this order of a polynomial, given its coefficients from the lowest."""
     value = np.zeros_like(time)
     for power in range(len(coefficients) - 1, order - 1, -1):
         value = value * time + coefficients[power] * np.prod(np.arange(power - order + 1, power + 1))
@@ -97,8 +97,8 @@ def _at(coefficients: list[Array], time: Array, order: int) -> Array:
 
 
 def reaches(places: Array) -> Claim:
-    """Whether the angles of eq. (1) and (2) put a two-link arm where it should be."""
-    with np.errstate(invalid="ignore"):  # a place out of reach
+    """Judges whether the angles of eq. (1) and (2) bring a two-link arm to the required position."""
+    with np.errstate(invalid="ignore"):  # a position out of reach
         second = np.arccos((np.sum(places**2, axis=1) - 2.0) / 2.0)  # eq. (1), links of 1 m
     unturned = _tip(np.column_stack((np.zeros_like(second), second)))
     cosine = np.sum(places * unturned, axis=1) / np.sum(places**2, axis=1)  # eq. (2)
@@ -125,13 +125,13 @@ _PLACED = 1e-6  # m; an arccosine near 1 has half the digits
 
 
 def _tip(angles: Array) -> Array:
-    """Where two links of 1 m end (n, 2)."""
+    """Returns the tip of two links of 1 m (n, 2)."""
     absolute = np.cumsum(angles, axis=1)
     return np.column_stack((np.cos(absolute).sum(axis=1), np.sin(absolute).sum(axis=1)))
 
 
 def keeps_out(orientations: Array, distances: Array) -> Claim:
-    """Whether eq. (13) refuses every orientation of the last link that leaves its start out of reach."""
+    """Judges whether eq. (13) refuses every orientation of the last link that leaves its start out of reach."""
     let_through = {"equal links": _let_through(_EQUAL, orientations, distances)}
     let_through["links of 1, 0.5 and 0.5 m"] = _let_through(_UNEQUAL, orientations, distances)
     return Claim.judged(
@@ -155,7 +155,7 @@ def _let_through(lengths: tuple[float, float, float], orientations: Array, dista
 
 
 def stays_in_range(nodes: Array) -> Claim:
-    """Whether a redundant angle made from numbers in [0, 1] stays in its range between them."""
+    """Judges whether a redundant angle made from numbers in [0, 1] stays in its range between them."""
     left = {name: int(np.sum(_leaves(nodes, join))) for name, join in _JOINS.items()}
     return Claim.judged(
         "With a normalized sequence “the restored redundant parameter values must be within their range”: (23) holds.",
@@ -179,7 +179,7 @@ def _lines(at: Array, nodes: Array) -> Array:
 
 
 def _natural_spline(at: Array, nodes: Array) -> Array:
-    """Unit knots: the usual tridiagonal system for the second derivatives, which are zero at the ends."""
+    """Evaluates a natural cubic spline on unit knots, from the tridiagonal system for its second derivatives."""
     system = np.eye(_NODES)
     for i in range(1, _NODES - 1):
         system[i, i - 1 : i + 2] = 1.0, 4.0, 1.0

@@ -1,4 +1,4 @@
-"""The library's own planner beside the searches, with the same freedom for all."""
+"""The library's own planner beside the searches, with equal freedom for all."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ TITLE = "Nearest configurations instead"
 _SEEDS, _SEEDS_SHORT = 5, 1
 _LINKS_SHORT = (2, 5)
 _ELBOWS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-_POLYNOMIAL = 1.25  # times the bound, that one polynomial may take
-_VIA = 1.03  # times, that a straight motion may take longer than the mean of searches that also place a via point
+_POLYNOMIAL = 1.25  # multiple of the bound that one polynomial may take
+_VIA = 1.03  # most time of a straight motion over the mean of searches that also place a via point
 
 _TEXT = """
 Our own planner does not search over motions. It looks for start and end configurations with the smallest largest joint
@@ -33,7 +33,7 @@ combination of elbows, with its full number of evaluations, and keeps its best p
 
 @dataclass(frozen=True)
 class Freedom:
-    """The library's plan and those of the searches, for one arm with one freedom."""
+    """Plans of the library and of the searches, for one arm with one freedom."""
 
     links: int
     elbows: str
@@ -42,22 +42,22 @@ class Freedom:
 
     @property
     def bound(self) -> float:
-        """The least time of any motion between the same configurations (s)."""
+        """Least time of any motion between the same configurations (s)."""
         return bang_bang(self.ours)
 
     @property
     def best_search(self) -> str:
-        """The search with the lowest mean."""
+        """Name of the search with the lowest mean."""
         return min(self.found, key=lambda name: fmean(costs(self.found[name])))
 
     @property
     def best_plan(self) -> float:
-        """The quickest plan of any search (s)."""
+        """Duration of the quickest plan of any search (s)."""
         return min(plan.cost for plans in self.found.values() for plan in plans if plan.success)
 
 
 def freedom(context: Context, motions: Sequence[Motion]) -> Part:
-    """Compare with fixed elbows and with free ones."""
+    """Compares the plans with fixed elbows and with free ones."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     links = context.pick(full=LINKS, short=_LINKS_SHORT)
     timed = [motion for motion in motions if motion.objective == "time" and motion.links in links]
@@ -76,7 +76,7 @@ def _chosen(links: int, seeds: range) -> Freedom:
 
 
 def _choosing(search: Search, links: int, seed: int) -> bik.Plan:
-    """The best plan over all elbows."""
+    """Returns the best plan over all elbows."""
     plans = [search.plan(links, "time", seed, elbows=elbows) for elbows in _ELBOWS]
     return min(plans, key=lambda plan: (not plan.success, plan.cost))
 

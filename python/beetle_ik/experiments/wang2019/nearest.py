@@ -1,4 +1,4 @@
-"""The nearest configurations of two places, joined straight: the library's own planner, and the bound on any motion."""
+"""Straight motion between the nearest configurations of two positions, and the bound on any motion."""
 
 from __future__ import annotations
 
@@ -12,40 +12,40 @@ import beetle_ik as bik
 
 from .settings import END, FROM_END_TO_END, REACH, START, arm
 
-_VELOCITY, _ACCELERATION = np.pi, 2 * np.pi  # of FROM_END_TO_END
-_SEARCH_SEEDS = range(3)  # the nearest pair at given elbows is the best of so many searches
+_VELOCITY, _ACCELERATION = np.pi, 2 * np.pi  # limits in FROM_END_TO_END
+_SEARCH_SEEDS = range(3)  # seeds of the searches for the nearest pair at given elbows
 _SEARCH = bik.Stop(max_evaluations=20_000)
 _OUT_OF_REACH = 10.0  # rad; more than any displacement
 
 
 @cache
 def nearest(links: int) -> bik.Plan:
-    """The library's own planner on the paper's motion: it chooses how the arm bends at both ends."""
+    """Plans the paper's motion with the library's planner, which chooses the elbows at both ends."""
     return bik.plan_point_to_point(arm(links), START, END, limits=FROM_END_TO_END)
 
 
 @cache
 def nearest_bent_as_in_the_paper(links: int) -> bik.Plan:
-    """The same between the nearest configurations with both elbows positive, as the paper's arccosine has them."""
+    """Plans between the nearest configurations with positive elbows, which the paper's arccosine gives."""
     start, end = _nearest_pair(links)
     return bik.plan_point_to_point(arm(links), start_q=start, end_q=end, limits=FROM_END_TO_END)
 
 
 def bang_bang(plan: bik.Plan) -> float:
-    """The least time (s) of any motion within the limits that joins the ends of `plan`."""
+    """Returns the least time (s) of any motion within the limits that joins the ends of `plan`."""
     q = plan.trajectory.q
     return max(_least_time(abs(way)) for way in q[-1] - q[0])
 
 
 def _least_time(way: float) -> float:
-    """From rest to rest: full acceleration, then full braking, with full speed in between where it is reached."""
+    """Returns the time from rest to rest: full acceleration, full speed if it is reached, then full braking."""
     if way <= _VELOCITY**2 / _ACCELERATION:
         return 2.0 * math.sqrt(way / _ACCELERATION)
     return way / _VELOCITY + _VELOCITY / _ACCELERATION
 
 
 def _nearest_pair(links: int) -> NDArray[np.float64]:
-    """Start and end (2, links) with the least largest joint displacement, both elbows positive."""
+    """Returns start and end (2, links) with the least largest joint displacement, both elbows positive."""
     free = links - 2
     if free == 0:
         return np.array([_configurations(np.empty((1, 0)), place)[0] for place in (START, END)])
@@ -71,7 +71,7 @@ def _nearest_pair(links: int) -> NDArray[np.float64]:
 
 
 def _configurations(orientations: NDArray[np.float64], place: tuple[float, float, float]) -> NDArray[np.float64]:
-    """Joint angles (m, links) with the last links at `orientations` (m, links - 2); NaN out of reach."""
+    """Returns joint angles (m, links) with the last links at `orientations` (m, links - 2); NaN out of reach."""
     length = REACH / (2 + orientations.shape[1])
     x = place[0] - length * np.cos(orientations).sum(axis=1)
     y = place[1] - length * np.sin(orientations).sum(axis=1)

@@ -1,4 +1,4 @@
-"""Figures 10 to 12: past an oval, with the shortest way of the tip."""
+"""Figures 10 to 12: past an oval, with the shortest path of the tip."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ _LINKS, _LINKS_SHORT = (3, 4, 5), (3,)
 _EVALUATIONS = POPULATION * (3 * 100 + 1)
 _SEARCHES = tuple(search.limited_to(_EVALUATIONS) for search in TUNED)
 _CENTER, _SEMI_AXES = (0.8, 0.8), (0.3, 0.2)  # m; the paper does not state them
-_TANGENT = 1.64757  # m: straight to the ellipse, along it, straight on: the shortest way for the tip alone
-_SHORT_WAY = 1.25  # times that
+_TANGENT = 1.64757  # m: tangent, arc, tangent around the ellipse, the shortest path of the tip alone
+_SHORT_WAY = 1.25  # multiple of the shortest path
 _TIMES, _PER_LINK = 400, 40  # samples that test the certificate
 
 Found: TypeAlias = Mapping[int, Plans]
-"""The plans of all searches, by the number of links."""
+"""Plans of all searches, by the number of links."""
 
 _TEXT = f"""
 An ellipse lies between the two places, and no link may touch it (eq. 14). The cost is the path length of the tip (eq.
@@ -63,7 +63,7 @@ dashed line is the shortest way round for the tip alone, {_TANGENT} m.
 
 
 def obstacle(context: Context) -> Part:
-    """Plan past the ellipse with three to five links."""
+    """Plans past the ellipse with three to five links."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     blocks: list[Block] = [_TEXT]
     found: dict[int, Plans] = {}
@@ -135,7 +135,7 @@ def _table(found: Found) -> Table:
 
 
 def passes(found: Found) -> Claim:
-    """Whether the beetle swarm gets past the obstacle with each arm."""
+    """Judges whether the beetle swarm gets past the obstacle with each arm."""
     plans = {links: searches[TPBSO] for links, searches in found.items()}
     clear = {links: _clear(some) for links, some in plans.items()}
     shortest = {links: min(costs(some), default=math.inf) for links, some in clear.items()}
@@ -164,7 +164,7 @@ def passes(found: Found) -> Claim:
 
 
 def is_robust(found: Found) -> Claim:
-    """Whether the beetle swarm copes with the constraint better than its rivals, and at all."""
+    """Judges whether the beetle swarm meets the constraint better than its rivals, and at all."""
     everyone = {name: [plan for searches in found.values() for plan in searches[name]] for name in (TPBSO, *RIVALS)}
     clear = {name: len(_clear(plans)) for name, plans in everyone.items()}
     ways = {name: costs(_clear(plans)) for name, plans in everyone.items()}
@@ -208,7 +208,7 @@ def _is_certified(found: Found) -> Check:
 
 
 def _nearest_sample(plan: bik.Plan) -> float:
-    """How large, as a multiple of the obstacle, the smallest similar ellipse is that a point of the arm is on."""
+    """Returns the scale of the smallest similar ellipse that a point of the arm touches; 1 is the obstacle."""
     q = plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, _TIMES))[0]
     angle = np.cumsum(q, axis=1)
     length = REACH / q.shape[1]

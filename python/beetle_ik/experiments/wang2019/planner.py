@@ -1,4 +1,4 @@
-"""The two calls of the published planner: all searches of this experiment go through them."""
+"""Calls of the published planner, which all searches of this experiment use."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def plan_between(
     elbows: tuple[int, int] = PAPERS_ELBOWS,
     obstacles: Sequence[bik.obstacles.Ellipse] = (),
 ) -> bik.Plan:
-    """A motion through a via point (section III-A, first problem), its parameters found by `solver`."""
+    """Plans a motion through a via point (section III-A, first problem), its parameters found by `solver`."""
     return bik.plan_point_to_point(
         robot,
         start,
@@ -54,7 +54,7 @@ def plan_along(
     stop: bik.Stop,
     seed: int = 0,
 ) -> bik.Plan:
-    """A motion along a path (section III-A, second problem), its parameters found by `solver`."""
+    """Plans a motion along a path (section III-A, second problem), its parameters found by `solver`."""
     return bik.plan_along_path(
         robot,
         path,

@@ -1,4 +1,4 @@
-"""Figures 2 to 9: from one place to another, in least time or with least rotation."""
+"""Figures 2 to 9: motions between two positions, in least time or with least rotation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 TITLE = "From place to place"
 _DRAWN_SHORT = (5,)  # links
-_WELL = 1.25  # times the best plan known
+_WELL = 1.25  # multiple of the best known cost
 _SOON = 10  # iterations of 200
 
 _TEXT = """
@@ -39,14 +39,14 @@ acceleration and full braking.
 
 
 def point_to_point(context: Context, motions: Sequence[Motion]) -> Part:
-    """Draw the eight motions, and judge what the paper says of them."""
+    """Draws the eight motions, and judges the paper's claims on them."""
     blocks: list[Block] = [_TEXT, *_figures(motions, context.pick(full=LINKS, short=_DRAWN_SHORT))]
     claims = [*(planned(objective, motions) for objective in UNITS), converges_well(motions), is_easy(motions)]
     return Section(TITLE, blocks), claims
 
 
 def _figures(motions: Sequence[Motion], drawn: Sequence[int]) -> Iterator[Figure]:
-    """Those of the arms with so many links."""
+    """Yields the figures of the arms with the numbers of links in `drawn`."""
     for i, motion in enumerate(motions):
         if motion.links in drawn:
             yield Figure(
@@ -76,7 +76,7 @@ def _draw(motion: Motion) -> Drawing:
 
 
 def planned(objective: Criterion, motions: Sequence[Motion]) -> Claim:
-    """Whether every plan keeps its limits."""
+    """Judges whether every plan keeps its limits."""
     plans = [plan for motion in motions if motion.objective == objective for plan in _of_the_swarm(motion)]
     kept = sum(plan.success for plan in plans)
     return Claim.judged(
@@ -91,7 +91,7 @@ def planned(objective: Criterion, motions: Sequence[Motion]) -> Claim:
 
 
 def converges_well(motions: Sequence[Motion]) -> Claim:
-    """Whether the swarm comes close to the best plan known for every number of links."""
+    """Judges whether the swarm comes close to the best plan known for every number of links."""
     timed = [motion for motion in motions if motion.objective == "time"]
 
     def over_the_best(contest: str) -> list[float]:
@@ -116,7 +116,7 @@ def converges_well(motions: Sequence[Motion]) -> Claim:
 
 
 def is_easy(motions: Sequence[Motion]) -> Claim:
-    """Whether rotation with two links takes few iterations."""
+    """Judges whether rotation with two links takes few iterations."""
     iterations = {
         motion.links: median(iterations_to_converge(plan, USUAL[0]) for plan in motion.usual[TPBSO])
         for motion in motions

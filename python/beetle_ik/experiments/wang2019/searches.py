@@ -1,4 +1,4 @@
-"""The searches that are compared, and how their costs are."""
+"""The compared searches, and statistics of their costs."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ...report import BLUE, GREEN, PURPLE, VERMILION
 from .planner import PAPERS_ELBOWS, Objective, Solver, plan_along, plan_between
 from .settings import END, EVALUATIONS, FROM_END_TO_END, POPULATION, START, THREE_LINKS, Criterion, arm, each
 
-STANDARD_ERRORS = 2.0  # by which a mean has to be lower
-_CLOSE = 1.01  # times the final cost: converged
+STANDARD_ERRORS = 2.0  # standard errors by which a mean has to be lower
+_CLOSE = 1.01  # multiple of the final cost that counts as converged
 
 
 @dataclass(frozen=True)
 class Search:
-    """A search, the evaluations that it may spend, and the color of its lines."""
+    """A search, its budget of evaluations, and the colour of its lines."""
 
     name: str
     solver: Solver
@@ -30,7 +30,7 @@ class Search:
     evaluations: int = EVALUATIONS
 
     def limited_to(self, evaluations: int) -> Search:
-        """The same search with another budget."""
+        """Returns the same search with another budget."""
         return replace(self, evaluations=evaluations)
 
     def plan(
@@ -42,7 +42,7 @@ class Search:
         elbows: tuple[int, int] = PAPERS_ELBOWS,
         obstacles: Sequence[bik.obstacles.Ellipse] = (),
     ) -> bik.Plan:
-        """The motion of the paper's section IV-A for an arm of so many links."""
+        """Plans the motion of the paper's section IV-A for an arm of `links` links."""
         return plan_between(
             arm(links),
             START,
@@ -65,7 +65,7 @@ class Search:
         limits: bik.Limits,
         accuracy: float,
     ) -> bik.Plan:
-        """A path of the paper's section IV-C, by three links of 1 m."""
+        """Plans along a path of the paper's section IV-C, with three links of 1 m."""
         return plan_along(
             THREE_LINKS,
             path,
@@ -85,7 +85,7 @@ USUAL = (
     Search("PSO", bik.papers.PSO(population=POPULATION, stall_generations=None), VERMILION),
     Search("GA", bik.papers.Genetic(population=POPULATION, stall_generations=None), PURPLE),
 )
-# The winners that `python -m beetle_ik.experiments.wang2019.tuning` prints.
+# Winners printed by `python -m beetle_ik.experiments.wang2019.tuning`.
 TUNED = (
     Search(
         "TPBSO",
@@ -103,7 +103,7 @@ TUNED = (
         ),
         BLUE,
     ),
-    Search("PSO", bik.papers.PSO(population=50, stall_generations=None), VERMILION),  # its defaults
+    Search("PSO", bik.papers.PSO(population=50, stall_generations=None), VERMILION),  # default options
     Search(
         "GA",
         bik.papers.Genetic(
@@ -118,24 +118,24 @@ TUNED = (
         ),
         PURPLE,
     ),
-    Search("DE", bik.DifferentialEvolution(population=50, stall_generations=None), GREEN),  # its defaults
+    Search("DE", bik.DifferentialEvolution(population=50, stall_generations=None), GREEN),  # default options
 )
 TPBSO, RIVALS = "TPBSO", ("PSO", "GA")
-"""The paper's own search, and those that it compares with; differential evolution is ours."""
+"""The paper's own search, and the rivals that the paper compares; differential evolution is our addition."""
 
 Plans = Mapping[str, Sequence[bik.Plan]]
-"""The plans of each search, by its name: one a seed."""
+"""Plans of each search by its name, one for each seed."""
 
 
 def plan_all(
     searches: Sequence[Search], plan: Callable[[Search, int], bik.Plan], seeds: Sequence[int]
 ) -> dict[str, list[bik.Plan]]:
-    """What `plan` makes of each search and seed."""
+    """Plans with each search and seed."""
     return {search.name: each(partial(plan, search), seeds) for search in searches}
 
 
 def best_so_far(plans: Sequence[bik.Plan], evaluations: ArrayLike) -> NDArray[np.float64]:
-    """The best cost of each plan's search after so many evaluations (plans, evaluations), penalties included."""
+    """Returns the best cost of each plan's search at these evaluations (plans, evaluations), penalties included."""
     rows = []
     for plan in plans:
         at = np.searchsorted(plan.history[:, 0], evaluations, side="right") - 1
@@ -144,14 +144,14 @@ def best_so_far(plans: Sequence[bik.Plan], evaluations: ArrayLike) -> NDArray[np
 
 
 def iterations_to_converge(plan: bik.Plan, swarm: Search) -> int:
-    """The first iteration of a beetle swarm within 1 % of the final cost: each takes three evaluations a beetle."""
+    """Returns the first iteration of a beetle swarm, of three evaluations a beetle, within 1 % of the final cost."""
     iterations = swarm.evaluations // (3 * swarm.solver.population)
     history = best_so_far([plan], swarm.solver.population * (3 * np.arange(iterations + 1) + 1))[0]
     return int(np.argmax(history <= _CLOSE * history[-1]))
 
 
 def costs(plans: Sequence[bik.Plan]) -> list[float]:
-    """What the plans cost."""
+    """Returns the costs of the plans."""
     return [plan.cost for plan in plans]
 
 
@@ -162,7 +162,7 @@ OURS = "Reach, limits and the constants of the searches are ours: the paper stat
 def is_lower(one: Sequence[float], other: Sequence[float]) -> bool:
     """Whether the mean of `one` is lower than that of `other`, by more than two standard errors of the difference.
 
-    Where one of them has no value, nothing is lower.
+    The result is False if one of them has no value.
     """
     if not one or not other:
         return False

@@ -20,38 +20,38 @@ START, END = (1.0, 0.0, 0.0), (0.5, 1.5, 0.0)  # section IV-A.1
 REACH = 2.0  # m; the paper does not state it
 LINKS = (2, 3, 4, 5)
 POPULATION, GENERATIONS = 50, 200
-ONE_EACH = POPULATION * (GENERATIONS + 1)  # evaluations of a swarm that looks only at where it goes
-EVALUATIONS = POPULATION * (3 * GENERATIONS + 1)  # each beetle looks at two antennae and at where it goes
+ONE_EACH = POPULATION * (GENERATIONS + 1)  # evaluations of a swarm with one evaluation for each member
+EVALUATIONS = POPULATION * (3 * GENERATIONS + 1)  # each beetle evaluates two antennae and its new position
 
 
 def limits(acceleration: float) -> bik.Limits:
-    """Half a turn a second; joints turn as far as they like."""
+    """Returns limits of half a turn a second, without position limits."""
     return bik.Limits(lower=-np.inf, upper=np.inf, velocity=np.pi, acceleration=acceleration)
 
 
 FROM_END_TO_END = limits(2 * np.pi)
 ALONG_PATH = limits(4 * np.pi)
-THREE_LINKS = bik.Robot.planar([1.0, 1.0, 1.0])  # of the motions along a path
+THREE_LINKS = bik.Robot.planar([1.0, 1.0, 1.0])  # arm of the motions along a path
 
 
 def arm(links: int) -> bik.Robot:
-    """An arm of equal links."""
+    """Returns an arm of equal links."""
     return bik.Robot.planar([REACH / links] * links)
 
 
 def each(plan: Callable[[int], bik.Plan], seeds: Sequence[int]) -> list[bik.Plan]:
-    """The plans of all seeds, on all cores: planning leaves the interpreter to others."""
+    """Plans for all seeds on all cores: planning releases the interpreter."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(plan, seeds))
 
 
 def pentagram() -> bik.Path:
-    """A star about (1, 1) with its points 0.5 m away."""
+    """Returns a star about (1, 1) with its points 0.5 m away."""
     return bik.paths.pentagram((1.0, 1.0, 0.0), 1.0, radius=0.5)
 
 
 def trefoil() -> NDArray[np.float64]:
-    """A smooth closed curve of three lobes about (1, 1): 51 points."""
+    """Returns a smooth closed curve of three lobes about (1, 1): 51 points."""
     angle = np.linspace(0.0, 2 * np.pi, 51)
     radius = (1.0 + 0.35 * np.cos(3 * angle)) * 0.6 / 1.35
     return np.column_stack((1.0 + radius * np.cos(angle), 1.0 + radius * np.sin(angle), 0.0 * angle))

@@ -19,7 +19,7 @@ TITLE = "Table 1"
 _SEEDS, _SEEDS_SHORT = 5, 1
 _PRINTED_RUNS = 20
 _GENERATIONS = 100
-_EVALUATIONS = {  # at equal iterations
+_EVALUATIONS = {  # evaluations at equal iterations
     "GA": POPULATION * (_GENERATIONS + 1),
     "PSO": POPULATION * (_GENERATIONS + 1),
     "TPBSO": POPULATION * (3 * _GENERATIONS + 1),
@@ -27,7 +27,7 @@ _EVALUATIONS = {  # at equal iterations
 _SEARCHES = {search.name: search.limited_to(_EVALUATIONS[search.name]) for search in USUAL}
 _ACCURACY = 0.12  # m
 _LIMITS = bik.Limits(lower=-np.inf, upper=np.inf, velocity=38.53)
-_NEEDED = {  # as the paper has them
+_NEEDED = {  # evaluations needed, by the paper
     "the size and place of both paths": Printed.NOT_STATED,
     "the lengths of the links": Printed.NOT_STATED,
     "the limits of velocity and acceleration": Printed.NOT_STATED,
@@ -66,7 +66,7 @@ class _Row:
 
 
 def table_1(context: Context) -> Part:
-    """Run the three algorithms at equal iterations on the fitted paths."""
+    """Runs the three algorithms at equal iterations on the fitted paths."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     cases = [(path, algorithm) for path in _PATHS for algorithm in _EVALUATIONS]
     rows = [_row(path, algorithm, seeds) for path, algorithm in context.each("wang2019: Table 1", cases)]
@@ -92,12 +92,12 @@ def table_1(context: Context) -> Part:
 
 
 Spreads = Mapping[tuple[str, str], Mapping[Criterion, Spread]]
-"""Mean and deviation of each objective, by path and algorithm."""
+"""Mean and standard deviation of each objective, by path and algorithm."""
 _COLUMNS: tuple[tuple[str, Criterion], ...] = tuple((path, objective) for path in _PATHS for objective in UNITS)
 
 
 def performs_better(measured: Spreads) -> Claim:
-    """Whether the beetle swarm has the lowest means, on paths that the paper does not give."""
+    """Judges whether the beetle swarm has the lowest means, on paths that the paper does not give."""
     lowest = sum(_is_least(measured, path, objective, "mean") for path, objective in _COLUMNS)
     return Claim.judged(
         "“Both in execution time and joint rotation, TPBSO has … better performance compare to PSO and GA.”",
@@ -115,7 +115,7 @@ def performs_better(measured: Spreads) -> Claim:
 
 
 def _resolved(spreads: Spreads) -> int:
-    """In how many comparisons the swarm's lead is more than the runs' scatter explains."""
+    """Counts the comparisons in which the swarm's lead exceeds the scatter of the runs."""
     return sum(
         spreads[path, rival][objective].mean - own.mean
         > STANDARD_ERRORS * ((own.std**2 + spreads[path, rival][objective].std ** 2) / _PRINTED_RUNS) ** 0.5
@@ -126,7 +126,7 @@ def _resolved(spreads: Spreads) -> int:
 
 
 def varies_least(printed: Spreads) -> Claim:
-    """Whether the beetle swarm has the smallest deviations in the paper's own table."""
+    """Judges whether the beetle swarm has the smallest deviations in the paper's own table."""
     exceptions = [
         f"{'rotation' if objective == 'joint_travel' else 'time'} along the {path} "
         f"({printed[path, TPBSO][objective].std:g} against "
@@ -163,7 +163,7 @@ def _row(path: str, algorithm: str, seeds: range) -> _Row:
 
 
 def _points(path: str) -> NDArray[np.float64]:
-    """The fitted paths, 51 points each."""
+    """Returns the fitted paths, 51 points each."""
     if path == "pentagram":
         star = bik.paths.pentagram((0.0, 0.0, 0.0), 1.0, radius=1.0)
         return np.asarray(star.position(np.linspace(0.0, 1.0, 51)))

@@ -1,4 +1,4 @@
-"""Tunes the four searches alike: as many settings each, on seeds that no reported figure uses.
+"""Tunes the four searches alike: the same number of settings each, on seeds that no reported figure uses.
 
     python -m beetle_ik.experiments.wang2019.tuning
 
@@ -21,9 +21,9 @@ from .planner import Objective, Solver
 from .searches import Search
 from .settings import each
 
-SETTINGS = 32  # of each search, the defaults among them
+SETTINGS = 32  # settings of each search, the defaults among them
 TRAINING_SEEDS = range(1000, 1010)
-# Rotation with two links is no task: every motion without a detour takes the same.
+# Motions for tuning. With two links all motions without a detour have the same rotation, so time alone is tried.
 MOTIONS: tuple[tuple[Objective, int], ...] = (
     ("time", 2),
     ("time", 3),
@@ -43,19 +43,19 @@ class _Draw:
         self._random = np.random.default_rng(0)
 
     def between(self, low: float, high: float) -> float:
-        """Uniform, in three digits."""
+        """Draws uniformly, in three digits."""
         return float(f"{self._random.uniform(low, high):.3g}")
 
     def scale(self, low: float, high: float) -> float:
-        """Uniform in the logarithm, in three digits."""
+        """Draws uniformly in the logarithm, in three digits."""
         return float(f"{math.exp(self._random.uniform(math.log(low), math.log(high))):.3g}")
 
     def population(self) -> int:
-        """One of a few sizes."""
+        """Draws one of a few sizes."""
         return int(self._random.choice(_POPULATIONS))
 
     def coin(self) -> bool:
-        """True or False."""
+        """Draws True or False."""
         return bool(self._random.integers(2))
 
 
@@ -116,16 +116,16 @@ SEARCHES: dict[str, tuple[Solver, Callable[[_Draw], Solver]]] = {
     "GA": (bik.papers.Genetic(population=50, stall_generations=None), _genes),
     "DE": (bik.DifferentialEvolution(population=50, stall_generations=None), _vectors),
 }
-"""The defaults of each search, and how other settings are drawn."""
+"""Defaults of each search, and the draw of other settings."""
 
 
 def score(solver: Solver) -> float:
-    """Geometric mean over the motions of the mean cost over the training seeds, penalties included."""
+    """Returns the geometric mean over the motions of the mean cost over the training seeds, penalties included."""
     return float(np.exp(np.mean([np.log(_mean_cost(solver, *motion)) for motion in MOTIONS])))
 
 
 def _mean_cost(solver: Solver, objective: Objective, links: int) -> float:
-    """Over the training seeds; infinite where a run met no configuration that reaches the ends."""
+    """Returns the mean over the training seeds; infinite if a run found no configuration that reaches the ends."""
 
     def plan(seed: int) -> bik.Plan:
         return Search("", solver, "").plan(links, objective, seed)
@@ -137,7 +137,7 @@ def _mean_cost(solver: Solver, objective: Objective, links: int) -> float:
 
 
 def main() -> None:
-    """Tune all and print the winners."""
+    """Tunes all searches and prints the winners."""
     for name, (default, drawn) in SEARCHES.items():
         draw = _Draw()
         solvers = [default, *(drawn(draw) for _ in range(SETTINGS - 1))]

@@ -20,7 +20,7 @@ reaches most of them.
 
 
 def run(context: Context) -> Report:
-    """Run all of it."""
+    """Runs all experiments of the paper."""
     runs = replay()
     parts = [
         motions(runs),

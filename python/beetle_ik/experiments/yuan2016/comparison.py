@@ -1,4 +1,4 @@
-"""Table 6: APPS beside Newton-Raphson, and beside what the library has."""
+"""Table 6: APPS beside Newton-Raphson, and beside other solvers of the library."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ Solver: TypeAlias = bik.papers.APPS | bik.NewtonRaphson | bik.JacobianTranspose 
 
 TITLE = "Beside Newton-Raphson"
 _SLOW_TRANSPOSE = bik.JacobianTranspose(step_size=0.005)
-_STEPS = (1.0, 0.4, 0.1)  # of Newton-Raphson, as a share of the full one
+_STEPS = (1.0, 0.4, 0.1)  # steps of Newton-Raphson, as fractions of the full step
 _TOLERANCE = 1e-6  # m and rad
 _DEEP = 1e-13
 _FREE = bik.Limits(lower=-np.inf, upper=np.inf)
-_POINTS = 45  # of a convergence curve
+_POINTS = 45  # points of a convergence curve
 
 _METHODS: dict[str, Solver] = {
     "APPS, as published": bik.papers.APPS(learning_rate=0.2, step_limit=float(np.radians(1.0))),
@@ -57,7 +57,7 @@ limits is the useful idea of APPS.
 
 
 def comparison(context: Context, runs: list[Motion]) -> Part:
-    """Iterations, times and errors of all methods on the seven motions."""
+    """Compares iterations, times and errors of all methods on the seven motions."""
     newton = {
         share: [_solve(run, bik.NewtonRaphson(step_fraction=share), _TOLERANCE, NEWTON_ITERATIONS) for run in runs]
         for share in _STEPS
@@ -117,7 +117,7 @@ def comparison(context: Context, runs: list[Motion]) -> Part:
 
 
 def _turn(run: Motion) -> float:
-    """By how much the tip turns (degrees)."""
+    """Returns the rotation of the tip (degrees)."""
     before, after = ROBOT.fk(run.start)[:3, :3], run.goal[:3, :3]
     return float(np.degrees(np.arccos(np.clip((np.trace(before.T @ after) - 1) / 2, -1.0, 1.0))))
 
@@ -142,12 +142,12 @@ def _kept_inside(run: Motion) -> bik.Solution:
 
 
 def _quickest(solve: Callable[[], bik.Solution], repeats: int) -> float:
-    """Seconds."""
+    """Returns the least time of several repeats (s)."""
     return min(solve().elapsed for _ in range(repeats))
 
 
 def _mean_error(run: Motion, solution: bik.Solution) -> float:
-    """MAE of the position (mm)."""
+    """Returns the mean absolute error of the position (mm)."""
     return float(np.abs(ROBOT.fk(solution.q)[:3, 3] - run.goal[:3, 3]).mean() * 1e3)
 
 
@@ -196,11 +196,11 @@ def _methods_table(counts: dict[str, list[bik.Solution]]) -> Table:
 
 
 Solved: TypeAlias = dict[float, dict[str, bool]]
-"""Whether Newton-Raphson solves each motion, by its step as a share of the full one."""
+"""Whether Newton-Raphson solves each motion, by its step as a fraction of the full one."""
 
 
 def newton_claim(solved: Solved) -> Claim:
-    """The failures of Table 6."""
+    """Judges the failures in Table 6."""
     return Claim.judged(
         "Newton-Raphson fails on I-1 and 5-6, and misses the others by 0.83 to 204.5 mm after 4000 iterations.",
         source="Table 6",
@@ -217,7 +217,7 @@ def newton_claim(solved: Solved) -> Claim:
 
 
 def guess_claim(solved: Solved) -> Claim:
-    """What the text says of 3-4 and 6-I."""
+    """Judges the text on motions 3-4 and 6-I."""
     return Claim.judged(
         "Newton-Raphson cannot converge from inaccurate initial guesses, such as in 3-4 and 6-I.",
         source="Text on Table 6",
@@ -232,7 +232,7 @@ def guess_claim(solved: Solved) -> Claim:
 
 
 def accuracy_claim(apps: list[float], newton: list[float]) -> Claim:
-    """Mean absolute errors (mm), a motion each."""
+    """Judges mean absolute errors (mm), one for each motion."""
     ours, theirs = float(np.mean(apps)), float(np.mean(newton))
     return Claim.judged(
         "The mean error of APPS (0.01 mm) is smaller than that of Newton-Raphson (53.65 mm).",
@@ -245,7 +245,7 @@ def accuracy_claim(apps: list[float], newton: list[float]) -> Claim:
 
 
 def time_claim(apps: list[float], newton: list[float]) -> Claim:
-    """Times (s), a motion each."""
+    """Judges times (s), one for each motion."""
     return Claim.judged(
         "APPS takes less time than Newton-Raphson (13.2 s against 22.7 s on average).",
         source="Text on Table 6",
@@ -258,7 +258,7 @@ def time_claim(apps: list[float], newton: list[float]) -> Claim:
 
 
 def iterations_claim(apps: list[int], newton: list[int]) -> Claim:
-    """Iterations, a motion each."""
+    """Judges iterations, one number for each motion."""
     return Claim.judged(
         "APPS has low computational complexity and fewer iterations.",
         source="Conclusion",
@@ -270,7 +270,7 @@ def iterations_claim(apps: list[int], newton: list[int]) -> Claim:
 
 
 def seconds_claim(times: list[float]) -> Claim:
-    """The seconds themselves."""
+    """Judges the printed times (s)."""
     return Claim.judged(
         "A motion takes APPS 9 to 22 s.",
         source="Table 6",

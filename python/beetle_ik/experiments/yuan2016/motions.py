@@ -55,12 +55,12 @@ joint of the last motion passes 360° on its way and is brought back by eq. (12)
 
 
 def replay() -> list[Motion]:
-    """The motions with the paper's parameters."""
+    """Repeats the motions with the paper's parameters."""
     return run_all(bik.papers.APPS.paper())
 
 
 def motions(runs: list[Motion]) -> Part:
-    """Angles, positions and errors of the seven motions."""
+    """Compares angles, positions and errors of the seven motions."""
     angles = np.array([np.degrees(run.solution.q) for run in runs])
     first, second = (
         _positions([run.solution.q for run in runs]),
@@ -99,7 +99,7 @@ def _positions(configurations: list[Array]) -> Array:
 
 
 def _mean_errors(first: Array, second: Array) -> Array:
-    """MAE_1, MAE_2 and MAE_S (mm): means over the coordinates, of positions to 5 decimals as the paper took them."""
+    """Returns MAE_1, MAE_2 and MAE_S (mm), of positions rounded to 5 decimals as in the paper."""
     first, second = np.round(first, 5), np.round(second, 5)
     one = np.abs(TARGETS - first).mean(axis=1) * 1e3
     two = np.abs(first - second).mean(axis=1) * 1e3
@@ -176,7 +176,7 @@ def _claims(runs: list[Motion], angles: Array, positions: Array, rounded: Array,
 
 
 def counts_claim(counts: Sequence[int], *, solved: bool) -> Claim:
-    """Iterations of the seven motions."""
+    """Judges the iterations of the seven motions."""
     return Claim.judged(
         "APPS needs 438, 256, 316, 618, 278, 233 and 281 iterations.",
         source="Table 6",
@@ -189,7 +189,7 @@ def counts_claim(counts: Sequence[int], *, solved: bool) -> Claim:
 
 
 def angles_claim(off: float, equal: int) -> Claim:
-    """Largest difference from R₁ (degrees), and how many rounded angles equal R₂."""
+    """Judges the largest difference from R₁ (degrees), and the number of rounded angles that equal R₂."""
     return Claim.judged(
         "It ends at the angles R₁, and rounded, at R₂.",
         source="Table 3",
@@ -202,7 +202,7 @@ def angles_claim(off: float, equal: int) -> Claim:
 
 
 def positions_claim(off: float, mean_error: float) -> Claim:
-    """Largest difference from Table 4 (m), largest MAE₁ (mm)."""
+    """Judges the largest difference from Table 4 (m), and the largest MAE₁ (mm)."""
     return Claim.judged(
         "It brings the tip to the positions of Table 4, to 0.01 mm.",
         source="Tables 4 and 5",
@@ -215,7 +215,7 @@ def positions_claim(off: float, mean_error: float) -> Claim:
 
 
 def system_error_claim(measured: Array) -> Claim:
-    """MAE_S (mm) of the seven motions."""
+    """Judges MAE_S (mm) of the seven motions."""
     off = float(np.abs(np.round(measured, 2) - ERRORS[:, 2]).max())
     return Claim.judged(
         "The error of the whole system is tiny: MAE_S of 0.12, 0.08, 0.02, 0.02, 0.09, 0.12 and 0.05 mm.",

@@ -1,4 +1,4 @@
-"""What the paper prints, and the corrections without which its numbers contradict each other.
+"""Printed values of the paper, and the corrections without which they contradict each other.
 
 The corrections and their evidence are in the report's table of misprints (`typos.py`).
 """
@@ -16,7 +16,7 @@ DH_A = np.array([0.0, 0.35, 1.15, 0.041, 0.0, 0.0])
 DH_ALPHA = np.array([np.pi, np.pi / 2, 0.0, -np.pi / 2, np.pi / 2, -np.pi / 2])
 DH_D = np.array([-0.675, 0.0, 0.0, -1.2, 0.0, -0.215])
 
-# Rows "T" of Table 4: the targets' positions (m). Table 2 has 1.9845 for the first and the last but one x.
+# Targets: positions of the rows "T" of Table 4 (m). Table 2 has 1.9845 as the first and the last but one x.
 TARGETS = np.array(
     [
         [1.9485, 0.6342, 1.1262],
@@ -56,7 +56,7 @@ R2 = np.array(
         [0.01, -78.33, 183.51, 0.16, -44.87, -179.93],
     ]
 )
-# Table 4 (m).
+# Table 4: tip positions (m).
 POSITION_1 = np.array(
     [
         [1.94850, 0.63421, 1.12621],
@@ -91,12 +91,12 @@ ERRORS = np.array(
         [0.0, 0.05, 0.05],
     ]
 )
-# Table 6.
+# Table 6: iterations, times and errors.
 ITERATIONS = (438, 256, 316, 618, 278, 233, 281)
 TIMES = (16.36182, 10.00347, 12.62770, 22.45021, 10.69781, 9.10838, 11.31745)  # s
 NEWTON_ERRORS = (None, 2.00, 1.40, 59.53, 0.83, None, 204.5)  # mm; None: "FALSE"
 NEWTON_ITERATIONS = 4000
 
-LEARNING_RATE, THRESHOLD = 0.01, 1e-8  # as printed
-HIDDEN_FACTOR = 20.0  # of the error that they go with, over that of eq. (11)
+LEARNING_RATE, THRESHOLD = 0.01, 1e-8  # values as printed
+HIDDEN_FACTOR = 20.0  # ratio of the paper's error E to that of eq. (11)
 BUDGET = 1000  # I_0

@@ -1,4 +1,4 @@
-"""The learning rate: the paper's seven motions, and targets anywhere."""
+"""The learning rate: on the paper's seven motions, and on random targets."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TITLE = "The learning rate"
 REACH = "From anywhere to anywhere"
 _RATES = (1.0, 0.5, 0.1, 0.05, 0.02, 0.01)
-RATE = HIDDEN_FACTOR * LEARNING_RATE  # of the paper, in the scale of eq. (11)
+RATE = HIDDEN_FACTOR * LEARNING_RATE  # learning rate of the paper, in the scale of eq. (11)
 _DEGREE = float(np.radians(1.0))
 
 _TEXT = """
@@ -45,7 +45,7 @@ answer the library's default, Levenberg-Marquardt from many starts, remains the 
 
 
 def rates(runs: list[Motion]) -> Part:
-    """The paper's rates on its own motions, in both scales of E."""
+    """Tries the paper's rates on its own motions, in both scales of E."""
     scales = {"20 times eq. (11)": HIDDEN_FACTOR, "eq. (11)": 1.0}
     counts = {(scale, rate): _counts(rate, factor) for scale, factor in scales.items() for rate in _RATES}
     eigenvalues = [float(curvatures(run.solution.q)[0]) for run in runs]
@@ -85,7 +85,7 @@ def rates(runs: list[Motion]) -> Part:
 
 
 def best_rate_claim(solved: dict[float, int]) -> Claim:
-    """How many of the seven motions converge, by learning rate."""
+    """Judges the number of motions that converge, of seven, by learning rate."""
     return Claim.judged(
         "Of the learning rates 1, 0.5, 0.1, 0.05 and 0.01 the last is the best.",
         source="Section “BP” and the experiment's parameters",
@@ -99,7 +99,7 @@ def best_rate_claim(solved: dict[float, int]) -> Claim:
 
 
 def _counts(rate: float, factor: float) -> list[int | None]:
-    """Iterations of each motion; None where the budget ends first."""
+    """Returns the iterations of each motion; None if the budget ends first."""
     solver = bik.papers.APPS(learning_rate=rate * factor, step_limit=_DEGREE, error_threshold=THRESHOLD / factor)
     starts = np.radians(np.vstack([START, R2[:-1]]))
     found = [reach_one(target(i), start, solver) for i, start in enumerate(starts)]
@@ -146,7 +146,7 @@ def _solvers() -> dict[str, Solver]:
 
 
 def reach(context: Context) -> Part:
-    """How often each method gets from a random start to a random target."""
+    """Measures how often each method gets from a random start to a random target."""
     count, patient = context.pick(full=(2000, 500), short=(200, 0))
     starts = ROBOT.random_configurations(count, seed=context.seed)
     goals = ROBOT.fk(ROBOT.random_configurations(count, seed=context.seed + 1))
@@ -192,7 +192,7 @@ def _share_table(shares: dict[str, list[float]], late: dict[str, float], count: 
 
 
 def no_guess_claim(shares: dict[str, float]) -> Claim:
-    """Share of random targets (%) that converge within the paper's iterations, by method."""
+    """Judges the fraction of random targets (%) that converge within the paper's iterations, by method."""
     named = {name: shares[name] for name in (_PAPER, _AUTO)}
     return Claim.judged(
         "APPS does not need an accurate initial guess.",
@@ -206,7 +206,7 @@ def no_guess_claim(shares: dict[str, float]) -> Claim:
 
 
 def _rate_check(by_budget: dict[int, dict[str, float]]) -> Check:
-    """Shares (%) by iterations allowed and method."""
+    """Checks the fractions (%) by allowed iterations and method."""
     compared = {
         budget: (of[_AUTO], max(share for name, share in of.items() if "η" in name)) for budget, of in by_budget.items()
     }

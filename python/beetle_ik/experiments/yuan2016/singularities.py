@@ -1,4 +1,4 @@
-"""Singular configurations: where the motions come near one, and where a search begins at one."""
+"""Singular configurations: along the motions, and as the start of searches."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "Singularities"
-_SINGULAR = ("I-1", "5-6")  # as the paper has it
+_SINGULAR = ("I-1", "5-6")  # singular motions by the paper
 _BY_APPS, _STRAIGHT = "while APPS runs", "on the straight way between the ends in joint space"
-_RARE = 5.0  # %, of random configurations: what counts as near a singularity
-_AS_MANY = 5.0  # percentage points by which shares of targets may differ
+_RARE = 5.0  # percentile of random configurations that counts as near a singularity
+_AS_MANY = 5.0  # percentage points by which fractions of targets may differ
 _EVERY = 2  # iterations between samples: the passage of a singularity is short
 _WRIST = 4  # row of the fifth joint, whose zero aligns the fourth with the sixth
 
@@ -36,7 +36,7 @@ it stays above {other}. It falls below the percentile in {near}.
 
 @dataclass(frozen=True)
 class Approach:
-    """How near a motion comes to a singularity."""
+    """Approach of a motion to a singularity."""
 
     name: str
     smallest: Array
@@ -45,7 +45,7 @@ class Approach:
 
 
 def singularities(context: Context, runs: list[Motion]) -> Part:
-    """Singular values along the motions, and searches that start at a singularity."""
+    """Computes singular values along the motions, and runs searches that start at a singularity."""
     approaches = [_approach(run) for run in runs]
     count = context.pick(full=2000, short=200)
     random = ROBOT.random_configurations(count, seed=context.seed)
@@ -78,7 +78,7 @@ def singularities(context: Context, runs: list[Motion]) -> Part:
 
 
 def passed_claim(name: str, smallest: Mapping[str, float], rare: float) -> Claim:
-    """Smallest singular value along a motion, by its way, compared with a low percentile of random configurations."""
+    """Judges the smallest singular values along a motion against a low percentile of random configurations."""
     return Claim.judged(
         f"A singularity exists in the process of motion {name}.",
         source="Text on Table 6",
@@ -91,7 +91,7 @@ def passed_claim(name: str, smallest: Mapping[str, float], rare: float) -> Claim
 
 
 def solved_claim(name: str, *, solved: bool) -> Claim:
-    """Whether APPS solves a motion that the paper calls singular."""
+    """Judges whether APPS solves a motion that the paper calls singular."""
     return Claim.judged(
         f"APPS performs well in motion {name}.",
         source="Text on Table 6",
@@ -105,7 +105,7 @@ def solved_claim(name: str, *, solved: bool) -> Claim:
 
 
 def start_claim(elsewhere: float, straight: float) -> Claim:
-    """Shares of targets (%) that converge from random starts, and from the same with a stretched wrist."""
+    """Judges the fractions of targets (%) that converge from random starts, and from these with a stretched wrist."""
     return Claim.judged(
         "Since APPS does not involve the Jacobian, it converges even when a singularity exists.",
         source="Introduction",

@@ -1,4 +1,4 @@
-"""The paper's robot, its targets, and the solvers that are sent to them."""
+"""The paper's robot and targets, and the runs of its solvers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ TOLERANCE = 1e-4  # m and rad
 
 
 def home() -> Array:
-    """The pose of motion 0, to whose orientation the last motion returns: eq. (22) does not hold there."""
+    """Returns the pose of motion 0, to whose orientation the last motion returns: eq. (22) does not hold there."""
     return ROBOT.fk(np.radians(START))
 
 
 def target(motion: int, position: Sequence[float] | Array | None = None) -> Array:
-    """The pose (4, 4) that a motion, by its number from 0, leads to."""
+    """Returns the target pose (4, 4) of a motion, by its number from 0."""
     pose = np.eye(4)
     pose[:3, :3] = home()[:3, :3] if motion == len(MOTIONS) - 1 else ROTATION
     pose[:3, 3] = TARGETS[motion] if position is None else position
@@ -27,14 +27,14 @@ def target(motion: int, position: Sequence[float] | Array | None = None) -> Arra
 
 
 def error(q: Array, goal: Array) -> float:
-    """E of eq. (11)."""
+    """Returns E of eq. (11)."""
     return float(0.5 * np.sum((goal - ROBOT.fk(q)) ** 2))
 
 
 def curvatures(q: Array) -> Array:
-    """Of E at a solution, largest first: the eigenvalues of J'J, J the derivative of the matrix's entries.
+    """Returns the curvatures of E at a solution, largest first: eigenvalues of J'J, J the derivative of the matrix.
 
-    A turn w moves three axes, whose squares sum to 2 w'w.
+    A rotation w moves three axes, whose squared displacements sum to 2 w'w.
     """
     jacobian = ROBOT.jacobian(q) * np.repeat([1.0, np.sqrt(2.0)], 3)[:, None]
     curvature: Array = np.linalg.svd(jacobian, compute_uv=False) ** 2
@@ -42,7 +42,7 @@ def curvatures(q: Array) -> Array:
 
 
 def reach(goal: Array, start: Array, solver: bik.papers.APPS, *, budget: int = BUDGET) -> bik.Solution:
-    """Send APPS from `start` (rad) to `goal`; more than its threshold asks is not needed to count as solved."""
+    """Sends APPS from `start` (rad) to `goal`; meeting its threshold is enough to count as solved."""
     return bik.solve(
         ROBOT,
         goal,
@@ -56,24 +56,24 @@ def reach(goal: Array, start: Array, solver: bik.papers.APPS, *, budget: int = B
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """One motion as APPS makes it."""
+    """One motion as found by APPS."""
 
     name: str
     goal: Array
-    """(4, 4)"""
+    """Target pose (4, 4)."""
     start: Array
-    """rad"""
+    """Start configuration (rad)."""
     solution: bik.Solution
 
     @property
     def rounded(self) -> Array:
-        """R_2: the angles to 0.01 degrees, as sent to the robot."""
+        """Angles R_2: the solution to 0.01 degrees, as sent to the robot."""
         rounded: Array = np.degrees(self.solution.q).round(2)
         return rounded
 
 
 def run_all(solver: bik.papers.APPS) -> list[Motion]:
-    """All motions, each from where the robot stands after the last."""
+    """Runs all motions, each from the rounded end of the one before."""
     start = START
     motions = []
     for i, name in enumerate(MOTIONS):

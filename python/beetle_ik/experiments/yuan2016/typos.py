@@ -1,4 +1,4 @@
-"""Misprints of the paper, each with what shows it."""
+"""Misprints of the paper, each with its evidence."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ _HALF_DIGIT = 5e-6  # m, of Table 4
 
 
 def typos(runs: list[Motion]) -> Part:
-    """A table of them; the numbers in it are of this run."""
+    """Tabulates the misprints, with numbers of this run."""
     section = Section(
         TITLE,
         [
@@ -35,7 +35,7 @@ def typos(runs: list[Motion]) -> Part:
 
 
 def robot_claim(off: float) -> Claim:
-    """How far the tip of Table 1's robot is from the printed positions at the printed angles (m)."""
+    """Judges the distance of Table 1's robot from the printed positions at the printed angles (m)."""
     return Claim.judged(
         "Table 1 and eq. (1) describe the robot of the experiment.",
         source="Tables 1, 3 and 4",
@@ -112,6 +112,6 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
 
 
 def _count_with_x(run: Motion, motion: int) -> int:
-    """Iterations of a motion to the x that Table 2 prints."""
+    """Counts the iterations of a motion to the x printed in Table 2."""
     goal = target(motion, [MISPRINTED_X, *TARGETS[motion, 1:]])
     return reach(goal, run.start, bik.papers.APPS.paper()).iterations

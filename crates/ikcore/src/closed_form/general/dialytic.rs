@@ -1,18 +1,19 @@
-//! Six equations in the products x^i y^j (i, j from 0 to 2), with x and y tangents of half angles: Sylvester's dialytic method.
+//! Sylvester's dialytic method for six equations in the products x^i y^j (i, j from 0 to 2), with x and y tangents of half
+//! angles.
 //!
-//! Each equation and x times it: twelve equations, linear in twelve products x^i y^j (i to 3). They have a solution where the
-//! determinant vanishes, and its null vector holds x and y.
+//! The equations and their multiples by x form twelve equations, linear in twelve products x^i y^j (i up to 3). They have a
+//! solution where the determinant vanishes, and its null vector contains x and y.
 
 use crate::closed_form::angle::Angle;
 use crate::math::vector::dot;
 
-/// Equations.
+/// Number of equations.
 pub const EQUATIONS: usize = 6;
-/// Products of one equation, index 3 i + j.
+/// Number of products in an equation, index 3 i + j.
 pub const PRODUCTS: usize = 9;
 const SIZE: usize = 12;
 
-/// The coefficients of the six equations.
+/// Coefficients of the six equations.
 pub type LoopCoefficients = [[f64; PRODUCTS]; EQUATIONS];
 
 type Square = [[f64; SIZE]; SIZE];
@@ -26,14 +27,14 @@ fn doubled(coefficients: &LoopCoefficients) -> Square {
     square
 }
 
-/// The determinant of the twelve equations.
+/// Returns the determinant of the twelve equations.
 pub fn determinant(coefficients: &LoopCoefficients) -> f64 {
     let mut square = doubled(coefficients);
     let sign = triangularize(&mut square);
     (0..SIZE).fold(sign, |product, k| product * square[k][k])
 }
 
-/// Gauss's elimination with row pivoting; the sign of the row permutation.
+/// Triangularizes by Gaussian elimination with row pivoting; returns the sign of the row permutation.
 fn triangularize(square: &mut Square) -> f64 {
     let mut sign = 1.0;
     for k in 0..SIZE {
@@ -49,19 +50,19 @@ fn triangularize(square: &mut Square) -> f64 {
         let inverse = 1.0 / head[k];
         for row in &mut square[k + 1..] {
             let factor = row[k] * inverse;
-            // Whole rows, so that the loop has a constant length and vectorises.
+            // Full rows: the constant loop length vectorises.
             (0..SIZE).for_each(|j| row[j] -= factor * head[j]);
         }
     }
     sign
 }
 
-/// At most two pairs (x, y), as angles, for which all equations hold; where the determinant vanishes nearly.
+/// Returns at most two pairs (x, y), as angles, that satisfy all equations if the determinant nearly vanishes.
 pub fn null_pairs(coefficients: &LoopCoefficients) -> ([[Angle; 2]; 2], usize) {
     let mut square = doubled(coefficients);
     let order = triangularize_fully(&mut square);
     let pivot = |k: usize| square[k][order[k]].abs();
-    // Two solutions with the same hidden angle leave two pivots that vanish.
+    // Two vanishing pivots: two solutions share the hidden angle.
     if pivot(SIZE - 2) < 1e-5 * pivot(SIZE - 3) {
         let basis = [SIZE - 1, SIZE - 2].map(|free| null_vector(&square, &order, free, SIZE - 2));
         return separated(&basis);
@@ -71,12 +72,12 @@ pub fn null_pairs(coefficients: &LoopCoefficients) -> ([[Angle; 2]; 2], usize) {
     (pairs, 1)
 }
 
-/// Gauss's elimination with full pivoting; the column of each pivot. Columns stay where they are.
+/// Triangularizes by Gaussian elimination with full pivoting; returns the column of each pivot. Columns are not moved.
 fn triangularize_fully(square: &mut Square) -> [usize; SIZE] {
     let mut order = [0; SIZE];
     let mut used = [false; SIZE];
     for k in 0..SIZE {
-        // Entries of columns that are done are exactly zero.
+        // Entries of finished columns are exactly zero.
         let largest =
             |row: &[f64; SIZE]| row.iter().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
         let (mut pivot, mut most) = (k, -1.0);
@@ -101,7 +102,8 @@ fn triangularize_fully(square: &mut Square) -> [usize; SIZE] {
     order
 }
 
-/// The null vector with entry one in the column of pivot `free`, zero in those of the other pivots from `rank` on.
+/// Returns the null vector with entry one in the column of pivot `free`, and zero in the columns of the other pivots from
+/// `rank` on.
 fn null_vector(square: &Square, order: &[usize; SIZE], free: usize, rank: usize) -> [f64; SIZE] {
     let mut x = [0.0; SIZE];
     x[order[free]] = 1.0;
@@ -112,7 +114,8 @@ fn null_vector(square: &Square, order: &[usize; SIZE], free: usize, rank: usize)
     x
 }
 
-/// x and y of a vector of products, as angles: by ratios of neighbours, whichever way round is finite.
+/// Extracts x and y, as angles, from a vector of products: by ratios of neighbouring entries, inverted where the ratio would
+/// be infinite.
 fn angles(vector: &[f64; SIZE]) -> [Angle; 2] {
     let ratio = |step: usize, low: &dyn Fn(usize) -> bool| {
         let (mut lows, mut highs, mut mixed) = (0.0, 0.0, 0.0);
@@ -126,14 +129,14 @@ fn angles(vector: &[f64; SIZE]) -> [Angle; 2] {
     [ratio(3, &|_| true), ratio(1, &|k| k % 3 != 2)]
 }
 
-/// The angle whose half has the tangent high / low.
+/// Returns the angle whose half has the tangent high / low.
 fn half_angle(high: f64, low: f64) -> Angle {
     Angle::towards((low - high) * (low + high), 2.0 * high * low)
 }
 
-/// Two pairs from the null space that both span: x multiplies the products with i to 2 into those with i from 1.
+/// Separates two solution pairs in their common null space: x maps the products with i up to 2 to the products with i from 1.
 fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
-    // x low = high on the solutions; z = (x - 1)/(x + 1) instead of x, which may be infinite.
+    // Solutions satisfy x low = high; z = (x - 1)/(x + 1) replaces x, which may be infinite.
     let parts = basis.map(|v| {
         let sum: [f64; 9] = std::array::from_fn(|k| v[k + 3] + v[k]);
         let difference: [f64; 9] = std::array::from_fn(|k| v[k + 3] - v[k]);
@@ -143,7 +146,7 @@ fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
     let mixed = |i: usize, j: usize| dot(&parts[i].0, &parts[j].1);
     let (a, b, d) = (gram(0, 0), gram(0, 1), gram(1, 1));
     let determinant = a * d - b * b;
-    // m = gram^-1 mixed, whose eigenvalues are z.
+    // Matrix m = gram^-1 mixed, whose eigenvalues are z.
     let m = [
         [(d * mixed(0, 0) - b * mixed(1, 0)) / determinant, (d * mixed(0, 1) - b * mixed(1, 1)) / determinant],
         [(a * mixed(1, 0) - b * mixed(0, 0)) / determinant, (a * mixed(1, 1) - b * mixed(0, 1)) / determinant],
@@ -151,7 +154,7 @@ fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
     let (half, minor) = (0.5 * (m[0][0] + m[1][1]), m[0][0] * m[1][1] - m[0][1] * m[1][0]);
     let radicand = half * half - minor;
     let mut pairs = [[Angle::NONE; 2]; 2];
-    // Slightly complex: a double solution, which Newton's method may still reach.
+    // Slightly complex eigenvalues: a double solution, which Newton's method may still reach.
     let root = radicand.max(0.0).sqrt();
     for (pair, value) in pairs.iter_mut().zip([half + root, half - root]) {
         let (u, v) = ([m[0][1], value - m[0][0]], [value - m[1][1], m[1][0]]);
@@ -165,7 +168,7 @@ fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
 mod tests {
     use super::*;
 
-    /// Six random equations that hold at all the pairs of tangents given.
+    /// Returns six random equations that hold at all given pairs of tangents.
     fn equations(pairs: &[[f64; 2]]) -> LoopCoefficients {
         let vectors: Vec<[f64; 9]> =
             pairs.iter().map(|[x, y]| std::array::from_fn(|k| x.powi(k as i32 / 3) * y.powi(k as i32 % 3))).collect();
@@ -175,7 +178,7 @@ mod tests {
                 seed = (seed * 91.7 + 0.31).fract();
                 seed - 0.5
             });
-            // Gram and Schmidt, twice for two vectors that are not at right angles.
+            // Gram-Schmidt orthogonalization, repeated because the two vectors are not orthogonal.
             for _ in 0..200 {
                 for v in &vectors {
                     let factor = (0..9).map(|k| row[k] * v[k]).sum::<f64>() / v.iter().map(|x| x * x).sum::<f64>();

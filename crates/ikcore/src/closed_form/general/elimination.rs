@@ -1,16 +1,17 @@
-//! Eight unknown products out of fourteen linear equations: Householder's triangularization with column pivoting.
+//! Elimination of eight unknown products from fourteen linear equations, by Householder triangularization with column
+//! pivoting.
 
-/// Rows of the system.
+/// Number of rows.
 pub const ROWS: usize = 14;
-/// Unknowns that are eliminated.
+/// Number of eliminated unknowns.
 pub const COLUMNS: usize = 8;
-/// Equations left.
+/// Number of remaining equations.
 pub const LEFT: usize = ROWS - COLUMNS;
 
-/// A triangularized matrix.
+/// Triangularized matrix.
 #[derive(Debug, Clone, Copy)]
 pub struct Elimination {
-    /// By columns; below the diagonal the reflectors, scaled to v'v = 2.
+    /// Columns; below the diagonal they hold the reflectors, scaled to v'v = 2.
     columns: [[f64; ROWS]; COLUMNS],
     diagonal: [f64; COLUMNS],
     order: [usize; COLUMNS],
@@ -43,7 +44,7 @@ impl Elimination {
         Self { columns, diagonal, order }
     }
 
-    /// Six rows that annihilate the matrix.
+    /// Returns six rows that annihilate the matrix.
     pub fn annihilators(&self) -> [[f64; ROWS]; LEFT] {
         std::array::from_fn(|row| {
             let mut unit = [0.0; ROWS];
@@ -55,14 +56,14 @@ impl Elimination {
         })
     }
 
-    /// The unknowns that fit `right` best.
+    /// Returns the least-squares solution for the right-hand side `right`.
     pub fn solve(&self, mut right: [f64; ROWS]) -> [f64; COLUMNS] {
         for k in 0..COLUMNS {
             reflect(&self.reflector(k), &mut right);
         }
         let mut found = [0.0; COLUMNS];
         for k in (0..COLUMNS).rev() {
-            // Columns that depend on others add nothing.
+            // Dependent columns contribute nothing.
             let value = right[k] / self.diagonal[k];
             let value = if self.diagonal[k].abs() > 1e-12 * self.diagonal[0].abs() { value } else { 0.0 };
             found[self.order[k]] = value;
@@ -78,7 +79,7 @@ impl Elimination {
     }
 }
 
-/// x - v (v'x).
+/// Reflects x: x - v (v'x).
 #[inline(always)]
 fn reflect(v: &[f64; ROWS], x: &mut [f64; ROWS]) {
     let product: f64 = (0..ROWS).map(|k| v[k] * x[k]).sum();

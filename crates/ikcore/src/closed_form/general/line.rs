@@ -1,15 +1,16 @@
 //! Fourteen functions of a line on which every rigid motion acts linearly.
 //!
-//! For a line through p along l: l, p, p'p, p'l, p x l and (p'p) l - 2 (p'l) p. Raghavan and Roth ("Kinematic analysis of the 6R
-//! manipulator of general geometry", 1990) found that the fourteen loop equations made of them share their power products. The
-//! reason, used here instead of their elimination by hand: with a constant one they are a linear representation of the rigid
-//! motions, made of scalars and vectors, so that a rotation enters with its cosine and sine to the first power only.
+//! For a line through p along l they are l, p, p'p, p'l, p x l and (p'p) l - 2 (p'l) p. Raghavan and Roth ("Kinematic
+//! analysis of the 6R manipulator of general geometry", 1990) found that the fourteen loop equations made of these functions
+//! share their power products. The reason replaces their elimination by hand here: together with a constant one, the
+//! functions are a linear representation of the rigid motions, made of scalars and vectors, so that a rotation enters only by
+//! the first power of its cosine and sine.
 
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
-/// The fourteen functions and the constant, or a linear combination of such.
+/// Fourteen line functions and the constant, or a linear combination of several such sets.
 #[derive(Debug, Clone, Copy)]
 pub struct LineFunctions {
     one: f64,
@@ -22,14 +23,14 @@ pub struct LineFunctions {
 }
 
 impl LineFunctions {
-    /// The functions of the line through `p` along `l`.
+    /// Evaluates the functions for the line through `p` along `l`.
     pub fn new(l: &Vector, p: &Vector) -> Self {
         let (pp, pl) = (dot(p, p), dot(p, l));
         let mirrored = sub(&scaled(l, pp), &scaled(p, 2.0 * pl));
         Self { one: 1.0, l: *l, p: *p, pp, pl, moment: cross(p, l), mirrored }
     }
 
-    /// Shifted by `t`.
+    /// Translates the line by `t`.
     #[inline(always)]
     pub fn shifted(&self, t: &Vector) -> Self {
         let (tt, tl) = (dot(t, t), dot(t, &self.l));
@@ -44,13 +45,13 @@ impl LineFunctions {
         }
     }
 
-    /// Turned and shifted by `frame`.
+    /// Moves the line by the rigid motion `frame`.
     #[inline(always)]
     pub fn moved(&self, frame: &Frame) -> Self {
         self.each(self.one, self.pp, self.pl, |v| frame.turn::<Baseline>(v)).shifted(&frame.origin)
     }
 
-    /// What stays, what goes with the cosine and what with the sine, when it turns about the line through `point` along `axis`.
+    /// Splits a rotation about the line through `point` along `axis` into its constant, cosine and sine parts.
     #[inline(always)]
     pub fn turning(&self, axis: &Vector, point: &Vector) -> [Self; 3] {
         let here = self.shifted(&scaled(point, -1.0));
@@ -62,7 +63,7 @@ impl LineFunctions {
         ]
     }
 
-    /// The fourteen numbers, without the constant.
+    /// Returns the fourteen numbers without the constant.
     #[inline(always)]
     pub fn numbers(&self) -> [f64; 14] {
         let Self { l, p, pp, pl, moment: m, mirrored: w, .. } = self;

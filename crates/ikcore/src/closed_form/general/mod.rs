@@ -1,17 +1,18 @@
-//! Six revolute joints of any geometry: all of at most sixteen solutions.
+//! Six revolute joints of general geometry: all solutions, at most sixteen.
 //!
-//! The loop E1 ... E6 = H says that the line of axis 2 goes the same way round both sides:
+//! The loop equation E1 ... E6 = H, applied to the line of axis 2, reads
 //!
 //! E5 E6 H^-1 E1 (line 2) = E4^-1 E3^-1 (line 2).
 //!
-//! The fourteen functions of a line ([`line`]) turn this into fourteen equations, linear in the eight products of (1, cos, sin) of
-//! q6 and q1, which are eliminated, and in those of q3 and q4, with coefficients linear in cos q5 and sin q5. The dialytic method
-//! ([`dialytic`]) leaves a determinant: a trigonometric polynomial in q5 of degree eight, whose at most sixteen zeros on the unit
-//! circle are found together.
+//! The fourteen functions of a line ([`line`]) turn this into fourteen equations. They are linear in the eight products of
+//! (1, cos, sin) of q6 and q1, which are eliminated, and in the products of q3 and q4, whose coefficients are linear in cos
+//! q5 and sin q5. The dialytic method ([`dialytic`]) leaves a determinant: a trigonometric polynomial in q5 of degree eight,
+//! whose zeros on the unit circle, at most sixteen, are found together.
 //!
-//! Raghavan and Roth (1990) hide q3 instead, and eliminate q1 and q2; Manocha and Canny (1994) solve for it as an eigenvalue. With
-//! the pose between the two angles eliminated, the determinant does not vanish identically for arms whose neighbouring axes meet or
-//! are parallel; sampled on the circle, it is free of their spurious factor, since its degree is known.
+//! Raghavan and Roth (1990) hide q3 instead and eliminate q1 and q2; Manocha and Canny (1994) solve for q3 as an eigenvalue.
+//! Here the pose lies between the two eliminated angles, so that the determinant does not vanish identically for arms whose
+//! neighbouring axes meet or are parallel. Sampled on the circle, the determinant is free of the spurious factor of their
+//! methods, since its degree is known.
 
 mod dialytic;
 mod elimination;
@@ -29,51 +30,52 @@ use line::LineFunctions;
 
 /// Degree of the determinant in cosine and sine.
 const DEGREE: usize = 8;
-/// Samples of the determinant round the circle: enough for the degree, and for a look at the next one.
+/// Number of samples of the determinant round the circle: enough for its degree and for the next coefficient.
 const SAMPLES: usize = 20;
-/// Largest noise, relative to the size of the polynomial, with which zeros are proven.
+/// Largest noise, relative to the size of the polynomial, at which zeros are proven.
 const NOISE: f64 = 1e-6;
-/// Bound on the determinant's rounding, as a multiple of the coefficient beyond its degree.
+/// Bound on the rounding error of the determinant, as a multiple of the coefficient beyond its degree.
 const SAFETY: f64 = 30.0;
 
-/// Turns by which the samples are moved for [`General::spread`]; the second by about half a step.
+/// Rotations of the sample angles in [`General::spread`]; the second is about half a step.
 const SPREAD: [Angle; 2] = [Angle::NONE, Angle { cos: 0.9889645119420956, sin: 0.1481526041591332 }];
 
-/// cos q = (1 - x^2)/(1 + x^2), sin q = 2x/(1 + x^2): the products of 1, cos, sin in powers of x, times 1 + x^2.
+/// Half-angle substitution cos q = (1 - x^2)/(1 + x^2), sin q = 2x/(1 + x^2): 1, cos and sin in powers of x, times 1 + x^2.
 const HALF_ANGLE: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
 
-/// A general arm, prepared.
+/// Precomputed general arm.
 #[derive(Debug, Clone)]
 pub struct General {
     axes: [Vector; 6],
-    /// Points on the axes, in units of the arm's size, from a point on axis 5.
+    /// Points on the axes, in units of the arm's size, relative to a point on axis 5.
     points: [Vector; 6],
     centre: Vector,
     size: f64,
-    /// LineFunctions 2 as joint 1 moves it: still, cosine, sine.
+    /// Line of axis 2 moved by joint 1: constant, cosine and sine parts.
     first: [LineFunctions; 3],
-    /// The right side, turned back by q5: still, cosine, sine, one column a product of q3 and q4 in powers of half-angle tangents.
+    /// Right side of the loop equation, turned back by q5: constant, cosine and sine parts; each column is a product of q3
+    /// and q4 in powers of half-angle tangents.
     right: [[[f64; PRODUCTS]; ROWS]; 3],
-    /// The right side in products of cosines and sines.
+    /// Right side in products of cosines and sines.
     products: [[f64; ROWS]; 9],
     circle: [Angle; SAMPLES],
-    /// Taken from tip to base, which hides q2.
+    /// True if the chain is taken from tip to base, which hides q2.
     reversed: bool,
 }
 
-/// What the search for zeros found besides candidates.
+/// Statistics of the search for zeros.
 #[derive(Debug, Clone, Copy)]
 pub struct Account {
-    /// Zeros that may be real angles; no more branches exist.
+    /// Number of zeros that may be real angles; an upper bound on the number of branches.
     pub zeros: usize,
-    /// The zeros settled, and the determinant had the degree it should.
+    /// True if all zeros were resolved and the determinant had the expected degree.
     pub sound: bool,
-    /// Zeros that two branches share.
+    /// Number of zeros shared by two branches.
     pub shared: usize,
 }
 
 impl General {
-    /// For any six joints that turn; `size` is a length of the size of the arm (m).
+    /// Prepares any six revolute joints; `size` is a characteristic length of the arm (m).
     pub fn new(joints: &[JointAxis; 6], size: f64) -> Self {
         let axes = joints.map(|joint| joint.axis);
         let centre = joints[4].nearest_to(&joints[3].point);
@@ -110,7 +112,7 @@ impl General {
         }
     }
 
-    /// The same from tip to base.
+    /// Prepares the same arm from tip to base.
     pub fn reversed(joints: &[JointAxis; 6], size: f64) -> Self {
         let backwards = std::array::from_fn(|k| {
             let joint = &joints[5 - k];
@@ -119,7 +121,7 @@ impl General {
         Self { reversed: true, ..Self::new(&backwards, size) }
     }
 
-    /// Hands candidates near all joint angles whose displacements make `goal` to `found`.
+    /// Calls `found` with candidates near all joint angles whose displacements make `goal`.
     pub fn solve(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> Account {
         if self.reversed {
             self.solve_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]))
@@ -128,8 +130,8 @@ impl General {
         }
     }
 
-    /// Hands over candidates for angles spread round the circle, zeros or not: for poses at which the determinant is too small
-    /// over a part of the circle to tell its zeros.
+    /// Calls `found` with candidates at angles spread round the circle, zeros or not: for poses whose determinant is too
+    /// small on a part of the circle to locate its zeros.
     pub fn spread(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) {
         if self.reversed {
             self.spread_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]));
@@ -175,13 +177,13 @@ impl General {
         Account { zeros: zeros.possible, sound, shared }
     }
 
-    /// The displacement seen from the centre, in units of the arm's size.
+    /// Converts the displacement to coordinates about the centre, in units of the arm's size.
     fn local(&self, goal: &Frame) -> Frame {
         let origin = scaled(&sub(&goal.place::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
         Frame { origin, ..*goal }
     }
 
-    /// E6 H^-1 E1 (line 2): columns for the products of q6 and q1 other than one, and the column for one.
+    /// Evaluates E6 H^-1 E1 (line 2): the columns of the products of q6 and q1, and the constant column.
     fn left(&self, goal: &Frame) -> ([[f64; ROWS]; COLUMNS], [f64; ROWS]) {
         let back = goal.inverse();
         let mut columns = [[0.0; ROWS]; COLUMNS];
@@ -197,7 +199,7 @@ impl General {
         (columns, constant)
     }
 
-    /// Six equations in the products of q3 and q4: the parts that stay, go with cos q5, and with sin q5.
+    /// Returns six equations in the products of q3 and q4: constant, cos q5 and sin q5 parts.
     fn equations(&self, elimination: &Elimination, constant: &[f64; ROWS]) -> [LoopCoefficients; 3] {
         let rows = elimination.annihilators();
         let mut equations = [[[0.0; PRODUCTS]; EQUATIONS]; 3];
@@ -215,7 +217,7 @@ impl General {
         equations
     }
 
-    /// The determinant over q5, and the size of its next coefficient, which would be zero without rounding.
+    /// Returns the determinant as a polynomial in q5, and its next coefficient, which would be zero without rounding.
     fn polynomial(&self, equations: &[LoopCoefficients; 3]) -> (Polynomial<{ DEGREE + 1 }>, f64) {
         let (mut cosines, mut sines) = ([0.0; DEGREE + 2], [0.0; DEGREE + 2]);
         for (sample, q5) in self.circle.iter().enumerate() {
@@ -232,7 +234,7 @@ impl General {
         (Polynomial { cosines: within(cosines), sines: within(sines) }, beyond)
     }
 
-    /// The other joints for q3, q4 and q5: q6 and q1 from the products eliminated, q2 from the rotation left.
+    /// Returns all joints, given q3, q4 and q5: q6 and q1 from the eliminated products, q2 from the remaining rotation.
     fn others(&self, goal: &Frame, elimination: &Elimination, constant: &[f64; ROWS], known: [Angle; 3]) -> [Angle; 6] {
         let [q3, q4, q5] = known;
         let [h1, h2, h3, h4, h5, h6] = &self.axes;
@@ -244,10 +246,10 @@ impl General {
         }
         let right = self.turned_back(q5, &right);
         let unknown = elimination.solve(std::array::from_fn(|k| right[k] - constant[k]));
-        // Products are numbered 3 i + j with i for q6 and j for q1, without the first.
+        // Products have the index 3 i + j with i for q6 and j for q1; the constant one is left out.
         let q1 = Angle::towards(unknown[0], unknown[1]);
         let q6 = Angle::towards(unknown[2], unknown[5]);
-        // E2 = E1^-1 H E6^-1 E5^-1 E4^-1 E3^-1, on a vector across axis 2.
+        // Joint 2: E2 = E1^-1 H E6^-1 E5^-1 E4^-1 E3^-1, applied to a vector perpendicular to axis 2.
         let mark = perpendicular(h2);
         let mut v = mark;
         for (turn, axis) in [(q3, h3), (q4, h4), (q5, h5), (q6, h6)] {
@@ -258,7 +260,7 @@ impl General {
         [q1, q2, q3, q4, q5, q6]
     }
 
-    /// The fourteen numbers turned by -q5 about axis 5, which runs through the centre.
+    /// Rotates the fourteen numbers by -q5 about axis 5, which runs through the centre.
     fn turned_back(&self, q5: Angle, numbers: &[f64; ROWS]) -> [f64; ROWS] {
         let mut turned = *numbers;
         for first in [0, 3, 8, 11] {

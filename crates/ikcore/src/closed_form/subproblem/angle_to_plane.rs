@@ -1,9 +1,9 @@
-//! Subproblem 4, a rotation that brings a point into a plane, and subproblem 3, one that brings it to a given distance.
+//! Subproblem 4, rotation of a point into a plane, and subproblem 3, rotation of a point to a given distance.
 
 use super::{Turns, line_on_circle};
 use crate::closed_form::vector::{Vector, cross, dot};
 
-/// Subproblem 4: angles about the unit vector `axis` with normal' rot(axis, q) point = height.
+/// Solves subproblem 4: angles about the unit vector `axis` with normal' rot(axis, q) point = height.
 #[inline(always)]
 pub fn angle_to_plane(normal: &Vector, axis: &Vector, point: &Vector, height: f64, floor: f64) -> Turns<2> {
     let across = cross(axis, point);
@@ -12,7 +12,7 @@ pub fn angle_to_plane(normal: &Vector, axis: &Vector, point: &Vector, height: f6
     line_on_circle(a, b, height - dot(normal, axis) * dot(axis, point), floor)
 }
 
-/// Subproblem 3: angles about the unit vector `axis` with |rot(axis, q) point - other| = distance, given its square.
+/// Solves subproblem 3: angles about the unit vector `axis` with |rot(axis, q) point - other| = distance, given its square.
 ///
 /// `floor` has the unit of `point` times that of `other`.
 #[inline(always)]

@@ -1,12 +1,12 @@
-//! The equation a cos q + b sin q = c: a line that meets the unit circle. Subproblems 2, 3 and 4 come down to it.
+//! Equation a cos q + b sin q = c: the intersection of a line with the unit circle. Subproblems 2, 3 and 4 reduce to it.
 
 use super::{CLAMP, NEAR_MISS, NEARLY_DOUBLE, SMALL_LEVER, Turns};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 
-/// The angles with a cos q + b sin q = c.
+/// Solves a cos q + b sin q = c for the angle.
 ///
-/// Where a and b are both below `floor`, the angle is free if c is below it too, and there is none otherwise.
+/// If a and b are both below `floor`, the angle is free if c is below it too, and there is no solution otherwise.
 #[inline(always)]
 pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
     let square = a * a + b * b;
@@ -17,7 +17,7 @@ pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
             _ => Turns::NONE,
         };
     }
-    // (r - c) (r + c), since r^2 - c^2 cancels where the line touches the circle.
+    // Factored form (r - c) (r + c), since r^2 - c^2 cancels where the line touches the circle.
     let radius = square.sqrt();
     let mut turns = with_radicand(a, b, c, (radius - c) * (radius + c));
     let small = SMALL_LEVER * floor;
@@ -27,7 +27,7 @@ pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
     turns
 }
 
-/// The same with r^2 - c^2 known better than by subtraction, r^2 = a^2 + b^2.
+/// Solves a cos q + b sin q = c, given a `radicand` r^2 - c^2 more accurate than the subtraction, with r^2 = a^2 + b^2.
 #[inline(always)]
 pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
     let square = a * a + b * b;
@@ -39,7 +39,7 @@ pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
     if radicand < NEARLY_DOUBLE * square {
         turns.doubt = Doubt::Beside;
     }
-    // `towards` divides by the hypotenuse: a clamped root lands on the circle.
+    // Division by the hypotenuse in `towards` puts a clamped root on the circle.
     if radicand <= 0.0 {
         turns.push(Angle::towards(a * c, b * c));
         return turns;

@@ -1,9 +1,9 @@
-//! The canonical subproblems: rotations about known axes that carry known points where they must go.
+//! Canonical subproblems: rotations about known axes that carry points to given positions.
 //!
-//! Numbered as in Elias and Wen, "IK-Geo: Unified Robot Inverse Kinematics Using Subproblem Decomposition" (arXiv 2211.05737);
-//! 1 to 3 go back to Paden and Kahan. All results are [`Angle`]s, so that no arctangent is taken before a branch is verified.
-//! A square root whose radicand is slightly negative is taken as zero ([`CLAMP`]): the branch is kept as a double root, and
-//! forward kinematics decides whether it is a solution.
+//! The numbers are those of Elias and Wen, "IK-Geo: Unified Robot Inverse Kinematics Using Subproblem Decomposition" (arXiv
+//! 2211.05737); 1 to 3 go back to Paden and Kahan. All results are [`Angle`]s, so that no arctangent is taken before a branch
+//! is verified. A square root with a slightly negative radicand is taken as zero ([`CLAMP`]): the branch is kept as a double
+//! root, and forward kinematics decides whether it is a solution.
 
 mod angle_to_plane;
 mod line_on_circle;
@@ -20,17 +20,18 @@ use crate::closed_form::branches::Doubt;
 
 /// Largest negative radicand, relative to its terms, that counts as a double root.
 ///
-/// Rounding needs 1e-9. A pose just beyond the edge of reach, by the tolerances of a caller, is to be noticed too.
+/// Rounding alone would need 1e-9; the larger value also keeps poses just beyond the edge of reach, within a caller's
+/// tolerances.
 pub const CLAMP: f64 = 1e-4;
 
 /// Radicand, relative to its terms, below which two solutions are nearly one: they lie within a thousandth of a radian.
 pub const NEARLY_DOUBLE: f64 = 1e-6;
 
-/// Negative radicand, relative to its terms, up to which a root before it that is in doubt may make a solution of none.
+/// Negative radicand, relative to its terms, up to which an uncertain preceding root may hide a solution.
 pub const NEAR_MISS: f64 = 0.02;
 
-/// Multiple of the rounding of a lever below which a pose within the tolerances of a caller may have solutions where this one has
-/// none.
+/// Lever arm, as a multiple of its rounding error, below which a pose within a caller's tolerances may have solutions
+/// although this one has none.
 pub const SMALL_LEVER: f64 = 1e6;
 
 /// At most `N` rotations.
@@ -38,20 +39,20 @@ pub const SMALL_LEVER: f64 = 1e6;
 pub struct Turns<const N: usize> {
     turns: [Angle; N],
     count: usize,
-    /// Every angle is a solution; the one listed stands for all.
+    /// True if every angle is a solution; the listed one represents all.
     pub free: bool,
-    /// How sure it is that there are no others.
+    /// Doubt about further solutions.
     pub doubt: Doubt,
-    /// There is none, but only just.
+    /// True if there is no solution, but a small change of the input would give one.
     pub near_miss: bool,
 }
 
 impl<const N: usize> Turns<N> {
-    /// No solution.
+    /// Empty set.
     pub const NONE: Self =
         Self { turns: [Angle::NONE; N], count: 0, free: false, doubt: Doubt::None, near_miss: false };
 
-    /// Every angle: zero stands for all, though others may lead further.
+    /// Free angle, represented by zero; other angles may lead to further solutions.
     pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Open, near_miss: false };
 
     /// Adds a solution; ignored when full.

@@ -4,17 +4,17 @@ use super::{Turns, angle_to_plane};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::vector::{Vector, cross, dot};
 
-/// Subproblem 1: the angle about the unit vector `axis` that carries `from` onto `to`.
+/// Solves subproblem 1: the angle about the unit vector `axis` that carries `from` onto `to`.
 ///
-/// By cross products: differences of dot products cancel where both vectors are nearly along the axis. Where one is along
-/// it, the angle is free, and [`Angle::NONE`] stands for all.
+/// Cross products are used because differences of dot products cancel where both vectors are nearly along the axis. A vector
+/// along the axis leaves the angle free, represented by [`Angle::NONE`].
 #[inline(always)]
 pub fn onto_point(axis: &Vector, from: &Vector, to: &Vector) -> Angle {
     let (from, to) = (cross(axis, from), cross(axis, to));
     Angle::towards(dot(&from, &to), dot(axis, &cross(&from, &to)))
 }
 
-/// Subproblem 2: angles (q1, q2) with rot(first, q1) from = rot(second, q2) to.
+/// Solves subproblem 2: angles (q1, q2) with rot(first, q1) from = rot(second, q2) to.
 ///
 /// `floor` is in the unit of the vectors, see [`super::line_on_circle()`].
 #[inline(always)]

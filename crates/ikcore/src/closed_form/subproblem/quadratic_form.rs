@@ -1,23 +1,24 @@
-//! A quadratic equation in cosine and sine of one angle: what subproblems 5 and 6 come down to.
+//! Quadratic equation in cosine and sine of one angle, to which subproblems 5 and 6 reduce.
 
 use super::{NEARLY_DOUBLE, Turns};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::trigonometric::Polynomial;
 
-/// Rounding of the coefficients, relative to the terms that they are sums of: zeros that it can hide or merge are listed as one.
+/// Rounding error of the coefficients, relative to the terms that they sum. Zeros that it can hide or merge are listed as
+/// one.
 const NOISE: f64 = 1e-13;
 
-/// w' F w = 0 for w = (1, cos q, sin q): a conic that meets the unit circle in at most four points.
+/// Quadratic form w' F w = 0 for w = (1, cos q, sin q): a conic that meets the unit circle in at most four points.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct QuadraticForm {
-    /// Upper triangle: 11, 1c, 1s, cc, cs, ss.
+    /// Upper triangle of F: entries 11, 1c, 1s, cc, cs, ss.
     entries: [f64; 6],
-    /// Size of the terms that were added: where they cancel, their rounding is what is left.
+    /// Magnitude of the added terms, which sets the rounding error where they cancel.
     scale: f64,
 }
 
-/// constant + cos * cos q + sin * sin q.
+/// Linear function constant + cos * cos q + sin * sin q.
 pub type Linear = [f64; 3];
 
 impl QuadraticForm {
@@ -41,36 +42,36 @@ impl QuadraticForm {
         self.scale += size(p);
     }
 
-    /// The angles of its zeros on the unit circle, double roots included.
+    /// Returns the angles of the zeros on the unit circle, double roots included.
     pub fn zeros(&self) -> Turns<4> {
         let [one, c, s, cc, cs, ss] = self.entries;
-        // cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
+        // Double-angle formulas: cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
         let cosines = [one + 0.5 * (cc + ss), c, 0.5 * (cc - ss)];
         let polynomial = Polynomial { cosines, sines: [0.0, s, 0.5 * cs] };
         let zeros = polynomial.zeros::<4>(NOISE * self.scale);
         let mut turns = Turns::NONE;
         zeros.iter().for_each(|root| turns.push(*root));
-        // Coefficients that are off by as much as those of a pose within tolerances have the same zeros, or others.
+        // Second search with a larger noise: a pose within tolerances perturbs the coefficients by as much.
         let nearby = polynomial.zeros::<4>(NEARLY_DOUBLE * self.scale);
         turns.doubt = match zeros.settled && nearby.settled {
             true if nearby.possible == turns.len() => Doubt::None,
             true if nearby.possible <= turns.len() => Doubt::Beside,
-            // The form nearly vanishes everywhere, or to a high order, or has zeros nearby.
+            // Polynomial that nearly vanishes everywhere, or to a high order, or has zeros nearby.
             _ => Doubt::Open,
         };
         turns
     }
 }
 
-/// A bound of |p|, but for a factor.
+/// Bounds |p| up to a constant factor.
 #[inline(always)]
 fn size(p: &Linear) -> f64 {
     p[0].abs() + p[1].abs() + p[2].abs()
 }
 
-/// Subproblem 6: (x, y) with m (cos y, sin y) = r(x), where both entries of r are linear in (1, cos x, sin x).
+/// Solves subproblem 6: (x, y) with m (cos y, sin y) = r(x), where both entries of r are linear in (1, cos x, sin x).
 ///
-/// Solves for x; y follows as the direction of m^-1 r(x), which the result's second part holds. `None` where m is singular.
+/// Returns the solutions x, and for each the direction y of m^-1 r(x); `None` if m is singular.
 pub fn two_linear_equations(m: &[[f64; 2]; 2], r: &[Linear; 2]) -> Option<(Turns<4>, [Angle; 4])> {
     let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
     if determinant == 0.0 || !determinant.is_finite() {

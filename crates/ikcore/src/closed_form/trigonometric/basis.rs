@@ -1,11 +1,11 @@
-//! Other bases in Bernstein's: tables made when the program is compiled.
+//! Conversion tables to the Bernstein basis, computed at compile time.
 
 /// Largest degree of the ordinary polynomial.
 pub(super) const DEGREE: usize = 16;
-/// Half the length of a quarter circle, as tangent of half the angle: tan(pi/8).
+/// Half-angle tangent at the ends of a quarter circle: tan(pi/8).
 pub(super) const QUARTER: f64 = 0.414_213_562_373_095_03;
 
-/// Bernstein coefficients, on the quarter circle round zero, of (1 + x^2)^n cos k q and (1 + x^2)^n sin k q.
+/// Bernstein coefficients of (1 + x^2)^n cos k q and (1 + x^2)^n sin k q on the quarter circle round zero.
 pub(super) struct Basis<const TERMS: usize> {
     pub cosines: [[f64; DEGREE + 1]; TERMS],
     pub sines: [[f64; DEGREE + 1]; TERMS],
@@ -14,8 +14,8 @@ pub(super) struct Basis<const TERMS: usize> {
 impl<const TERMS: usize> Basis<TERMS> {
     pub const VALUES: Self = Self::new();
 
-    /// exp(i k q) (1 + x^2)^n is the product of n + k factors 1 + ix and n - k factors 1 - ix; multiplying polynomials convolves
-    /// their Bernstein coefficients times binomials.
+    /// Computes the table: exp(i k q) (1 + x^2)^n is the product of n + k factors 1 + ix and n - k factors 1 - ix, and
+    /// multiplying polynomials convolves their Bernstein coefficients times binomials.
     const fn new() -> Self {
         let mut basis = Self { cosines: [[0.0; DEGREE + 1]; TERMS], sines: [[0.0; DEGREE + 1]; TERMS] };
         let mut k = 0;
@@ -24,7 +24,7 @@ impl<const TERMS: usize> Basis<TERMS> {
             real[0] = 1.0;
             let mut factor = 0;
             while factor < 2 * (TERMS - 1) {
-                // 1 + ix runs from 1 - it to 1 + it; the conjugate the other way.
+                // Factor 1 + ix runs from 1 - it to 1 + it; its conjugate runs the other way.
                 let end = if factor < TERMS - 1 + k { QUARTER } else { -QUARTER };
                 let mut j = factor + 1;
                 loop {
@@ -56,7 +56,8 @@ impl<const TERMS: usize> Basis<TERMS> {
     }
 }
 
-/// Bernstein coefficients of degree [`DEGREE`] of Chebyshev's polynomials: (-1)^(k-i) binomial(2k, 2i)/binomial(k, i), then raised.
+/// Computes the Bernstein coefficients of degree [`DEGREE`] of Chebyshev's polynomials: (-1)^(k-i) binomial(2k,
+/// 2i)/binomial(k, i), then degree elevation.
 pub(super) const fn chebyshev_in_bernstein() -> [[f64; DEGREE + 1]; DEGREE + 1] {
     let mut table = [[0.0; DEGREE + 1]; DEGREE + 1];
     let mut k = 0;
@@ -65,7 +66,8 @@ pub(super) const fn chebyshev_in_bernstein() -> [[f64; DEGREE + 1]; DEGREE + 1] 
         let (mut i, mut ratio) = (0, 1.0);
         while i <= k {
             row[i] = if (k - i) % 2 == 0 { ratio } else { -ratio };
-            // binomial(2k, 2i + 2)/binomial(2k, 2i) over binomial(k, i + 1)/binomial(k, i).
+            // Ratio of consecutive coefficients: binomial(2k, 2i + 2)/binomial(2k, 2i) over binomial(k, i + 1)/binomial(k,
+            // i).
             let (j, m) = (i as f64, k as f64);
             ratio *= (2.0 * m - 2.0 * j) * (2.0 * m - 2.0 * j - 1.0) / ((2.0 * j + 1.0) * (2.0 * j + 2.0));
             ratio *= (j + 1.0) / if i < k { m - j } else { 1.0 };

@@ -1,22 +1,22 @@
-//! Intervals of the half-angle tangent and Bernstein coefficients on them.
+//! Intervals of the half-angle tangent, with Bernstein coefficients.
 
 use super::basis::DEGREE;
 use crate::closed_form::angle::Angle;
 
-/// An interval of x with the Bernstein coefficients there.
+/// Interval of x with the Bernstein coefficients on it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interval {
     pub coefficients: [f64; DEGREE + 1],
     pub from: f64,
     pub to: f64,
     pub depth: u32,
-    /// Rounding of the coefficients.
+    /// Rounding error of the coefficients.
     pub noise: f64,
-    /// The coefficients are of samples of this interval.
+    /// True if the coefficients come from samples of this interval.
     pub sampled: bool,
 }
 
-/// The zero of an interval with one change of sign, by halving and regula falsi on the coefficients.
+/// Finds the zero of an interval with one sign change, by halving and regula falsi on the coefficients.
 #[cold]
 pub(super) fn bracketed_by_coefficients(interval: &Interval) -> f64 {
     let mut here = *interval;
@@ -30,14 +30,15 @@ pub(super) fn bracketed_by_coefficients(interval: &Interval) -> f64 {
     0.5 * (here.from + here.to)
 }
 
-/// The angle whose half has the tangent `x`.
+/// Returns the angle whose half has the tangent `x`.
 #[inline(always)]
 pub(super) fn half_angle(x: f64) -> Angle {
     let inverse = 1.0 / (1.0 + x * x);
     Angle { cos: (1.0 - x) * (1.0 + x) * inverse, sin: 2.0 * x * inverse }
 }
 
-/// Changes of sign along the coefficients, and whether all are within the noise. A change may hide in an entry that is.
+/// Counts the sign changes of the coefficients, and reports whether all coefficients are within the noise. An entry within
+/// the noise may hide a change.
 #[inline(always)]
 pub(super) fn variations(coefficients: &[f64], noise: f64) -> (usize, bool) {
     let (mut positive, mut negative, mut changes) = (0_usize, 0_usize, 0_usize);
@@ -52,7 +53,7 @@ pub(super) fn variations(coefficients: &[f64], noise: f64) -> (usize, bool) {
         (0, 0) => (changes, true),
         (p, 0) if p == coefficients.len() => (0, false),
         (0, n) if n == coefficients.len() => (0, false),
-        // Both ends must be clear of the noise for a single change to prove a single zero.
+        // A single change proves a single zero only if both ends are above the noise.
         _ if changes == 1 && clear(coefficients, noise) => (1, false),
         _ => (2, false),
     }
@@ -63,7 +64,7 @@ pub(super) fn clear(coefficients: &[f64], noise: f64) -> bool {
     coefficients[0].abs() > noise && coefficients[coefficients.len() - 1].abs() > noise
 }
 
-/// De Casteljau's halving.
+/// Halves an interval by de Casteljau's algorithm.
 #[inline(always)]
 pub(super) fn halves(interval: &Interval, degree: usize) -> (Interval, Interval) {
     let middle = 0.5 * (interval.from + interval.to);

@@ -1,8 +1,9 @@
-//! All real zeros of a trigonometric polynomial of low degree, and whether they are surely all.
+//! Real zeros of a trigonometric polynomial of low degree, and whether the list is provably complete.
 //!
-//! With the tangent x of half the angle from the middle of a quarter circle, a trigonometric polynomial of degree n is an ordinary
-//! one of degree 2n over (1 + x^2)^n. Its Bernstein coefficients on an interval vary in sign at least as often as it vanishes there
-//! (Descartes' rule): no variation, no zero; one, exactly one zero. Intervals with more are halved (de Casteljau).
+//! With the tangent x of half the angle from the middle of a quarter circle, a trigonometric polynomial of degree n becomes
+//! an ordinary polynomial of degree 2n over (1 + x^2)^n. By Descartes' rule its Bernstein coefficients on an interval change
+//! sign at least as often as it vanishes there: no change means no zero, one change exactly one zero. Intervals with more
+//! changes are halved (de Casteljau).
 
 mod basis;
 mod interval;
@@ -13,33 +14,33 @@ use basis::{Basis, DEGREE, QUARTER};
 use interval::{Interval, bracketed_by_coefficients, half_angle, halves, variations};
 use sampler::{MOST_SAMPLED, Sampler};
 
-/// Intervals shorter than the first ones by this power of two are not halved again.
+/// Largest number of halvings of an initial interval.
 const HALVINGS: u32 = 26;
-/// Intervals looked at in all.
+/// Largest number of intervals examined.
 const MOST_INTERVALS: usize = 600;
-/// Over how much of the circle (rad) rounding may spread a double zero.
+/// Width (rad) over which rounding may spread a double zero.
 const SPREAD: f64 = 1e-5;
 
-/// Angles where a polynomial vanishes.
+/// Zeros of a trigonometric polynomial.
 #[derive(Debug, Clone, Copy)]
 pub struct Zeros<const M: usize> {
     turns: [Angle; M],
     count: usize,
-    /// The last double zero.
+    /// Last double zero.
     double: Option<Angle>,
-    /// How many zeros those listed can be, a double zero counting twice.
+    /// Largest number of zeros that the listed angles can represent; a double zero counts twice.
     pub possible: usize,
-    /// There are surely no others.
+    /// True if there are provably no other zeros.
     pub settled: bool,
 }
 
 impl<const M: usize> Zeros<M> {
-    /// The angles.
+    /// Iterates over the angles.
     pub fn iter(&self) -> std::slice::Iter<'_, Angle> {
         self.turns[..self.count].iter()
     }
 
-    /// Adds a double zero unless the last one is the same: it may spread over neighbouring intervals.
+    /// Adds a double zero unless it equals the last one: a double zero may spread over neighbouring intervals.
     fn push_double(&mut self, turn: Angle) {
         let apart = |last: Angle| (last.cos - turn.cos).abs() + (last.sin - turn.sin).abs();
         if self.double.is_some_and(|last| apart(last) < SPREAD) {
@@ -61,27 +62,27 @@ impl<const M: usize> Zeros<M> {
     }
 }
 
-/// A trigonometric polynomial: sum over k of cosines\[k\] cos k q + sines\[k\] sin k q, with M = 2 (TERMS - 1) zeros at most.
+/// Trigonometric polynomial: sum over k of cosines\[k\] cos k q + sines\[k\] sin k q, with at most M = 2 (TERMS - 1) zeros.
 #[derive(Debug, Clone, Copy)]
 pub struct Polynomial<const TERMS: usize> {
-    /// Factors of the cosines of multiples, from zero on.
+    /// Cosine coefficients, from k = 0.
     pub cosines: [f64; TERMS],
-    /// Factors of the sines of multiples; the first means nothing.
+    /// Sine coefficients; the first is unused.
     pub sines: [f64; TERMS],
 }
 
 impl<const TERMS: usize> Polynomial<TERMS> {
-    /// Sum of the sizes of the coefficients: no value is larger.
+    /// Returns the sum of the absolute coefficients, an upper bound on the polynomial.
     pub fn size(&self) -> f64 {
         (1..TERMS).fold(self.cosines[0].abs(), |sum, k| sum + self.cosines[k].abs() + self.sines[k].abs())
     }
 
-    /// Where it vanishes, if its values are off by at most `noise`. At most `M` angles are listed.
+    /// Finds the zeros of a polynomial whose values are uncertain by `noise`; lists at most `M` angles.
     pub fn zeros<const M: usize>(&self, noise: f64) -> Zeros<M> {
         self.all_zeros(noise, None)
     }
 
-    /// The same of degree eight, with the function it is of: sampled anew on parts of the circle where it is small.
+    /// Finds the zeros of a polynomial of degree eight, and samples the function it represents anew where it is small.
     pub fn zeros_by_samples<const M: usize>(&self, noise: f64, value: &mut dyn FnMut(Angle) -> f64) -> Zeros<M> {
         self.all_zeros(noise, Some(Sampler { value, left: MOST_SAMPLED }))
     }
@@ -103,7 +104,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
         found
     }
 
-    /// The polynomial of the angle from `start`.
+    /// Shifts the origin of the angle to `start`.
     fn seen_from(&self, start: Angle) -> Self {
         let mut seen = *self;
         let mut multiple = Angle::NONE;
@@ -115,7 +116,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
         seen
     }
 
-    /// The polynomial seen from a quarter turn further.
+    /// Shifts the origin of the angle by a quarter turn.
     fn advanced(&self) -> Self {
         let mut advanced = *self;
         for k in 1..TERMS {
@@ -137,7 +138,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
         sum
     }
 
-    /// Lists the zeros of a quarter circle, seen from its middle.
+    /// Lists the zeros on a quarter circle centred at the origin of the angle.
     fn search<const M: usize>(
         &self,
         first: Interval,
@@ -164,7 +165,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
                 continue;
             }
             if *budget == 0 || flat || here.depth == HALVINGS {
-                // Zero to within the noise: a double zero, or worse where the interval is still wide.
+                // Zero to within the noise: a double zero, or worse if the interval is still wide.
                 found.settled &= *budget > 0 && here.depth > 10;
                 found.push_double(at(0.5 * (here.from + here.to)));
                 continue;
@@ -183,7 +184,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
         }
     }
 
-    /// The zero between two ends of different sign: Newton's steps, halving where one leaves the interval.
+    /// Finds the zero between two ends of different sign: Newton's method, with halving where a step leaves the interval.
     fn bracketed(&self, interval: &Interval) -> f64 {
         let degree = 2 * (TERMS - 1);
         let (mut from, mut to) = (interval.from, interval.to);
@@ -197,7 +198,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
             } else {
                 to = x;
             }
-            // dq = 2 dx/(1 + x^2).
+            // Chain rule: dq = 2 dx/(1 + x^2).
             let step = -0.5 * value / slope * (1.0 + x * x);
             if step.abs() <= 1e-16 {
                 return x + step;
@@ -211,7 +212,7 @@ impl<const TERMS: usize> Polynomial<TERMS> {
         x
     }
 
-    /// Value and slope.
+    /// Returns value and slope.
     #[inline(always)]
     fn value(&self, turn: Angle) -> (f64, f64) {
         let (mut value, mut slope) = (self.cosines[0], 0.0);
@@ -225,7 +226,8 @@ impl<const TERMS: usize> Polynomial<TERMS> {
     }
 }
 
-/// Middle of the first quarter circle: intervals must not end at the angles that robots like, where zeros then lie.
+/// Middle of the first quarter circle, chosen so that no interval ends at the round angles at which zeros of robots often
+/// lie.
 const START: Angle = Angle { cos: 0.9518135943318746, sin: 0.30667716192282335 };
 
 /// Middles of the quarter circles.
@@ -241,7 +243,7 @@ mod tests {
     use super::basis::chebyshev_in_bernstein;
     use super::*;
 
-    /// The product over `angles`, an even number, of sin((q - angle)/2), by sampling.
+    /// Samples the product of sin((q - angle)/2) over an even number of `angles`.
     fn with_zeros<const TERMS: usize>(angles: &[f64]) -> Polynomial<TERMS> {
         let value = |q: f64| angles.iter().map(|a| (0.5 * (q - a)).sin()).product::<f64>();
         let mut polynomial = Polynomial { cosines: [0.0; TERMS], sines: [0.0; TERMS] };
@@ -319,7 +321,7 @@ mod tests {
 
     #[test]
     fn zeros_where_the_polynomial_is_tiny() {
-        // Ten zeros within a tenth of a radian: the polynomial there is 1e-17 of its size.
+        // Ten zeros within a tenth of a radian: the polynomial is 1e-17 of its size there.
         let angles: [f64; 16] =
             std::array::from_fn(|k| if k < 10 { 1.0 + 0.01 * k as f64 } else { -2.0 + 0.1 * k as f64 });
         let exact = |turn: Angle| angles.iter().map(|a| (0.5 * (turn.angle() - a)).sin()).product::<f64>();

@@ -1,28 +1,29 @@
-//! A polynomial sampled anew on an interval where it is small.
+//! New samples of a polynomial on an interval where it is small.
 
 use super::basis::{DEGREE, chebyshev_in_bernstein};
 use super::interval::{Interval, half_angle};
 use crate::closed_form::angle::Angle;
 
-/// Samples of an interval: three more than the degree needs.
+/// Number of samples of an interval: three more than the degree needs.
 const SAMPLES: usize = DEGREE + 4;
-/// Intervals sampled anew, at most.
+/// Largest number of resampled intervals.
 pub(super) const MOST_SAMPLED: usize = 40;
-/// LoopCoefficients are near their noise below this multiple of it.
+/// Coefficients below this multiple of their noise are near it.
 const NEAR_NOISE: f64 = 300.0;
-/// Intervals shorter than this hold a double zero if any.
+/// Width (in x) below which an interval with sign changes holds a double zero.
 const NARROW: f64 = 1e-6;
 
-/// Takes samples anew where the polynomial is too small to tell its zeros.
+/// Resamples intervals where the polynomial is too small to locate its zeros.
 pub(super) struct Sampler<'a> {
     pub value: &'a mut dyn FnMut(Angle) -> f64,
     pub left: usize,
 }
 
 impl Sampler<'_> {
-    /// An interval anew, if it is wide, all its coefficients are near their noise, and the new noise is smaller.
+    /// Resamples an interval if it is wide, all its coefficients are near their noise, and the new noise is smaller.
     ///
-    /// Chebyshev's interpolation, with more samples than the degree needs: the coefficients beyond it tell the noise.
+    /// Chebyshev interpolation with more samples than the degree needs: the coefficients beyond the degree estimate the
+    /// noise.
     #[cold]
     pub fn sampled(&mut self, here: &Interval, middle: Angle) -> Option<Interval> {
         let largest = here.coefficients.iter().fold(0.0, |most: f64, b| most.max(b.abs()));
@@ -50,7 +51,7 @@ impl Sampler<'_> {
         let table = const { chebyshev_in_bernstein() };
         let mut sampled = Interval { coefficients: [0.0; DEGREE + 1], noise: 4.0 * rounding, sampled: true, ..*here };
         for (a, row) in series.iter().zip(&table) {
-            // Terms below the rounding would only add their own.
+            // Terms below the rounding error would add only noise.
             if a.abs() <= rounding {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Arctangents of several candidates side by side, without branches.
+//! Branch-free arctangents of several candidates in SIMD lanes.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use crate::math::arctangent::angle_of;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::real::{One, Real};
 
-/// Joint values of `W` candidates from `first` on, angles in (-pi, pi].
+/// Returns the joint values of `W` candidates from `first` on, angles in (-pi, pi].
 #[inline(always)]
 pub fn angles<A: Arithmetic, const N: usize, const W: usize>(
     slides: &[bool; N],
@@ -31,7 +31,7 @@ pub fn angles<A: Arithmetic, const N: usize, const W: usize>(
 #[inline(always)]
 fn angle<A: Arithmetic>(sin: f64, cos: f64) -> f64 {
     let upper = angle_of(One::<A>::of(sin.abs()), One::of(cos)).stored();
-    // The sign of the sine; half a turn is +pi.
+    // Sign of the sine; half a turn is +pi.
     if sin < 0.0 && upper < PI { -upper } else { upper }
 }
 

@@ -1,4 +1,4 @@
-//! No candidate becomes a branch without forward kinematics: residuals, polishing where they ask for it, duplicates.
+//! Verification of candidates by forward kinematics: residuals, polishing where needed, removal of duplicates.
 
 mod angles;
 mod polish;
@@ -13,31 +13,31 @@ use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use residuals::FixedFrames;
 pub use residuals::LANES;
 
-/// Every branch brings the tip nearer to the pose than this (m, rad): entries within [`polish::TOLERANCE`].
+/// Bound on the pose error of every branch (m, rad), implied by [`polish::TOLERANCE`] on each entry.
 pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 
-/// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
-/// leaves more than that in the angles.
+/// Residual (m, rad) above which a candidate is polished: near singular poses a residual within [`polish::TOLERANCE`] leaves
+/// larger errors in the angles.
 const GOOD: f64 = 1e-12;
 
-/// Where the residual of a candidate that is no branch stays below this (m, rad), a pose within the tolerances of a caller may have one.
+/// Residual of a rejected candidate (m, rad) below which a pose within a caller's tolerances may have a solution.
 const NEARLY: f64 = 1e-5;
 
-/// Branches nearer to each other than this in every joint (rad, m) are one: a double root.
+/// Largest joint difference (rad, m) between branches that count as one: a double root.
 const SAME: f64 = 1e-6;
 
-/// A chain prepared for checking candidates.
+/// Chain prepared for checking candidates.
 #[derive(Debug, Clone, Copy)]
 pub struct Verifier<const N: usize> {
     chain: AxisChain<N>,
     frames: FixedFrames<N>,
     slides: [bool; N],
-    /// Candidates with larger residuals (m, rad) are not worth polishing.
+    /// Residual (m, rad) above which a candidate is not worth polishing.
     worth_polishing: f64,
 }
 
 impl<const N: usize> Verifier<N> {
-    /// For candidates off by at most `worth_polishing` (m, rad).
+    /// Prepares a chain for candidates whose error is at most `worth_polishing` (m, rad).
     pub fn new(chain: &AxisChain<N>, worth_polishing: f64) -> Self {
         let slides = std::array::from_fn(|k| chain.joints[k].motion == AxisKind::Slides);
         Self { chain: *chain, frames: FixedFrames::new(chain), slides, worth_polishing }
@@ -53,12 +53,13 @@ impl<const N: usize> Verifier<N> {
         self.accept_polished(target, set, found);
     }
 
-    /// How far joint values leave the tip from `target` (m, rad).
+    /// Returns the pose error (m, rad) of the tip at the joint values `set`.
     pub fn residual(&self, target: &Frame, set: &[f64; N]) -> f64 {
         residuals::difference(&self.chain.tip_at(set), target)
     }
 
-    /// The candidates that bring the tip to `target`, as joint values. Where speed matters, [`verified`] and [`verified_seven`].
+    /// Returns the candidates that bring the tip to `target`, as joint values. [`verified`] and [`verified_seven`] are
+    /// faster.
     pub fn verified(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         self.branches_by::<Baseline>(target, candidates)
     }
@@ -84,7 +85,7 @@ impl<const N: usize> Verifier<N> {
         found
     }
 
-    /// Writes the joint values of candidates, unverified.
+    /// Writes the joint values of unverified candidates.
     #[inline(always)]
     fn write_values<A: Arithmetic>(&self, candidates: &Candidates, columns: &mut AxisColumns) {
         let mut first = 0;
@@ -114,34 +115,34 @@ impl<const N: usize> Verifier<N> {
 }
 
 by_instructions! {
-    /// Writes the joint values of candidates, unverified.
+    /// Writes the joint values of unverified candidates for six joints.
     pub fn values_of_six(verifier: &Verifier<6>, candidates: &Candidates, columns: &mut AxisColumns) {
         verifier.write_values::<A>(candidates, columns);
     }
 }
 
 by_instructions! {
-    /// The same for seven joints.
+    /// Writes the joint values of unverified candidates for seven joints.
     pub fn values_of_seven(verifier: &Verifier<7>, candidates: &Candidates, columns: &mut AxisColumns) {
         verifier.write_values::<A>(candidates, columns);
     }
 }
 
 by_instructions! {
-    /// The candidates that bring the tip to `target`, as joint values.
+    /// Returns the candidates for six joints that bring the tip to `target`, as joint values.
     pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates) -> Branches<6> {
         verifier.branches_by::<A>(target, candidates)
     }
 }
 
 by_instructions! {
-    /// The same for seven joints.
+    /// Returns the candidates for seven joints that bring the tip to `target`, as joint values.
     pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates) -> Branches<7> {
         verifier.branches_by::<A>(target, candidates)
     }
 }
 
-/// Adds a branch unless it is there already.
+/// Adds a branch unless it is listed already.
 #[inline(always)]
 fn push_new<const N: usize>(set: [f64; N], error: BranchError, slides: &[bool; N], found: &mut Branches<N>) {
     let near = |a: f64, b: f64, slides: bool| {

@@ -1,4 +1,4 @@
-//! Newton's method from a candidate that forward kinematics finds a little off.
+//! Newton's method from a candidate with a small error.
 
 use super::residuals::difference;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
@@ -8,15 +8,15 @@ use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 use crate::math::vector::{dot, norm};
 
-/// Largest residual of a branch, position (m) and rotation (rad).
+/// Largest residual of a branch, in position (m) and rotation (rad).
 pub const TOLERANCE: f64 = 1e-10;
 
 const ITERATIONS: usize = 24;
 
-/// Joint values near `q` that bring the tip to `target`, if Newton's method gets there, or else its least residual (m, rad).
+/// Refines `q` by Newton's method until the tip is at `target`, or returns the smallest residual (m, rad) on failure.
 ///
-/// Each step adds one to `evaluations`. Damped by the squared error: beside a double root the Jacobian is singular, and the step
-/// must stay short.
+/// Each step adds one to `evaluations`. Damping by the squared error keeps steps short near a double root, where the Jacobian
+/// is singular.
 pub fn polished<const N: usize>(
     chain: &AxisChain<N>,
     target: &Frame,
@@ -33,7 +33,7 @@ pub fn polished<const N: usize>(
         if residual < best.0 {
             best = (residual, q, BranchError { position: norm(&error[..3]), rotation: norm(&error[3..]) });
         }
-        // Beyond the tolerance while it still pays.
+        // Stop only when further steps no longer pay, even within the tolerance.
         if !(residual.is_finite()) || residual <= TOLERANCE && residual > 0.1 * last || residual < 1e-14 {
             break;
         }
@@ -50,14 +50,14 @@ pub fn polished<const N: usize>(
     Ok((std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
 }
 
-/// The same angle in (-pi, pi].
+/// Wraps the angle to (-pi, pi].
 fn wrapped(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let rest = angle.rem_euclid(TAU);
     if rest > PI { rest - TAU } else { rest }
 }
 
-/// Position (m) and rotation (rad) from tip to target.
+/// Returns the position (m) and rotation error (rad) from tip to target.
 fn error(tip: &Frame, target: &Frame) -> [f64; 6] {
     let [px, py, pz] = sub(&target.origin, &tip.origin);
     let sum = (0..3).fold([0.0; 3], |sum: Vector, k| add(&sum, &cross(&tip.axes[k], &target.axes[k])));
@@ -65,7 +65,7 @@ fn error(tip: &Frame, target: &Frame) -> [f64; 6] {
     [px, py, pz, rx, ry, rz]
 }
 
-/// The tip and its geometric Jacobian, one column a joint.
+/// Returns the tip frame and its geometric Jacobian, one column per joint.
 fn jacobian<const N: usize>(chain: &AxisChain<N>, q: &[f64; N]) -> (Frame, [[f64; 6]; N]) {
     let mut moved = [Frame::IDENTITY; N];
     let mut sum = Frame::IDENTITY;
@@ -88,8 +88,8 @@ fn jacobian<const N: usize>(chain: &AxisChain<N>, q: &[f64; N]) -> (Frame, [[f64
     (tip, columns)
 }
 
-/// The damped step: (J'J + damping) step = J'error, or J'(JJ' + damping)^-1 error, whichever is the smaller system: the larger one
-/// is singular.
+/// Solves for the damped step: (J'J + damping) step = J'error, or J'(JJ' + damping)^-1 error, whichever system is smaller;
+/// the larger one is singular.
 fn damped_step<const N: usize>(columns: &[[f64; 6]; N], error: &[f64; 6], damping: f64) -> [f64; N] {
     let along = |v: &[f64; 6]| columns.map(|column| (0..6).map(|k| column[k] * v[k]).sum::<f64>());
     if N <= 6 {
@@ -100,7 +100,7 @@ fn damped_step<const N: usize>(columns: &[[f64; 6]; N], error: &[f64; 6], dampin
     along(&solved(entry, damping, *error))
 }
 
-/// (A + damping)^-1 b by Cholesky's method.
+/// Solves (A + damping) x = b by Cholesky decomposition.
 fn solved<const N: usize>(a: impl Fn(usize, usize) -> f64, damping: f64, b: [f64; N]) -> [f64; N] {
     let mut factor = [[0.0; N]; N];
     let mut x = b;
@@ -136,7 +136,7 @@ mod tests {
     fn a_redundant_arm_moves_as_little_as_it_must() {
         let chain = AxisChain::of_rows(&PANDA);
         for mut q in random_angles(100) {
-            // Away from singular configurations.
+            // Configuration away from singularities.
             (q[3], q[5]) = (-1.5 + 0.3 * q[3], 1.5 + 0.3 * q[5]);
             let start: [f64; 7] = std::array::from_fn(|k| q[k] + 1e-4 * (k as f64 - 3.0));
             let mut evaluations = 0;

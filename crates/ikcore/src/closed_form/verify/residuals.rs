@@ -1,4 +1,4 @@
-//! Forward kinematics of several candidates side by side.
+//! Forward kinematics of several candidates in SIMD lanes.
 
 use crate::closed_form::axis_chain::AxisChain;
 use crate::closed_form::branches::{BranchError, Candidates};
@@ -7,12 +7,13 @@ use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::arithmetic::Baseline;
 
-/// Candidates checked together.
+/// Number of candidates checked together.
 pub const LANES: usize = 8;
 
 type Lanes = [f64; LANES];
 
-/// The chain with every joint about its own z axis: constant frames before each joint, and the tip after the last.
+/// Chain in which every joint turns about its own z axis: constant frames before each joint, and the tip frame after the
+/// last.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedFrames<const N: usize> {
     before: [Frame; N],
@@ -27,26 +28,26 @@ impl<const N: usize> FixedFrames<N> {
     }
 }
 
-/// By how much eight candidates miss the target.
+/// Pose errors of eight candidates.
 #[derive(Debug, Clone, Copy)]
 pub struct Residuals {
-    /// Largest entry of the differences of position, x axis and z axis.
+    /// Largest entry of the differences in position, x axis and z axis.
     pub worst: Lanes,
     position: Lanes,
     rotation: Lanes,
 }
 
 impl Residuals {
-    /// Distance and angle of one candidate.
+    /// Returns the position and rotation error of one candidate.
     #[inline(always)]
     pub fn error(&self, lane: usize) -> BranchError {
         BranchError { position: self.position[lane].sqrt(), rotation: self.rotation[lane].sqrt() }
     }
 }
 
-/// The residuals of eight candidates from `first` on.
+/// Computes the residuals of eight candidates from `first` on.
 ///
-/// Runs from tip to base, so that only the three vectors compared are carried.
+/// The recursion runs from tip to base and carries only the three vectors to be compared.
 #[inline(always)]
 pub fn residuals<A: Arithmetic, const N: usize>(
     frames: &FixedFrames<N>,
@@ -78,7 +79,7 @@ pub fn residuals<A: Arithmetic, const N: usize>(
     compared(&mut carried, target)
 }
 
-/// The residuals of position, x axis and z axis, which become differences from the target.
+/// Subtracts the target from position, x axis and z axis.
 #[inline(always)]
 fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
     let mut worst = [0.0; LANES];
@@ -99,18 +100,18 @@ fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
     let [position, of_x, of_z] = squares;
     let mut rotation = [0.0; LANES];
     for w in 0..LANES {
-        // A small rotation w moves x by w cross x: its part about y moves both axes and counts once.
+        // Small rotation w: x moves by w cross x. The component about y moves both axes and must count once.
         about_y[w] = (0..3).map(|k| carried[2][k][w] * target.axes[0][k]).sum();
         let square = of_x[w] + of_z[w] - about_y[w] * about_y[w];
         rotation[w] = if square > 0.0 { square } else { 0.0 };
-        // NaN compares as not larger: it must not pass.
+        // NaN fails every comparison; the candidate must be rejected.
         let sum = position[w] + of_x[w] + of_z[w];
         worst[w] = if sum.is_finite() { worst[w] } else { f64::INFINITY };
     }
     Residuals { worst, position, rotation }
 }
 
-/// A frame at `point` whose z axis is `axis`.
+/// Returns a frame at `point` whose z axis is `axis`.
 fn along(axis: &Vector, point: &Vector) -> Frame {
     Frame { axes: across(axis), origin: *point }
 }
@@ -124,7 +125,7 @@ fn turn<A: Arithmetic>(v: &mut [Lanes; 3], cos: &Lanes, sin: &Lanes) {
     }
 }
 
-/// R v + origin.
+/// Returns R v + origin.
 #[inline(always)]
 fn turned<A: Arithmetic>(frame: &Frame, v: &[Lanes; 3], origin: &[f64; 3]) -> [Lanes; 3] {
     let mut out = [[0.0; LANES]; 3];
@@ -137,12 +138,12 @@ fn turned<A: Arithmetic>(frame: &Frame, v: &[Lanes; 3], origin: &[f64; 3]) -> [L
     out
 }
 
-/// Largest entry by which position and axes of two frames differ; infinite where `a` is not finite.
+/// Returns the largest difference of the entries of position and axes of two frames; infinite if `a` is not finite.
 pub fn difference(a: &Frame, b: &Frame) -> f64 {
     let entry = |p: &[f64; 3], q: &[f64; 3]| (0..3).fold(0.0, |most: f64, k| most.max((p[k] - q[k]).abs()));
     let sum: f64 = a.axes.as_flattened().iter().chain(&a.origin).sum();
     if !sum.is_finite() {
-        // NaN compares as not larger: it must not pass.
+        // NaN fails every comparison; the frame must be rejected.
         return f64::INFINITY;
     }
     (0..3).fold(entry(&a.origin, &b.origin), |most, k| most.max(entry(&a.axes[k], &b.axes[k])))

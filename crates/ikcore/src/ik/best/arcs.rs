@@ -13,27 +13,26 @@ use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Goals;
 
-/// By this fraction of what a cost is hoped to fall below those asked, it may be still lower.
+/// Slack on the predicted decrease of a cost, as a fraction of it.
 const DOUBT: f64 = 0.1;
 
-/// A place nearly on a curve, within the limits or nearly so, and a cost of the goals that is hoped for there: hardly more
-/// than the least near it.
+/// Candidate minimum: a configuration nearly on a curve and within the limits, with an optimistic estimate of its cost.
 pub(super) struct Candidate {
     pub cost: f64,
     pub q: Point,
 }
 
-/// What the limits leave of the curves, and what it candidates.
+/// Arcs of the curves within the limits, and their candidate minima.
 pub(super) struct Arcs<'r, 'a> {
     robot: &'a Robot,
     limits: &'r WrappedLimits<'a>,
     goals: &'r mut Goals,
-    /// At the end of the last step, if within the limits.
+    /// Cost and gradient at the end of the last step, if within the limits.
     last: Option<Asked>,
     candidates: Vec<Candidate>,
 }
 
-/// The goals' cost at a place, and its slope from joint to joint.
+/// Cost of the goals at a configuration, and its gradient.
 struct Asked {
     cost: f64,
     gradient: Point,
@@ -44,18 +43,18 @@ impl<'r, 'a> Arcs<'r, 'a> {
         Self { robot, limits, goals, last: None, candidates: Vec::new() }
     }
 
-    /// The candidates made, the best first.
+    /// Returns the candidates in ascending order of cost.
     pub fn into_candidates(mut self) -> Vec<Candidate> {
         self.candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         self.candidates
     }
 
-    /// The next step does not begin where the last one ended.
+    /// Separates the next step from the end of the last one.
     pub fn interrupt(&mut self) {
         self.last = None;
     }
 
-    /// Looks at the step from `begin` to `end`, the chord between them `length` long.
+    /// Adds the candidates of the step from `begin` to `end`, whose chord is `length` long.
     pub fn look(&mut self, begin: &CurvePoint, end: &CurvePoint, length: f64) {
         let ways: SmallVec<[Cubic; MAX_DOF]> = (0..begin.q.len())
             .map(|j| {
@@ -74,7 +73,7 @@ impl<'r, 'a> Arcs<'r, 'a> {
         }
     }
 
-    /// Where on a piece the cubic between the costs at its ends is lowest.
+    /// Adds the minimum of the cubic through the costs at both ends of a piece.
     fn promise(&mut self, ways: &[Cubic], [from, to]: [f64; 2], asked: &[Asked; 2]) {
         let slope = |asked: &Asked, fraction: f64| -> f64 {
             let along: Point = ways.iter().map(|way| way.slope(fraction)).collect();

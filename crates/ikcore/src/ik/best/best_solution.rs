@@ -1,4 +1,4 @@
-//! [`Prefer::Best`](crate::ik::Prefer::Best): the search over branches and curves of solutions.
+//! Search over branches and curves of solutions for [`Prefer::Best`](crate::ik::Prefer::Best).
 //!
 //! The self-motion of a target may have several branches, and each branch several local optima of the goals.
 
@@ -12,21 +12,21 @@ use crate::objective::{Bounds, Objective, Point};
 use crate::solver::Status;
 use crate::task::Goals;
 
-/// Solutions in a row that are no better, or on curves known already, before the search is over.
+/// Consecutive solutions without improvement, or on known curves, after which the search ends.
 const PATIENCE: usize = 40;
 
-/// Evaluations in a row that may be spent on finding curves and bring no new one, before the search is over: near the end of
-/// the reach most starts fail, each at length.
+/// Evaluations without a new curve after which the search ends: near the end of the reach most starts fail, each after many
+/// evaluations.
 const PATIENCE_FOR_CURVES: usize = 1200;
 
-/// A flip that misses the target by no more, as the weighted sum of squares, is a start.
+/// Largest squared error of a branch flip from which the search starts.
 const NEAR: f64 = 0.1;
 
-/// Costs that differ by less are the same.
+/// Largest difference of costs that count as equal.
 const SAME: f64 = 1e-9;
 
-/// The solution with the least cost among those found until [`PATIENCE`] of them in a row, or [`PATIENCE_FOR_CURVES`]
-/// evaluations, brought nothing new; the best miss where there is none.
+/// Returns the solution with the least cost found until [`PATIENCE`] consecutive solutions, or [`PATIENCE_FOR_CURVES`]
+/// evaluations, bring nothing new; the best miss if there is no solution.
 pub(in crate::ik) fn best_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
     let x0 = attempt.first_start(start);
@@ -49,29 +49,29 @@ pub(in crate::ik) fn best_solution(attempt: &mut Attempt<'_, '_>, start: Option<
     search.attempt.solution(status, best)
 }
 
-/// The search for a better solution than those found so far.
+/// Search for a better solution than the best so far.
 struct BestSearch<'s, 'm, 'p> {
     attempt: &'s mut Attempt<'m, 'p>,
     goals: Goals,
     start: Option<&'s [f64]>,
     tracer: CurveTracer<'p>,
-    /// Where solutions are sought: within the limits, or anywhere once a curve was met, on which limits do not matter.
+    /// Box of the search: the limits, or unbounded once a curve was found, on which limits do not matter.
     bounds: Bounds,
-    /// Branch flips of solutions, to begin from.
+    /// Branch flips of solutions, as starts.
     flipped: Vec<Point>,
     best: (f64, Point),
-    /// Evaluations that may still be spent before something new must have come.
+    /// Evaluations left before something new must be found.
     patience: usize,
 }
 
 impl BestSearch<'_, '_, '_> {
-    /// Goes on from the solution `q`, and from others, until nothing new comes.
+    /// Continues from the solution `q` and from other starts until nothing new is found.
     fn go_on_from(&mut self, mut q: Point) -> Status {
         self.improve(q.clone());
         let mut nothing_new = 0;
         while nothing_new < PATIENCE && !self.attempt.budget.is_spent() {
             nothing_new = if self.is_new(&q) { 0 } else { nothing_new + 1 };
-            // Searches may be too short to ask.
+            // Polls here too, since searches may be too short to poll.
             if !self.attempt.monitor.keep_going() {
                 return Status::Interrupted;
             }
@@ -89,7 +89,7 @@ impl BestSearch<'_, '_, '_> {
         Status::Solved
     }
 
-    /// The next flip that comes near the target, else a start from all over.
+    /// Next branch flip near the target, else a random start.
     fn next_start(&mut self) -> Point {
         while self.attempt.budget.left() > 0
             && let Some(q) = self.flipped.pop()
@@ -104,7 +104,7 @@ impl BestSearch<'_, '_, '_> {
         x0
     }
 
-    /// Looks at the solution `q` and at the curve through it, if it is on one; whether that brought anything new.
+    /// Visits the solution `q` and the curve through it, if there is one. Returns whether that found anything new.
     fn is_new(&mut self, q: &Point) -> bool {
         let left = self.attempt.budget.left();
         let visit = self.tracer.visit(self.attempt.problem, &mut self.goals, q, left);
@@ -131,8 +131,7 @@ impl BestSearch<'_, '_, '_> {
         }
     }
 
-    /// Moves on from `q`, at or near a solution, to where the goals are best near it. Whether that is better than the best,
-    /// which it then replaces.
+    /// Moves `q`, at or near a solution, to the nearest optimum of the goals. Returns whether it replaces the best solution.
     fn improve(&mut self, mut q: Point) -> bool {
         let context = self.attempt.context;
         let robot = context.robot();

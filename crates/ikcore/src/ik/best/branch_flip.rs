@@ -1,8 +1,8 @@
 //! Branch flips: the same tip pose by another branch of three joints in a row.
 //!
-//! Three joints whose axes are perpendicular and meet, as in a shoulder or a wrist, take every orientation twice: turn the
-//! first and the last joint by half a turn and mirror the middle one. Where the axes miss each other by a little, a flip
-//! comes near a solution.
+//! Three joints whose axes intersect at right angles, as in a shoulder or a wrist, reach every orientation twice: turn the
+//! first and the last joint by half a turn and mirror the middle one. If the axes nearly intersect, a flip comes near a
+//! solution.
 
 use std::f64::consts::PI;
 
@@ -12,10 +12,10 @@ use crate::math::vector::dot;
 use crate::objective::Point;
 use crate::robot::Robot;
 
-/// Cosine below which axes stand across each other, and lengths that differ by less are the same.
+/// Largest cosine of perpendicular axes, and largest deviation of a unit length.
 const ACROSS: f64 = 1e-6;
 
-/// What flips of `q` there are.
+/// Returns the branch flips of `q`.
 pub(super) fn flips(robot: &Robot, q: &[f64]) -> Vec<Point> {
     let screws = robot.screws(q);
     screws.windows(3).filter_map(|three| flip(three, q)).collect()
@@ -28,7 +28,7 @@ fn flip(three: &[Screw], q: &[f64]) -> Option<Point> {
     if !(turns(a) && turns(b) && turns(c) && across) {
         return None;
     }
-    // By how much the middle joint has turned the last axis away from the first.
+    // Angle by which the middle joint has turned the last axis away from the first.
     let away = f64::atan2(dot(&cross(&a.turn, &c.turn), &b.turn), dot(&a.turn, &c.turn));
     let mut flipped = Point::from_slice(q);
     flipped[a.joint] += PI;

@@ -1,8 +1,8 @@
-//! Tracing of the self-motion of a solution once round, past the joint limits.
+//! Tracing of closed self-motion curves past the joint limits.
 //!
-//! An arm with one joint more than its task needs moves along closed curves, which its limits cut into arcs. The best
-//! posture may be on an arc so short that no random start finds it; but it is on the curve of one that is found. Each curve
-//! is walked once, and its [`Arcs`] report their candidate minima.
+//! An arm with one joint more than its task needs moves along closed curves, which its limits cut into arcs. The best posture
+//! may be on an arc so short that no random start finds it, but on a curve whose other arcs are found. Each curve is traced
+//! once, and its [`Arcs`] report their candidate minima.
 
 use super::arcs::{Arcs, Candidate};
 use crate::ik::goal_descent::difference;
@@ -13,40 +13,40 @@ use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::task::Goals;
 
-/// Steps after which a curve that has not closed is left.
+/// Largest number of steps on a curve that does not close.
 const MOST_STEPS: usize = 150;
-/// Every so many steps it is asked whether the curve has joined one that is known.
+/// Steps between two tests whether the curve has joined a known one.
 const STEPS_BETWEEN: usize = 8;
-/// A place nearer to the chord of a step (rad, m) is on that curve.
+/// Distance from the chord of a step (rad, m) within which a configuration is on the curve.
 const ON_CURVE: f64 = 0.02;
 
-/// The curves walked so far.
+/// Tracer of curves, with the curves traced so far.
 pub(super) struct CurveTracer<'a> {
     robot: &'a Robot,
     limits: WrappedLimits<'a>,
-    /// Where all steps began, and how far each led.
+    /// Start and chord of every step.
     passed: Vec<(Point, Point)>,
     evaluations: usize,
 }
 
-/// What a visit to a curve brings.
+/// Outcome of a visit to a curve.
 pub(super) enum Visit {
-    /// It was walked before.
+    /// A curve traced before.
     Known,
-    /// Places to go on from, the most promising first.
+    /// Candidates on a new curve, the most promising first.
     Curve(Vec<Candidate>),
-    /// The task leaves no freedom, or more than that of a curve.
+    /// No curve: the task leaves no freedom, or more than one degree of it.
     NoCurve,
 }
 
-/// How a walk ends.
+/// End of a walk.
 #[derive(PartialEq, Eq)]
 enum End {
-    /// Where it began.
+    /// At the start of the curve.
     Closed,
-    /// On a curve that is known: it lost its own at a corner.
+    /// On a known curve, after losing its own at a corner.
     Joined,
-    /// Nowhere, after as much as may be spent.
+    /// Out of budget.
     Spent,
 }
 
@@ -55,7 +55,7 @@ impl<'a> CurveTracer<'a> {
         Self { robot, limits: WrappedLimits::new(robot, bounds), passed: Vec::new(), evaluations: 0 }
     }
 
-    /// What there is to know of the curve through the solution `q`, at the cost of `most` evaluations at most.
+    /// Traces the curve through the solution `q`, with at most `most` evaluations.
     pub fn visit(&mut self, problem: &mut Problem<'_>, goals: &mut Goals, q: &[f64], most: usize) -> Visit {
         if knows(&self.limits, &self.passed, q) {
             return Visit::Known;
@@ -67,7 +67,7 @@ impl<'a> CurveTracer<'a> {
         let begin = walk.here().clone();
         let mut arcs = Arcs::new(self.robot, &self.limits, goals);
         if walk_on(&mut walk, &self.limits, &mut arcs, &mut self.passed) == End::Joined {
-            // What is left of the curve lies the other way.
+            // The rest of the curve lies in the other direction.
             walk.turn_back_at(&begin);
             arcs.interrupt();
             walk_on(&mut walk, &self.limits, &mut arcs, &mut self.passed);
@@ -76,13 +76,13 @@ impl<'a> CurveTracer<'a> {
         Visit::Curve(arcs.into_candidates())
     }
 
-    /// Evaluations of the forward kinematics since they were taken last.
+    /// Returns the evaluations of the forward kinematics since the last call.
     pub fn take_evaluations(&mut self) -> usize {
         std::mem::take(&mut self.evaluations)
     }
 }
 
-/// Walks until the curve closes or joins one that is known, looking at what the limits leave of it.
+/// Walks until the curve closes or joins a known one, and collects its arcs.
 fn walk_on(
     walk: &mut Walk<'_, '_>,
     limits: &WrappedLimits<'_>,
@@ -101,7 +101,7 @@ fn walk_on(
         let length = norm(&chord);
         arcs.look(&from, there, length);
         passed.push((from.q, chord));
-        // Begin and end overlap, so that nothing between them is missed.
+        // Overlap of begin and end, so that no part of the curve is missed.
         if count > 3 && there.has_closed_at(&begin, length, limits) {
             return End::Closed;
         }
@@ -115,7 +115,7 @@ fn walk_on(
 
 /// Whether `q` lies on one of these steps.
 fn knows(limits: &WrappedLimits<'_>, steps: &[(Point, Point)], q: &[f64]) -> bool {
-    // No step leads as far in any joint: most are told by the first.
+    // Bounding box of a step: it excludes most steps by their first joint.
     let may_reach =
         |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| limits.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
     steps.iter().filter(may_reach).any(|(begin, chord)| {

@@ -3,16 +3,16 @@
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, NearestContact};
 
-/// Most candidates kept.
+/// Largest number of stored candidates.
 const KEPT: usize = 64;
 
-/// Some of the candidates, spread evenly over the order in which they came.
+/// Reservoir of candidates, spread evenly over their order of discovery.
 #[derive(Debug)]
 pub(super) struct BlockedSolutions {
     kept: Vec<Point>,
-    /// How many there were.
+    /// Number of candidates added.
     pub count: usize,
-    /// One of so many is kept.
+    /// Spacing of the stored candidates.
     stride: usize,
 }
 
@@ -38,12 +38,12 @@ impl BlockedSolutions {
         self.count += 1;
     }
 
-    /// The first of all.
+    /// First candidate.
     pub fn first(&self) -> Option<&Point> {
         self.kept.first()
     }
 
-    /// Those kept, the least deep in collision first.
+    /// Stored candidates in descending order of clearance.
     pub fn by_clearance(&self, space: &ClearSpace<'_>) -> Vec<(NearestContact, Point)> {
         let nearest = |q: &Point| Some((space.nearest(q)?, q.clone()));
         let mut all: Vec<(NearestContact, Point)> = self.kept.iter().filter_map(nearest).collect();

@@ -8,20 +8,21 @@ use crate::math::Frame;
 use crate::objective::Point;
 use crate::task::Target;
 
-/// Most values of the parameter of a redundant arm that are tried.
+/// Largest number of parameter values of a redundant arm.
 const SCANNED: usize = 2048;
 
-/// Values of the parameter between two looks at the monitor.
+/// Parameter values between two polls of the monitor.
 const VALUES_BETWEEN_LOOKS: usize = 64;
 
-/// Values after which it is asked whether any can have a clear branch: most poses have one before.
+/// Parameter values before testing whether any branch can be clear: most poses have a clear one earlier.
 const VALUES_BEFORE_DOUBT: usize = 4;
 
-/// A clear solution, or why no branch is clear; `None` where the closed form does not apply, or no branch is inside the limits.
+/// Clear solution, or the reason why no branch is clear; `None` if the closed form does not apply, or no branch is inside the
+/// limits.
 pub(super) type BranchOutcome = Option<Result<Point, Exhausted>>;
 
 impl ClearSearch<'_, '_, '_> {
-    /// The preferred one of the clear branches; of a redundant arm one at the first value of its parameter that has one.
+    /// Finds the preferred clear branch; for a redundant arm, one at the first value of its parameter that has a clear branch.
     pub(super) fn by_branches(&mut self, preference: &Preference) -> BranchOutcome {
         let context = self.attempt.context;
         let (target @ Target::Pose(pose), _) = self.attempt.problem.only_target()? else { return None };
@@ -36,7 +37,7 @@ impl ClearSearch<'_, '_, '_> {
         }
     }
 
-    /// Of an arm that is not redundant.
+    /// Finds the preferred clear branch of a non-redundant arm.
     fn of_branches(&mut self, pose: &Frame, preference: &Preference) -> BranchOutcome {
         let robot = self.attempt.context.robot();
         let mut likely = ArmConfigurations::none();
@@ -47,7 +48,7 @@ impl ClearSearch<'_, '_, '_> {
         if self.has_candidates() && likely.is_all {
             return Some(Err(Exhausted::All));
         }
-        // Beside singular poses, what is near a branch is still to be polished.
+        // Polishing is still needed near singular poses.
         self.forget_candidates();
         let branches = robot.branches(pose)?;
         self.attempt.budget.evaluations += branches.evaluations;
@@ -81,7 +82,7 @@ impl ClearSearch<'_, '_, '_> {
         self.clear_by_pushing()
     }
 
-    /// Where no branch is clear.
+    /// Pushes a blocked branch clear.
     fn clear_by_pushing(&mut self) -> BranchOutcome {
         match self.pushed_candidate() {
             Some(q) => Some(Ok(q)),
@@ -90,8 +91,8 @@ impl ClearSearch<'_, '_, '_> {
         }
     }
 
-    /// The preferred one of those `configurations` that are inside the limits, solve the target with no more than an error (m, rad) and
-    /// are clear.
+    /// Returns the preferred one of `configurations` that is inside the limits, solves the target with an error of at most
+    /// `most` (m, rad), and is clear.
     fn first_clear(
         &mut self,
         preference: &Preference,

@@ -1,4 +1,4 @@
-//! The state of a search for a clear solution: what was tried, and why it was not clear.
+//! Search for a clear solution: its state, and the blocked solutions.
 
 use std::cell::OnceCell;
 
@@ -11,33 +11,33 @@ use crate::obstacle::{Blocked, ClearSpace, Contact};
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
-/// How far beyond the margin a configuration is pushed (m).
+/// Clearance beyond the margin to which a configuration is pushed (m).
 const BEYOND: f64 = 5e-3;
 
-/// How many blocked solutions are pushed where none is clear.
+/// Number of blocked solutions to push if none is clear.
 const PUSHED: usize = 8;
 
-/// The search for a clear solution of one target.
+/// Search for a clear solution of one target.
 pub(in crate::ik) struct ClearSearch<'s, 'm, 'p> {
     pub attempt: &'s mut Attempt<'m, 'p>,
     pub space: &'p ClearSpace<'p>,
     blocked: BlockedSolutions,
-    /// The contact that no motion of the arm ends, looked for when first asked for.
+    /// Contact that no motion of the arm ends, computed on first use.
     hopeless: OnceCell<Option<Blocked>>,
     push: Goals,
 }
 
-/// A clear solution, or the result where none is found.
+/// Clear solution, or the result without one.
 pub(super) type Found = Result<Point, Box<Solution>>;
 
-/// Why no solution is clear.
+/// Extent of a search that found no clear solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ik) enum Exhausted {
-    /// No other solution exists inside the limits.
+    /// All solutions inside the limits.
     All,
-    /// Other solutions may exist.
+    /// Some solutions; others may exist.
     Tried,
-    /// The monitor asked to stop.
+    /// Interrupted by the monitor.
     Interrupted,
 }
 
@@ -54,7 +54,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: OnceCell::new(), push }
     }
 
-    /// Whether the solution `q` is clear. If not, it is remembered.
+    /// Whether the solution `q` is clear. A blocked one is remembered.
     pub fn is_clear(&mut self, q: &[f64]) -> bool {
         self.attempt.budget.evaluations += 1;
         if self.space.holds(q) {
@@ -75,7 +75,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         self.hopeless.get_or_init(found).as_ref()
     }
 
-    /// The solution `q`, or one near it on its self-motion that is clear.
+    /// Returns the solution `q`, or a clear one near it on its self-motion.
     pub fn cleared(&mut self, q: Point) -> Option<Point> {
         if self.is_clear(&q) {
             return Some(q);
@@ -83,7 +83,8 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         if self.is_hopeless() { None } else { self.pushed(q) }
     }
 
-    /// Shifts the joints of the clear solution `q` by whole turns towards `start`, unless rounding takes it out of the clear space.
+    /// Shifts the joints of the clear solution `q` by whole turns towards `start`, unless rounding takes it out of the clear
+    /// space.
     pub fn bring_near(&self, start: &[f64], q: &mut Point) {
         let (context, mut near) = (self.attempt.context, q.clone());
         bring_near(context.robot(), context.bounds(), start, &mut near);
@@ -92,7 +93,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         }
     }
 
-    /// A clear solution that one of the candidates least deep in collision is pushed to.
+    /// Pushes the candidates least deep in collision along their self-motion. Returns the first that becomes clear.
     pub fn pushed_candidate(&mut self) -> Option<Point> {
         if self.is_hopeless() {
             return None;
@@ -108,17 +109,17 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         (is_solved && self.space.holds(&q)).then_some(q)
     }
 
-    /// Forgets what was tried.
+    /// Forgets the blocked solutions.
     pub fn forget_candidates(&mut self) {
         (self.blocked, self.hopeless) = (BlockedSolutions::new(), OnceCell::new());
     }
 
-    /// Whether anything reached the target.
+    /// Whether any blocked solution was found.
     pub fn has_candidates(&self) -> bool {
         self.blocked.count > 0
     }
 
-    /// The result where no solution is clear: the candidate least deep in collision.
+    /// Result without a clear solution: the candidate least deep in collision.
     pub fn in_collision(&self, exhausted: Exhausted) -> Option<Box<Solution>> {
         let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
         let margin = self.space.margin();
@@ -151,7 +152,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         }))
     }
 
-    /// The same, or `last`, which is not clear either, where no distance is known.
+    /// Result like [`in_collision`](Self::in_collision), or `last`, which is not clear either, if no distance is known.
     pub fn in_collision_or(&self, mut last: Solution, exhausted: Exhausted) -> Box<Solution> {
         if last.status == Status::Solved {
             last.status = exhausted.status();

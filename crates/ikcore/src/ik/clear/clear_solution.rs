@@ -1,4 +1,4 @@
-//! A solution that is clear, as `solve` returns it.
+//! Clear solution of one target, as `solve` returns it.
 
 use super::clear_search::{ClearSearch, Exhausted, Found};
 use crate::ik::attempt::Attempt;
@@ -10,10 +10,10 @@ use crate::obstacle::ClearSpace;
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
-/// A solution in `space`, or the configuration that comes nearest to one.
+/// Finds a solution in `space`, or the configuration nearest to one.
 ///
-/// The start of the caller is tried first, by descent, then branches of the closed form, then searches. Solutions that are not
-/// clear are pushed along their self-motion. Goals are descended on inside `space`.
+/// A descent from the caller's start is tried first, then the branches of the closed form, then searches. Blocked solutions are
+/// pushed along their self-motion. Goals are descended on inside `space`.
 pub(in crate::ik) fn clear_solution<'p>(
     attempt: &mut Attempt<'_, 'p>,
     space: &'p ClearSpace<'p>,
@@ -34,7 +34,8 @@ pub(in crate::ik) fn clear_solution<'p>(
     Solution { nearest, ..solution }
 }
 
-/// `solution` where it is clear, or one near it on its self-motion; with the status [`Status::InCollision`] where there is none.
+/// Returns `solution` if it is clear, or a clear one near it on its self-motion; otherwise sets the status
+/// [`Status::InCollision`].
 pub(in crate::ik) fn made_clear<'p>(
     attempt: &mut Attempt<'_, 'p>,
     space: &'p ClearSpace<'p>,
@@ -45,7 +46,7 @@ pub(in crate::ik) fn made_clear<'p>(
 }
 
 impl ClearSearch<'_, '_, '_> {
-    /// The first clear solution; an error is the result where none is found.
+    /// Finds the first clear solution; the error is the result without one.
     fn first(&mut self, start: Option<&[f64]>) -> Found {
         if let Some(start) = start
             && let Some(q) = self.near_start(start)
@@ -70,7 +71,7 @@ impl ClearSearch<'_, '_, '_> {
         self.by_restarts(x0)
     }
 
-    /// The configuration of `solution` if it is clear, or one near it on its self-motion.
+    /// Returns the configuration of `solution` if it is clear, or a clear one near it on its self-motion.
     fn checked(&mut self, solution: Solution) -> Found {
         if solution.status != Status::Solved {
             return Err(Box::new(solution));
@@ -79,13 +80,13 @@ impl ClearSearch<'_, '_, '_> {
         found.ok_or_else(|| self.in_collision_or(solution, Exhausted::Tried))
     }
 
-    /// A clear solution that one descent from `start` leads to.
+    /// Finds a clear solution by one descent from `start`.
     fn near_start(&mut self, start: &[f64]) -> Option<Point> {
         if self.attempt.problem.assess(start).score.solved {
             return self.cleared(Point::from_slice(start));
         }
         let robot = self.attempt.context.robot();
-        // The closed form of other arms names the nearest branch.
+        // Other arms get the nearest branch from their closed form.
         if robot.dof() <= robot.task_rank().pose && robot.solves_at_once() == Some(true) {
             return None;
         }
@@ -93,7 +94,7 @@ impl ClearSearch<'_, '_, '_> {
         if status == Status::Solved { self.cleared(q) } else { None }
     }
 
-    /// The clear solution nearest to `start`: of the branches of an arm that is not redundant, else of those found.
+    /// Finds the clear solution nearest to `start`: among all branches of a non-redundant arm, else among those found.
     fn nearest_to(&mut self, start: &[f64]) -> Found {
         let context = self.attempt.context;
         if context.robot().dof() <= context.robot().task_rank().pose {
@@ -111,7 +112,7 @@ impl ClearSearch<'_, '_, '_> {
         self.least_cost(&mut Goals::new(&[goal], context.robot(), context.bounds()), Some(start))
     }
 
-    /// The clear solution `q`, moved along its self-motion to the nearest optimum of the goals.
+    /// Moves the clear solution `q` along its self-motion to the nearest optimum of the goals.
     fn improved(&mut self, mut q: Point, start: Option<&[f64]>) -> Point {
         let context = self.attempt.context;
         if context.goals().is_empty() {

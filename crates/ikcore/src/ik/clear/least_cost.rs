@@ -1,19 +1,19 @@
-//! The clear solution with the least cost of goals, of those found.
+//! Clear solution with the least cost of the goals, among those found.
 
 use super::clear_search::{ClearSearch, Exhausted, Found};
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Goals;
 
-/// Solutions in a row that are no better, after which the search ends.
+/// Consecutive solutions without improvement after which the search ends.
 const PATIENCE: usize = 40;
 
-/// Costs that differ by less are the same.
+/// Largest difference of costs that count as equal.
 const SAME: f64 = 1e-9;
 
 impl ClearSearch<'_, '_, '_> {
-    /// Searches from `start`, or an indexed configuration, then from other starts. Each solution is made clear, then descends on
-    /// `goals` inside the clear space.
+    /// Searches from `start`, or an indexed configuration, then from other starts. Each solution is made clear, then descends
+    /// on `goals` inside the clear space.
     pub(super) fn least_cost(&mut self, goals: &mut Goals, start: Option<&[f64]>) -> Found {
         let context = self.attempt.context;
         let mut best: Option<(f64, Point)> = None;

@@ -1,8 +1,8 @@
-//! Solutions that keep clear of obstacles, and of the robot itself.
+//! Solutions clear of obstacles and of the robot itself.
 //!
-//! `clear_solution` is the call. A `ClearSearch` tests candidates: a configuration that is not clear is pushed along its
-//! self-motion, and remembered in case none is. `branches` takes candidates from the closed form, `restarts` from searches,
-//! `least_cost` compares several. Every solution that is returned as solved was certified by
+//! `clear_solution` is the call. A `ClearSearch` tests candidates: a blocked configuration is pushed along its self-motion, and
+//! remembered in case no solution is clear. `branches` takes candidates from the closed form, `restarts` from searches;
+//! `least_cost` compares several. Every solution returned as solved was certified by
 //! [`ClearSpace::holds`](crate::obstacle::ClearSpace::holds).
 
 mod blocked_solutions;

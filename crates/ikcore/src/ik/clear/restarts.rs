@@ -5,11 +5,11 @@ use crate::ik::solution::Solution;
 use crate::objective::Point;
 use crate::solver::Status;
 
-/// Solutions in a row that are not clear, nor can be pushed clear, after which the search ends.
+/// Consecutive blocked solutions after which the search ends.
 const PATIENCE: usize = 100;
 
 impl ClearSearch<'_, '_, '_> {
-    /// Searches from `x0`, then from other starts, until a solution is clear. An error is the result where none is found.
+    /// Searches from `x0`, then from other starts, until a solution is clear. The error is the result without one.
     pub(super) fn by_restarts(&mut self, mut x0: Point) -> Found {
         for _ in 0..PATIENCE {
             let solution = self.attempt.solve_from(&x0);
@@ -32,14 +32,14 @@ impl ClearSearch<'_, '_, '_> {
         Err(self.missed(reached))
     }
 
-    /// Remembers `q` if it solves the target but is not clear, as solvers that need values alone may end.
+    /// Remembers `q` if it solves the target but is blocked; derivative-free solvers may end at such a point.
     fn remember_reached(&mut self, q: &Point) {
         if self.attempt.problem.assess(q).score.solved {
             self.is_clear(q);
         }
     }
 
-    /// The result after `last`, which is neither clear nor on the way to anything better.
+    /// Result of a search that ended with `last`, which is not clear.
     fn missed(&self, last: Solution) -> Box<Solution> {
         match last.status {
             Status::OutOfReach | Status::Interrupted => Box::new(last),

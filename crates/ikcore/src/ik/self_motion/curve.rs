@@ -1,37 +1,37 @@
-//! A curve of the self-motion.
+//! Curve of a self-motion.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::vector::distance;
 
-/// A curve of configurations, all with the tip at the target and within the limits.
+/// Curve of configurations, all with the tip at the target and within the limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SelfMotion {
     pub(super) joints: usize,
-    /// The configurations (k, n), row by row.
+    /// Configurations (k, n), row by row.
     pub(super) values: Vec<f64>,
-    /// The last configuration is followed by the first, whole turns of joints without limits aside.
+    /// Whether the last configuration is followed by the first, whole turns of joints without limits aside.
     pub closed: bool,
-    /// The joint whose limit ends the curve at its first configuration.
+    /// Joint whose limit ends the curve at its first configuration.
     pub lower_cut: Option<usize>,
-    /// The joint whose limit ends the curve at its last configuration.
+    /// Joint whose limit ends the curve at its last configuration.
     pub upper_cut: Option<usize>,
-    /// The closed form proves that there is no other curve: each passes every arm angle.
+    /// Whether the closed form proves that there is no other curve: each passes every arm angle.
     pub complete: bool,
 }
 
 impl SelfMotion {
-    /// The configurations (k, n), row by row (rad, m).
+    /// Configurations (k, n), row by row (rad, m).
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The configurations, in order (rad, m).
+    /// Iterates over the configurations in order (rad, m).
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[f64]> {
         self.values.chunks_exact(self.joints)
     }
 
-    /// Its length in joint space (rad, m).
+    /// Length in joint space (rad, m).
     pub fn length(&self) -> f64 {
         self.iter().zip(self.iter().skip(1)).map(|(a, b)| distance(a, b)).sum()
     }

@@ -1,7 +1,7 @@
-//! A walk in long steps along the self-motion of an arm with one joint more than its task needs, joint limits ignored.
+//! Walk in long steps along a one-dimensional self-motion, without joint limits.
 //!
-//! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
-//! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.
+//! Predictor and corrector: a step follows the tangent and the curvature of the last step; Gauss-Newton brings it back to the
+//! task. Between two points, joints follow the cubics that match the tangents at both.
 
 use super::wrapped_limits::WrappedLimits;
 use crate::ik::goal_descent::difference;
@@ -11,22 +11,22 @@ use crate::math::vector::{distance, dot, norm};
 use crate::objective::{LeastSquares, Linearization, Point, TaskBlock};
 use crate::problem::Problem;
 
-/// Longest step (rad, m), unless asked otherwise.
+/// Default length of the longest step (rad, m).
 pub(in crate::ik) const LONGEST: f64 = 0.2;
-/// Shortest step: below, the curve has a corner, which is a singular posture.
+/// Shortest step; below it the curve has a corner, which is a singular posture.
 const SHORTEST: f64 = 0.01;
-/// Cosine of the angle by which a step may turn the curve's direction; beyond, it is halved.
+/// Cosine of the largest turn of the tangent in a step; a sharper step is halved.
 const SHARPEST: f64 = 0.94;
-/// Cosine above which the next step is twice as long.
+/// Cosine of the turn of the tangent above which the next step doubles.
 const STRAIGHT: f64 = 0.985;
-/// A step that was off the curve by more than this fraction of its length is halved.
+/// Largest distance of a predicted step from the curve, as a fraction of its length; a worse step is halved.
 const ASTRAY: f64 = 0.3;
-/// A step that was off the curve by more than this (rad, m) is corrected again: what is left goes with its square.
+/// Distance of a step from the curve (rad, m) above which it is corrected again; the remaining error is its square.
 const ASIDE: f64 = 0.01;
-/// Gauss-Newton steps back to the task.
+/// Largest number of Gauss-Newton corrections of a step.
 const MOST_CORRECTIONS: usize = 2;
 
-/// A place on a curve, and the curve's direction there.
+/// Point of a curve, and the unit tangent there.
 #[derive(Debug, Clone)]
 pub(in crate::ik) struct CurvePoint {
     pub q: Point,
@@ -42,33 +42,33 @@ impl CurvePoint {
     }
 }
 
-/// Outcome of one step.
+/// Outcome of one predictor-corrector step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ik) enum StepKind {
-    /// A stretch of the curve, from the place before to here.
+    /// Smooth piece of the curve.
     Smooth,
-    /// Past a corner: another curve may have been caught, what lies between is not known.
+    /// Step past a corner, possibly onto another curve; the piece between is unknown.
     Corner,
 }
 
-/// A walk along a curve.
+/// Walk along a curve.
 pub(in crate::ik) struct Walk<'w, 'p> {
     problem: &'w mut Problem<'p>,
     here: CurvePoint,
-    /// How fast the direction changes along the curve.
+    /// Change of the tangent per length.
     bend: Point,
     length: f64,
     longest: f64,
-    /// The task at the last place it was asked.
+    /// Linearization of the task where it was last evaluated.
     at: Linearization,
-    /// Evaluations of the forward kinematics so far, and the most there may be.
+    /// Evaluations of the forward kinematics made, and their largest number.
     evaluations: usize,
     max_evaluations: usize,
 }
 
 impl<'w, 'p> Walk<'w, 'p> {
-    /// At `q`, a solution, on the only curve through it; None where the task leaves no freedom, or more than that of a curve,
-    /// or where no evaluation is left to tell; None for several tips.
+    /// Starts at the solution `q` of the only curve through it. `None` if the task leaves no freedom or more than one degree of
+    /// it, without evaluations, and for several tips.
     pub fn enter(problem: &'w mut Problem<'p>, q: &[f64], max_evaluations: usize, longest: f64) -> Option<Self> {
         if max_evaluations == 0 {
             return None;
@@ -84,7 +84,7 @@ impl<'w, 'p> Walk<'w, 'p> {
             let mut unit = Point::from_elem(0.0, q.len());
             unit[j] = 1.0;
             let free = tangent(&at, q, &unit);
-            // The trace of the projection on what the task leaves free is the dimension of that.
+            // The trace of the null-space projection is the dimension of the null space.
             freedom += free[j];
             let length = norm(&free);
             if length > most_free {
@@ -97,17 +97,17 @@ impl<'w, 'p> Walk<'w, 'p> {
         is_curve.then(|| Self { problem, here, bend, length: longest, longest, at, evaluations: 1, max_evaluations })
     }
 
-    /// Where it has come to.
+    /// Current point.
     pub fn here(&self) -> &CurvePoint {
         &self.here
     }
 
-    /// Evaluations of the forward kinematics so far.
+    /// Evaluations of the forward kinematics made.
     pub fn evaluations(&self) -> usize {
         self.evaluations
     }
 
-    /// Goes on from `place`, the other way.
+    /// Restarts at `place` in the opposite direction.
     pub fn turn_back_at(&mut self, place: &CurvePoint) {
         let along = place.along.iter().map(|slope| -slope).collect();
         self.here = CurvePoint { q: place.q.clone(), along };
@@ -115,7 +115,7 @@ impl<'w, 'p> Walk<'w, 'p> {
         self.length = self.longest;
     }
 
-    /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
+    /// Takes the next step. Returns the point before it, and the kind of step; `None` if no evaluations are left.
     pub fn step(&mut self) -> Option<(CurvePoint, StepKind)> {
         while self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let (there, aside) = self.try_step();
@@ -140,7 +140,7 @@ impl<'w, 'p> Walk<'w, 'p> {
         None
     }
 
-    /// A step of the present length, and by how much it was off the curve before it was brought back.
+    /// Computes a step of the current length, and its distance from the curve before the correction.
     fn try_step(&mut self) -> (CurvePoint, f64) {
         let (h, CurvePoint { q: from, along }) = (self.length, &self.here);
         let predicted: Point = (0..from.len()).map(|j| from[j] + h * (along[j] + 0.5 * h * self.bend[j])).collect();
@@ -163,7 +163,7 @@ impl<'w, 'p> Walk<'w, 'p> {
 const NOWHERE: [f64; MAX_DOF] = [f64::NEG_INFINITY; MAX_DOF];
 const ANYWHERE: [f64; MAX_DOF] = [f64::INFINITY; MAX_DOF];
 
-/// What of `direction` the linearised task leaves free.
+/// Projects `direction` onto the null space of the linearised task.
 fn tangent(at: &Linearization, q: &[f64], direction: &[f64]) -> Point {
     let preferred: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
     let mut out = Point::from_slice(&preferred);
@@ -171,12 +171,12 @@ fn tangent(at: &Linearization, q: &[f64], direction: &[f64]) -> Point {
     difference(&out, q)
 }
 
-/// A Gauss-Newton step.
+/// Takes a Gauss-Newton step.
 fn back_to_task(at: &Linearization, from: &[f64], q: &mut [f64]) {
     unbounded(at, from).write(q);
 }
 
-/// The step from `x` without limits.
+/// Gauss-Newton step from `x` without limits.
 fn unbounded<'a>(at: &'a Linearization, x: &'a [f64]) -> BoxStep<'a> {
     let (n, TaskBlock { columns, residual }) = (x.len(), &at.first);
     let lambda = least_damping(&columns[..n]);

@@ -1,4 +1,4 @@
-//! `self_motion`: every curve of configurations that keep the tip at a target.
+//! All curves of configurations that keep the tip at a target: `self_motion`.
 
 use super::curve::SelfMotion;
 use super::cut::parts;
@@ -18,29 +18,29 @@ use crate::robot::Robot;
 use crate::solver::{LevenbergMarquardt, Monitor, Status};
 use crate::task::Target;
 
-/// Values of the parameter of a closed form at which curves are looked for.
+/// Number of parameter values of a closed form that are searched for curves.
 const VALUES: usize = 64;
 
-/// A configuration nearer to a curve than this (rad, m) is on it.
+/// Distance from a curve (rad, m) within which a configuration is on it.
 const ON_CURVE: f64 = 0.01;
 
-/// Solutions in a row on known curves after which the search for others ends.
+/// Consecutive solutions on known curves after which the search ends.
 const PATIENCE: usize = 40;
 
-/// Smallest and largest spacing (rad, m).
+/// Smallest and largest spacing of points (rad, m).
 const SPACINGS: [f64; 2] = [1e-3, 0.5];
 
-/// Points brought to the target between two looks at the monitor.
+/// Points brought to the target between two polls of the monitor.
 const POINTS_BETWEEN_LOOKS: usize = 64;
 
-/// How to follow a self-motion.
+/// Options of [`self_motion`].
 #[derive(Debug, Clone)]
 pub struct SelfMotionOptions {
-    /// Curves are sorted by their distance from this configuration (n,). None: by length, the longest first.
+    /// Reference (n,): curves are sorted by their distance from it. `None` means by length, the longest first.
     pub start: Option<Vec<f64>>,
     /// Largest distance |q - q'| of consecutive points (rad, m).
     pub spacing: f64,
-    /// Position limits to keep. None: the robot's.
+    /// Position limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
     /// Seed of the random draws of a search.
     pub seed: u64,
@@ -52,10 +52,11 @@ impl Default for SelfMotionOptions {
     }
 }
 
-/// All curves of the self-motion of an arm with one joint more than the task needs: seven joints and a pose, four and a position.
+/// Returns all self-motion curves of an arm with one joint more than the task needs: seven joints and a pose, four and a
+/// position.
 ///
-/// Curves are found by the closed form, at 64 values of its parameter, or by a search from random starts; each is followed in short
-/// steps, past the joint limits, which then cut it.
+/// The closed form, at 64 values of its parameter, or a search from random starts finds a point of each curve; the curve is
+/// then traced in short steps, past the joint limits, which cut it afterwards.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] for an arm without one joint more than the task needs.
@@ -118,7 +119,7 @@ fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
     })
 }
 
-/// The curves through these configurations.
+/// Traces the curves through these configurations.
 fn through(
     seeds: &[Point],
     attempt: &mut Attempt<'_, '_>,
@@ -140,7 +141,7 @@ fn through(
     curves
 }
 
-/// The curves through solutions from random starts, until [`PATIENCE`] of them in a row are on known ones.
+/// Traces the curves through solutions from random starts, until [`PATIENCE`] consecutive solutions are on known curves.
 fn searched(attempt: &mut Attempt<'_, '_>, limits: &WrappedLimits<'_>, spacing: f64) -> Vec<TracedCurve> {
     let mut curves: Vec<TracedCurve> = Vec::new();
     let mut x0 = attempt.first_start(None);
@@ -163,7 +164,7 @@ fn searched(attempt: &mut Attempt<'_, '_>, limits: &WrappedLimits<'_>, spacing: 
     curves
 }
 
-/// Brings the points of a curve to the target.
+/// Projects the points of a curve onto the target.
 fn make_exact(curve: &mut TracedCurve, attempt: &mut Attempt<'_, '_>) {
     let descent = LevenbergMarquardt::default();
     let anywhere = Bounds::from_ranges(
@@ -177,7 +178,7 @@ fn make_exact(curve: &mut TracedCurve, attempt: &mut Attempt<'_, '_>) {
     }
 }
 
-/// By the distance from `start`, or by length.
+/// Sorts by the distance from `start`, or by length.
 fn sort(curves: &mut [SelfMotion], start: Option<&[f64]>) {
     match start {
         Some(start) => {

@@ -1,4 +1,4 @@
-//! What joint limits leave of a traced curve.
+//! Clips a traced curve to the joint limits.
 
 use smallvec::SmallVec;
 
@@ -10,17 +10,17 @@ use crate::math::hermite::Cubic;
 use crate::math::vector::distance;
 use crate::objective::Point;
 
-/// A part of a curve within the limits, whole turns aside.
+/// Part of a curve within the limits, whole turns aside.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Part {
     pub points: Vec<Point>,
-    /// The whole of a closed curve: the last point is followed by the first.
+    /// Whether the part is a whole closed curve: the last point is followed by the first.
     pub closed: bool,
-    /// The first and the last point are where the curve leaves the limits, not where it was no longer followed.
+    /// Whether the first and the last point are where the curve leaves the limits, not where tracing ended.
     pub cut: [bool; 2],
 }
 
-/// The parts of a curve within the limits, in its order.
+/// Returns the parts of a curve within the limits, in order.
 pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part> {
     let points = &curve.points;
     let steps = if curve.closed { points.len() } else { points.len().saturating_sub(1) };
@@ -50,7 +50,7 @@ pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part
     parts
 }
 
-/// Joins the last part of a closed curve with the first, where both are within the limits at its first point.
+/// Joins the last part of a closed curve with the first if the first point of the curve is within the limits.
 fn join_ends(parts: &mut Vec<Part>, points: &[CurvePoint]) {
     let begins_inside = parts.first().is_some_and(|first| !first.cut[0] && first.points[0] == points[0].q);
     if !begins_inside {
@@ -71,7 +71,7 @@ fn join_ends(parts: &mut Vec<Part>, points: &[CurvePoint]) {
     }
 }
 
-/// The cubics that joints follow over a step, each beginning near the middle of its limits.
+/// Cubics of the joints over a step, each starting near the middle of its limits.
 fn ways(limits: &WrappedLimits<'_>, begin: &CurvePoint, end: &CurvePoint) -> SmallVec<[Cubic; MAX_DOF]> {
     let there = limits.apart(&end.q, &begin.q);
     let length = distance(&there, &Point::from_elem(0.0, there.len()));

@@ -1,8 +1,8 @@
-//! The self-motion of an arm with one joint more than its task: curves of configurations that keep the tip at a target.
+//! Self-motion of an arm with one joint more than its task needs: curves of configurations that keep the tip at a target.
 //!
-//! `curves` is the call. `seeds` finds configurations on the curves: by the closed form, which leaves out no branch, or by search.
-//! `trace` walks a curve past the joint limits by the steps of `curve_walk`; `cut` keeps what lies within the limits, which
-//! `wrapped_limits` knows up to whole turns; `place` makes a `curve` of it.
+//! `curves` is the call. `seeds` finds configurations on the curves: by the closed form, which omits no branch, or by search.
+//! `trace` walks along a curve past the joint limits by the steps of `curve_walk`; `cut` clips it to the limits, which
+//! `wrapped_limits` holds up to whole turns; `place` turns the parts into a `curve`.
 
 mod curve;
 mod curve_walk;

@@ -10,12 +10,12 @@ use crate::math::vector::{distance, norm};
 use crate::objective::{Bounds, Point};
 use crate::solver::LevenbergMarquardt;
 
-/// Every point is at least as near to the target as twice this (m, rad).
+/// Accuracy of the points: each reaches the target to twice this (m, rad).
 pub(super) const EXACT: f64 = 1e-9;
 
-/// The curve of a part, at the whole turns that bring it within the limits; two or more where it takes several turns. A point that
-/// does not reach the target from within the limits is left out, and so is an end that a limit touches at such a slant that its
-/// solution is elsewhere; a gap wider than `spacing` parts the curve.
+/// Returns the curve of a part, at the whole turns that bring it within the limits; several curves if it takes several turns.
+/// Points that do not reach the target from within the limits are omitted; so is an end where the curve grazes its limit and
+/// the solution at the limit is elsewhere. A gap wider than `spacing` divides the curve.
 pub(super) fn placed(
     part: Part,
     spacing: f64,
@@ -28,7 +28,7 @@ pub(super) fn placed(
     follow(&mut points, limits);
     let anchor = start.map_or(0, |start| nearest_to(&points, start, limits));
     let Some(winding) = fitted(&mut points, anchor, closed, bounds, limits) else {
-        // A joint of several turns winds out of its limits.
+        // A joint of several turns leaves its limits along the curve.
         let half = points.len() / 2;
         if half < 2 {
             return Vec::new();
@@ -63,8 +63,8 @@ pub(super) fn placed(
     runs.into_iter().enumerate().map(curve).collect()
 }
 
-/// The configuration near `q` that reaches the target from within the limits; where they cut the curve, with the joint nearest to a limit
-/// at it.
+/// Returns the configuration near `q` that reaches the target from within the limits. At a cut, the joint nearest to a limit is
+/// fixed at the limit.
 fn settled(mut q: Point, is_cut: bool, attempt: &mut Attempt<'_, '_>) -> Option<Point> {
     let mut bounds = attempt.context.bounds().clone();
     if is_cut && let Some(joint) = nearest_limit(&q, &bounds) {
@@ -92,14 +92,14 @@ fn follow(points: &mut [Point], limits: &WrappedLimits<'_>) {
     }
 }
 
-/// The index of the point nearest to `start`, whole turns aside.
+/// Index of the point nearest to `start`, whole turns aside.
 fn nearest_to(points: &[Point], start: &[f64], limits: &WrappedLimits<'_>) -> usize {
     let away = |i: &usize| norm(&limits.apart(&points[*i], start));
     (0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }
 
-/// Shifts the points by whole turns within the limits, point `anchor` near the middle. Returns whether a joint with limits ends another turn away than it began; None
-/// where the points do not fit.
+/// Shifts the points by whole turns within the limits, point `anchor` near the middle. Returns whether a joint with limits ends
+/// a whole turn from its start; `None` if the points do not fit.
 fn fitted(
     points: &mut [Point],
     anchor: usize,
@@ -125,7 +125,7 @@ fn fitted(
     Some(winding)
 }
 
-/// The joint nearest to one of its limits.
+/// Joint nearest to one of its limits.
 fn nearest_limit(q: &[f64], bounds: &Bounds) -> Option<usize> {
     let room = |j: &usize| (q[*j] - bounds.lower()[*j]).min(bounds.upper()[*j] - q[*j]);
     (0..q.len()).min_by(|a, b| room(a).total_cmp(&room(b)))

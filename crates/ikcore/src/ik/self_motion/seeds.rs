@@ -5,18 +5,18 @@ use crate::objective::Point;
 use crate::robot::{JointKind, Robot};
 use crate::task::Target;
 
-/// Configurations, and whether each curve passes through one of them.
+/// Configurations on curves, and whether every curve contains one of them.
 pub(super) struct Seeds {
     pub seeds: Vec<Point>,
     pub complete: bool,
 }
 
-/// Configurations of every branch at `count` values of the parameter, limits aside; None without a closed form.
+/// Configurations of every branch at `count` values of the parameter, limits aside; `None` without a closed form.
 pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count: usize) -> Option<Seeds> {
     let (Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
     let family = robot.family(pose)?;
     let bounds = attempt.context.bounds();
-    // Curves are traced beyond the limits of joints that turn.
+    // Tracing ignores the limits of revolute joints.
     let slides = |j: &usize| robot.joints()[*j].kind == JointKind::Prismatic;
     let limits = |values: &[f64], open: f64| -> Vec<f64> {
         (0..robot.dof()).map(|j| if slides(&j) { values[j] } else { open }).collect()

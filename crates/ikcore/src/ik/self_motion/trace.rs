@@ -1,4 +1,4 @@
-//! Tracing of a curve of the self-motion in short steps, joint limits aside.
+//! Tracing of a self-motion curve in short steps, without joint limits.
 
 use super::curve_walk::{CurvePoint, StepKind, Walk};
 use super::wrapped_limits::WrappedLimits;
@@ -7,25 +7,26 @@ use crate::problem::Problem;
 use crate::solver::Monitor;
 
 /// Longest step as a fraction of the spacing: the correction of a step makes it longer by at most a third.
-const SHARE: f64 = 0.75;
+const STEP_FRACTION: f64 = 0.75;
 
 /// Longest curve (rad, m).
 const MOST_LENGTH: f64 = 100.0;
 
-/// Steps between two looks at the monitor.
+/// Steps between two polls of the monitor.
 const STEPS_BETWEEN_LOOKS: usize = 64;
 
-/// A curve, its points no farther apart than the spacing.
+/// Traced curve, its points no farther apart than the spacing.
 #[derive(Debug, Clone)]
 pub(super) struct TracedCurve {
     pub points: Vec<CurvePoint>,
-    /// The last point is followed by the first, whole turns aside.
+    /// Whether the last point is followed by the first, whole turns aside.
     pub closed: bool,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
 }
 
-/// The curve through the solution `seed`; None where that is on no single curve. A joint that slides ends it at its limits.
+/// Traces the curve through the solution `seed`; `None` if it is not on exactly one curve. The limits of a prismatic joint end
+/// the curve.
 pub(super) fn traced(
     problem: &mut Problem<'_>,
     limits: &WrappedLimits<'_>,
@@ -33,14 +34,14 @@ pub(super) fn traced(
     spacing: f64,
     monitor: &mut dyn Monitor,
 ) -> Option<TracedCurve> {
-    let longest = SHARE * spacing;
+    let longest = STEP_FRACTION * spacing;
     let most_steps = (MOST_LENGTH / longest) as usize;
     let mut walk = Walk::enter(problem, seed, 16 * most_steps, longest)?;
     let begin = walk.here().clone();
     let mut points = vec![begin.clone()];
     let closed = walk_on(&mut walk, limits, spacing, most_steps, monitor, &mut points);
     if !closed {
-        // The other way, in front of what was found.
+        // Opposite direction: its points precede those found before.
         walk.turn_back_at(&begin);
         let mut others = vec![walk.here().clone()];
         walk_on(&mut walk, limits, spacing, most_steps, monitor, &mut others);
@@ -54,7 +55,7 @@ pub(super) fn traced(
     Some(TracedCurve { points, closed, evaluations })
 }
 
-/// Adds points until the curve closes, which it returns, or ends.
+/// Adds points until the curve closes or ends. Returns whether it closes.
 fn walk_on(
     walk: &mut Walk<'_, '_>,
     limits: &WrappedLimits<'_>,
@@ -71,7 +72,7 @@ fn walk_on(
         let Some((from, step)) = walk.step() else { return false };
         let there = walk.here();
         let length = distance(&there.q, &from.q);
-        // Past a corner the walk may be on another curve.
+        // The walk may be on another curve after a corner.
         if length > spacing || step == StepKind::Corner && length > 0.5 * spacing || limits.slid_out(&there.q) {
             return false;
         }
@@ -84,7 +85,7 @@ fn walk_on(
 }
 
 impl TracedCurve {
-    /// Whether `q` lies on the curve, nearer to it than `near` (rad, m).
+    /// Whether `q` is nearer to the curve than `near` (rad, m).
     pub fn passes(&self, limits: &WrappedLimits<'_>, q: &[f64], near: f64, spacing: f64) -> bool {
         let may_reach = |at: &[f64]| (0..q.len()).all(|j| limits.turned(j, q[j] - at[j]).abs() < spacing + near);
         self.points.iter().filter(|at| may_reach(&at.q)).any(|at| {

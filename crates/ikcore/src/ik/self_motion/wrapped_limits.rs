@@ -15,16 +15,16 @@ use crate::robot::Robot;
 pub(in crate::ik) struct WrappedLimits<'a> {
     bounds: &'a Bounds,
     middle: Point,
-    /// Which joints repeat themselves after a turn.
+    /// Whether each joint is periodic by whole turns.
     repeats: SmallVec<[bool; MAX_DOF]>,
 }
 
-/// Pieces of a way, from share to share of it.
+/// Pieces of a path as pairs of fractions of it.
 pub(in crate::ik) type Pieces = SmallVec<[[f64; 2]; 4]>;
 
 impl<'a> WrappedLimits<'a> {
     pub fn new(robot: &Robot, bounds: &'a Bounds) -> Self {
-        // A joint that turns without end has no middle; any angle may serve.
+        // Any angle may serve as the middle of a joint without limits.
         let middle = |(lower, upper): (f64, f64)| {
             if lower.is_finite() && upper.is_finite() { 0.5 * (lower + upper) } else { 0.0 }
         };
@@ -32,7 +32,7 @@ impl<'a> WrappedLimits<'a> {
         Self { bounds, middle: bounds.ranges().map(middle).collect(), repeats }
     }
 
-    /// The same, with joints that turn without end near `reference` instead of zero.
+    /// Replaces the middle of joints without limits by their `reference` instead of zero.
     pub fn around(mut self, reference: &[f64]) -> Self {
         for ((middle, value), (lower, upper)) in self.middle.iter_mut().zip(reference).zip(self.bounds.ranges()) {
             if !(lower.is_finite() && upper.is_finite()) {
@@ -42,42 +42,42 @@ impl<'a> WrappedLimits<'a> {
         self
     }
 
-    /// How many joints there are.
+    /// Number of joints.
     pub fn joints(&self) -> usize {
         self.repeats.len()
     }
 
-    /// Whether joint `j` repeats itself after a turn.
+    /// Whether joint `j` is periodic by whole turns.
     pub fn repeats(&self, j: usize) -> bool {
         self.repeats[j]
     }
 
-    /// Whether a joint that does not repeat itself is outside its limits.
+    /// Whether a joint that is not periodic is outside its limits.
     pub fn slid_out(&self, q: &[f64]) -> bool {
         (0..q.len()).any(|j| !self.repeats[j] && !self.is_within(j, q[j]))
     }
 
-    /// a - b, whole turns aside.
+    /// Difference a - b, whole turns aside.
     pub fn apart(&self, a: &[f64], b: &[f64]) -> Point {
         (0..a.len()).map(|j| self.turned(j, a[j] - b[j])).collect()
     }
 
-    /// `angle` of joint `j`, brought near zero by whole turns.
+    /// Shifts `angle` of joint `j` by whole turns near zero.
     #[inline]
     pub fn turned(&self, j: usize, angle: f64) -> f64 {
         if angle.abs() > PI && self.repeats[j] { without_turns(angle) } else { angle }
     }
 
-    /// The angle of joint `j`, by whole turns as near as it can be to the middle of its limits.
+    /// Shifts `angle` of joint `j` by whole turns as near as possible to the middle of its limits.
     #[inline]
     pub fn near_middle(&self, j: usize, angle: f64) -> f64 {
         self.middle[j] + self.turned(j, angle - self.middle[j])
     }
 
-    /// The pieces of a short way that lie within the limits. Joints follow `ways`, which begin near their middles.
+    /// Pieces of a short path within the limits. Joints follow the cubics `ways`, which start near their middles.
     pub fn pieces(&self, ways: &[Cubic]) -> Pieces {
         let mut fractions: SmallVec<[f64; 8]> = smallvec![0.0, 1.0];
-        // Where a joint of exactly one turn passes its limit: it is inside on both sides, but a turn away.
+        // Crossings of the limit of a joint with a range of exactly one turn: both sides are inside, but a turn apart.
         let mut jumps: SmallVec<[f64; 4]> = smallvec![];
         for (j, way) in ways.iter().enumerate() {
             let [low, high] = way.hull();
@@ -100,7 +100,8 @@ impl<'a> WrappedLimits<'a> {
         let mut pieces = Pieces::new();
         for [from, to] in fractions.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to) {
             if is_inside(0.5 * (from + to)) {
-                // A limit that is only touched, or that a joint of more than a turn passes, cuts nothing.
+                // A limit that is only touched, or that a joint with a range of more than one turn passes, does not cut the
+                // path.
                 match pieces.last_mut() {
                     Some([_, end]) if *end == from && !jumps.contains(&from) => *end = to,
                     _ => pieces.push([from, to]),
@@ -114,7 +115,7 @@ impl<'a> WrappedLimits<'a> {
         self.repeats[j] && (self.bounds.upper()[j] - self.bounds.lower()[j] - TAU).abs() < 1e-9
     }
 
-    /// The limits of joint `j`, and where they are met again a turn away.
+    /// Limits of joint `j`, and the same limits one turn away.
     fn limits_near(&self, j: usize) -> impl Iterator<Item = f64> {
         let turns = if self.repeats[j] { -1..=1 } else { 0..=0 };
         let (lower, upper) = (self.bounds.lower()[j], self.bounds.upper()[j]);

@@ -1,4 +1,4 @@
-//! Tables of arms as in their data sheets: one DH row per joint, lengths in m, angles in degrees.
+//! Arm tables as in data sheets: one DH row per joint, lengths in m, angles in degrees.
 
 use nalgebra::Vector3;
 
@@ -7,19 +7,19 @@ use crate::load::dh::{Dh, DhTable};
 use crate::math::pose;
 use crate::robot::{ChainBuilder, JointKind, Robot};
 
-/// A robot arm as a table.
+/// Robot arm as a table.
 pub(super) struct Arm {
     pub convention: Dh,
     /// Rotation of DH frame 0 about the x axis of the base (deg).
     pub base_roll: f64,
-    /// The maker's names of the joints, as in its descriptions for ROS.
+    /// Joint names of the maker's ROS descriptions.
     pub joint_names: &'static [&'static str],
     pub joints: &'static [DhRow],
     /// Distance of the flange from the last DH frame, along its z (m).
     pub flange: f64,
 }
 
-/// One joint: its DH parameters (m, deg) and limits.
+/// Joint with its DH parameters (m, deg) and limits.
 pub(super) struct DhRow {
     a: f64,
     alpha: f64,
@@ -28,8 +28,8 @@ pub(super) struct DhRow {
     limits: JointRange,
 }
 
-/// Position and velocity limits (rad, rad/s), and rated acceleration and jerk (rad/s^2, rad/s^3; infinite where the maker
-/// publishes none).
+/// Position and velocity limits of a joint (rad, rad/s), and its rated acceleration and jerk (rad/s^2, rad/s^3; infinite if
+/// the maker publishes none).
 #[derive(Clone, Copy)]
 pub(super) struct JointRange {
     kind: JointKind,
@@ -41,29 +41,29 @@ pub(super) struct JointRange {
 }
 
 impl JointRange {
-    /// The same joint with the maker's acceleration and jerk limits (rad/s^2, rad/s^3).
+    /// Adds the maker's acceleration and jerk limits (rad/s^2, rad/s^3).
     pub(super) const fn rated(self, acceleration: f64, jerk: f64) -> Self {
         Self { acceleration, jerk, ..self }
     }
 }
 
-/// A row: a and d in m, alpha and theta in degrees.
+/// Creates a row: a and d in m, alpha and theta in degrees.
 pub(super) const fn row(a: f64, alpha: f64, d: f64, theta: f64, limits: JointRange) -> DhRow {
     DhRow { a, alpha, d, theta, limits }
 }
 
-/// JointRange printed in rad and rad/s.
+/// Creates limits from values in rad and rad/s.
 pub(super) const fn radians(lower: f64, upper: f64, velocity: f64) -> JointRange {
     let (acceleration, jerk) = (f64::INFINITY, f64::INFINITY);
     JointRange { kind: JointKind::Revolute, lower, upper, velocity, acceleration, jerk }
 }
 
-/// JointRange printed in degrees and degrees per second.
+/// Creates limits from values in degrees and degrees per second.
 pub(super) const fn degrees(lower: f64, upper: f64, velocity: f64) -> JointRange {
     radians(lower.to_radians(), upper.to_radians(), velocity.to_radians())
 }
 
-/// A continuous joint, its speed in degrees per second.
+/// Creates the limits of a continuous joint, with the speed in degrees per second.
 pub(super) const fn endless(velocity: f64) -> JointRange {
     JointRange { kind: JointKind::Continuous, ..radians(f64::NEG_INFINITY, f64::INFINITY, velocity.to_radians()) }
 }

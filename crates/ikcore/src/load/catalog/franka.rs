@@ -6,8 +6,8 @@ use crate::load::dh::Dh::Modified;
 /// Distance of the flange from frame 7 (m).
 const FLANGE: f64 = 0.107;
 
-/// Franka Emika Robot (Panda): modified DH parameters and joint limits, up to jerk, of the maker's control interface documentation,
-/// "Robot and interface specifications".
+/// Franka Emika Robot (Panda): modified DH parameters and joint limits, including jerk, from the maker's control interface
+/// documentation, "Robot and interface specifications".
 pub(super) const PANDA: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,
@@ -32,8 +32,8 @@ pub(super) const PANDA: Arm = Arm {
     flange: FLANGE,
 };
 
-/// Franka Research 3: the geometry of the Panda with its own joint limits, up to jerk; same document (its table for the FR3), and
-/// `rate_limiting.h` of libfranka 0.10 and later, which has the same accelerations and jerks.
+/// Franka Research 3: the geometry of the Panda with its own joint limits, including jerk, from the same document (its table
+/// for the FR3); `rate_limiting.h` of libfranka 0.10 and later has the same accelerations and jerks.
 pub(super) const FR3: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,

@@ -3,8 +3,8 @@
 use super::arm::{Arm, degrees, endless, row};
 use crate::load::dh::Dh::Standard;
 
-/// Gen3, seven joints with spherical wrist: classical DH parameters, joint ranges and greatest joint speeds of the
-/// maker's user guide. Its lengths are rounded to 0.1 mm. The last row reaches to the interface module.
+/// Gen3, seven joints with spherical wrist: classical DH parameters, joint ranges and largest joint speeds of the maker's
+/// user guide. The lengths are rounded to 0.1 mm. The last row extends to the interface module.
 pub(super) const GEN3: Arm = Arm {
     convention: Standard,
     base_roll: 180.0,

@@ -3,7 +3,7 @@
 use super::arm::{Arm, degrees, row};
 use crate::load::dh::Dh::{Modified, Standard};
 
-/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. The sign of joint 4 is that of the
+/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, up to the flange. The sign of joint 4 is that of the
 /// real arm, opposite to joint 2.
 pub(super) const IIWA14: Arm = Arm {
     convention: Standard,
@@ -21,7 +21,7 @@ pub(super) const IIWA14: Arm = Arm {
     flange: 0.0,
 };
 
-/// LBR iiwa 7 R800: the same arm, shorter and faster; data sheet.
+/// LBR iiwa 7 R800: the same arm, shorter and faster; from its data sheet.
 pub(super) const IIWA7: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
@@ -38,8 +38,8 @@ pub(super) const IIWA7: Arm = Arm {
     flange: 0.0,
 };
 
-/// KR 210 R2700 extra: dimensions, ranges and speeds of the data sheet. Joints read as on the controller: A2 = -90 with
-/// A3 = 90 holds the upper arm upright and the forearm level.
+/// KR 210 R2700 extra: dimensions, ranges and speeds of the data sheet. Joint values match the controller: A2 = -90 with A3 =
+/// 90 holds the upper arm upright and the forearm level.
 pub(super) const KR210: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,

@@ -1,4 +1,4 @@
-//! Built-in robots by name. To add one, write its [`Arm`] and list it in [`ROBOTS`].
+//! Built-in robots by name. To add a robot, write its [`Arm`] and list it in [`ROBOTS`].
 
 use super::arm::Arm;
 use super::{franka, hydraulic, kinova, kuka, universal_robots};
@@ -9,7 +9,7 @@ use crate::robot::Robot;
 enum Source {
     /// A Denavit-Hartenberg table.
     Table(&'static Arm),
-    /// Code, for robots that a table cannot describe.
+    /// Constructor, for robots that a table cannot describe.
     Made(fn() -> Result<Robot>),
 }
 
@@ -33,12 +33,12 @@ const ROBOTS: &[(&str, Source)] = &[
 ];
 
 impl Robot {
-    /// Names of the built-in robots, in alphabetical order.
+    /// Returns the names of the built-in robots, in alphabetical order.
     pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
         ROBOTS.iter().map(|(name, _)| *name)
     }
 
-    /// A built-in robot.
+    /// Returns a built-in robot.
     ///
     /// # Errors
     /// [`Error::UnknownRobot`], which lists the names.
@@ -55,8 +55,8 @@ impl Robot {
     }
 }
 
-/// Five links of 1 m: the planar arm of this library's experiments after Cheng et al., IEEE Access 2020, whose own link
-/// lengths and limits are not printed.
+/// Planar arm with five links of 1 m: the arm of this library's experiments after Cheng et al., IEEE Access 2020, which does
+/// not print its link lengths and limits.
 fn planar5() -> Result<Robot> {
     Robot::planar(&[1.0; 5])
 }

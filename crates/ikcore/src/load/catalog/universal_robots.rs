@@ -1,20 +1,20 @@
-//! Arms of Universal Robots: standard DH parameters of the maker's article "DH parameters for calculations of
-//! kinematics and dynamics", joint ranges and speeds of the data sheets. Frame 0 is the maker's base frame; that of the
-//! ROS descriptions is turned by 180 degrees about z.
+//! Arms of Universal Robots: standard DH parameters of the maker's article "DH parameters for calculations of kinematics and
+//! dynamics", joint ranges and speeds of the data sheets. Frame 0 is the maker's base frame; the base frame of the ROS
+//! descriptions is rotated by 180 degrees about z.
 
 use super::arm::{Arm, JointRange, degrees, endless, row};
 use crate::load::dh::Dh::Standard;
 
-/// Names in the maker's descriptions for ROS.
+/// Joint names of the maker's ROS descriptions.
 const JOINTS: [&str; 6] =
     ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"];
 
-/// A joint with a range of two full turns, its speed in degrees per second.
+/// Creates the limits of a joint with a range of two full turns, with the speed in degrees per second.
 const fn two_turns(speed: f64) -> JointRange {
     degrees(-360.0, 360.0, speed)
 }
 
-/// UR3e: the last joint is continuous.
+/// UR3e, whose last joint is continuous.
 pub(super) const UR3E: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,

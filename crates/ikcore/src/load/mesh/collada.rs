@@ -1,4 +1,4 @@
-//! COLLADA (DAE): geometries, placed by the nodes of a scene.
+//! COLLADA (DAE) reader: geometries, placed by the nodes of a scene.
 //!
 //! Lengths are converted from the unit of the file, and its up axis is ignored: RViz does the same, coal ignores both.
 
@@ -12,9 +12,9 @@ use super::parsed::{Parsed, Triangles, number};
 
 type Problem<T> = Result<T, String>;
 
-/// Deeper scenes are refused: they may contain themselves.
+/// Largest depth of a scene; deeper ones may contain themselves.
 const DEEPEST: usize = 64;
-/// Larger scenes are refused: nodes may repeat others, and these again others.
+/// Largest number of nodes; nodes may repeat other nodes, and these again others.
 const MOST_NODES: usize = 100_000;
 
 pub(super) fn parse(text: &str) -> Parsed {
@@ -27,7 +27,7 @@ pub(super) fn parse(text: &str) -> Parsed {
                 file.add_node(node, &file.to_metres, &mut read, 0)?;
             }
         }
-        // A file without a scene holds its geometries at the origin.
+        // Files without a scene have their geometries at the origin.
         None => {
             for geometry in document.descendants().filter(|node| node.has_tag_name_any("geometry")) {
                 file.add_geometry(geometry, &file.to_metres, &mut read)?;
@@ -37,7 +37,7 @@ pub(super) fn parse(text: &str) -> Parsed {
     Ok(read)
 }
 
-/// Elements are found by their local names: files differ in their namespaces.
+/// Access to elements by local name, since files differ in their namespaces.
 trait LocalName {
     fn has_tag_name_any(&self, name: &str) -> bool;
 }
@@ -77,7 +77,7 @@ impl<'a, 'i> File<'a, 'i> {
         Ok(Self { document, by_id, to_metres: Matrix4::new_scaling(unit), visited: Cell::new(0) })
     }
 
-    /// The element that a URL such as "#part" names.
+    /// Returns the element with a URL of the form "#part".
     fn named(&self, url: &str) -> Problem<Node<'a, 'i>> {
         let id = url.strip_prefix('#').ok_or("a url that is not in this file")?;
         self.by_id.get(id).copied().ok_or("nothing has the id that a url names".into())
@@ -148,7 +148,7 @@ impl<'a, 'i> File<'a, 'i> {
         let first = read.vertices.len() as u32;
         let placed = |point: &[f64; 3]| <[f64; 3]>::from(place.transform_point(&Point3::from(*point)).coords);
         read.vertices.extend(points.iter().map(placed));
-        // A transform that mirrors turns the triangles inside out.
+        // Mirroring transforms reverse the orientation of the triangles.
         let mirrored = place.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         let mut add = |corners: &[u32]| {
             let from = read.faces.len();
@@ -190,7 +190,7 @@ impl<'a, 'i> File<'a, 'i> {
         Ok(())
     }
 
-    /// The points that <vertices> names.
+    /// Returns the points of a `<vertices>` element.
     fn positions(&self, vertices: &str) -> Problem<Vec<[f64; 3]>> {
         let vertices = self.named(vertices)?;
         let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
@@ -207,7 +207,7 @@ impl<'a, 'i> File<'a, 'i> {
     }
 }
 
-/// The transform of a child of a node; the identity for children that are none.
+/// Returns the transform of a child element of a node; the identity if the child is not a transform.
 fn transform(child: Node) -> Problem<Matrix4<f64>> {
     let name = child.tag_name().name();
     if !matches!(name, "matrix" | "translate" | "scale" | "rotate" | "lookat" | "skew") {

@@ -16,14 +16,14 @@ use crate::error::{Error, Result, shortened};
 use crate::robot::LinkMesh;
 use crate::shape::{Geometry, Shape};
 
-/// Files larger than this (bytes) are refused.
+/// Largest file (bytes); larger ones are rejected.
 const LARGEST: u64 = 1 << 30;
 
 /// Reads the mesh in a file, with its coordinates multiplied by `scale`. The name ends in .stl, .obj or .dae. Lengths of a
-/// COLLADA file are converted to metres; its up axis is ignored, as RViz does.
+/// COLLADA file are converted to metres; its up axis is ignored, as in RViz.
 ///
 /// # Errors
-/// [`Error::Unreadable`] names the file and says what is wrong with it.
+/// [`Error::Unreadable`] names the file and its problem.
 pub fn read_mesh(path: &Path, scale: [f64; 3]) -> Result<Shape> {
     parse_mesh(&path.display().to_string(), &read_bytes(path)?, scale)
 }
@@ -39,7 +39,7 @@ pub fn read_link_mesh(mesh: &LinkMesh) -> Result<Shape> {
     Shape::mesh(vertices.collect(), triangles.faces().to_vec())
 }
 
-/// The content of a mesh file.
+/// Reads the content of a mesh file.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     let unreadable = |problem: String| Error::Unreadable { path: shortened(&path.display().to_string()), problem };
     let size = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
@@ -49,7 +49,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|error| unreadable(error.to_string()))
 }
 
-/// [`read_mesh`] from the content of a file of this name.
+/// Parses the content of a mesh file, as [`read_mesh`] does; the ending of `name` gives the format.
 ///
 /// # Errors
 /// As [`read_mesh`].
@@ -67,14 +67,14 @@ pub fn parse_mesh(name: &str, bytes: &[u8], scale: [f64; 3]) -> Result<Shape> {
         *vertex = std::array::from_fn(|k| scale[k] * vertex[k]);
     }
     if scale.iter().product::<f64>() < 0.0 {
-        // A mirror turns the triangles inside out.
+        // Mirroring scales reverse the orientation of the triangles.
         triangles.faces.iter_mut().for_each(|face| face.swap(1, 2));
     }
     Shape::mesh(triangles.vertices, triangles.faces).map_err(|error| unreadable(error.to_string()))
 }
 
 fn as_text(bytes: &[u8]) -> std::result::Result<String, String> {
-    // Comments may be in any encoding.
+    // Lossy decoding, since comments may be in any encoding.
     Ok(String::from_utf8_lossy(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)).into_owned())
 }
 
@@ -95,7 +95,7 @@ mod tests {
     fn stl_is_read_as_text_and_binary() {
         let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 2 3\nvertex 4 5 7\nendloop\nendfacet\nendsolid";
         assert_eq!(parsed("a.STL", text).unwrap(), Triangles { vertices: CORNERS.to_vec(), faces: vec![[0, 1, 2]] });
-        // Some binary files begin like text.
+        // Binary file that begins like text.
         let mut binary = b"solid".to_vec();
         binary.resize(80, b' ');
         binary.extend(1_u32.to_le_bytes());

@@ -1,4 +1,4 @@
-//! OBJ: corners, and polygons between them; all else is not geometry.
+//! OBJ reader: vertices and polygons; all other statements are ignored.
 
 use super::parsed::{Parsed, Triangles, number};
 
@@ -10,7 +10,7 @@ pub(super) fn parse(text: &str) -> Parsed {
         let at = |problem: String| format!("line {}: {problem}", i + 1);
         match words.next() {
             Some("v") => {
-                // Weights or colours may follow.
+                // Weights or colours may follow the coordinates.
                 let numbers: Vec<f64> = words.take(3).map(number).collect::<Result<_, _>>().map_err(at)?;
                 let vertex = numbers.try_into().map_err(|_| at("a vertex has three coordinates".into()))?;
                 read.vertices.push(vertex);
@@ -31,7 +31,7 @@ pub(super) fn parse(text: &str) -> Parsed {
     Ok(read)
 }
 
-/// A corner such as `3`, `3/1`, `3//2` or `3/1/2`: its first number counts vertices from 1, or backwards from -1.
+/// Parses a corner of the form `3`, `3/1`, `3//2` or `3/1/2`: its first number counts vertices from 1, or backwards from -1.
 fn index(word: &str, count: usize) -> Result<u32, String> {
     let given = word.split('/').next().unwrap_or_default();
     let index = given.parse::<i64>().ok().and_then(|index| match index {

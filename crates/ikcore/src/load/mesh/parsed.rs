@@ -1,9 +1,9 @@
-//! What the readers of mesh files share.
+//! Common result of the mesh file readers.
 
-/// Corners and triangles of a file, or what is wrong with it.
+/// Vertices and triangles of a file, or a description of the problem.
 pub(super) type Parsed = Result<Triangles, String>;
 
-/// Corners (m) and the triangles between them.
+/// Vertices (m) and the triangles between them.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Triangles {
     pub vertices: Vec<[f64; 3]>,
@@ -11,7 +11,7 @@ pub(super) struct Triangles {
 }
 
 impl Triangles {
-    /// Adds a polygon by indices of its corners, as a fan of triangles.
+    /// Adds a polygon, given by the indices of its corners, as a fan of triangles.
     pub fn add_polygon(&mut self, corners: &[u32]) {
         for i in 1..corners.len().saturating_sub(1) {
             self.faces.push([corners[0], corners[i], corners[i + 1]]);
@@ -19,7 +19,8 @@ impl Triangles {
     }
 }
 
-/// Reads a finite number. The word is not in the error: a robot file may name any file as a mesh, and messages show none.
+/// Parses a finite number. The error omits the word: a robot file may name any file as a mesh, and messages must not reveal
+/// its content.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),

@@ -1,13 +1,13 @@
-//! STL: triangles with corners of their own, as text or binary.
+//! STL reader, for text and binary files: triangles with separate corners.
 
 use super::parsed::{Parsed, Triangles, number};
 
-/// Bytes before the triangles of a binary file: a comment, and their number.
+/// Header of a binary file (bytes): a comment, and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of a triangle: a normal, three corners, and two that are not used.
+/// Size of a triangle in a binary file (bytes): a normal, three corners, and two unused bytes.
 const TRIANGLE: usize = 50;
 
-/// Some binary files begin like text, so their length decides.
+/// Parses a file. Its length decides whether it is binary, since some binary files begin like text.
 pub(super) fn parse(bytes: &[u8]) -> Parsed {
     let count = bytes.get(80..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
     let expected = count.map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(count));

@@ -1,4 +1,4 @@
-//! Collision shapes of a URDF as bodies of a robot.
+//! Conversion of URDF collision shapes to bodies of a robot.
 
 use std::path::{Path, PathBuf};
 
@@ -13,24 +13,24 @@ use crate::load::mesh::read_mesh;
 use crate::robot::{Bodies, Body, BodySource, LinkCapsule, LinkMesh, MeshFit, Robot};
 use crate::shape::Geometry;
 
-/// What becomes of the collision shapes of a file.
+/// Treatment of the collision shapes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionShapes {
-    /// Spheres, cylinders, capsules and boxes become capsules that enclose them; meshes are named and not read.
+    /// Converts spheres, cylinders, capsules and boxes to enclosing capsules; lists meshes without reading them.
     #[default]
     Primitives,
-    /// Meshes are read too, and covered by few capsules.
+    /// Reads meshes too, and covers each by few capsules.
     Fit,
-    /// Meshes become their convex hulls; spheres, cylinders, capsules and boxes stay as they are.
+    /// Converts meshes to their convex hulls; keeps spheres, cylinders, capsules and boxes as they are.
     Hulls,
-    /// Nothing is read.
+    /// Ignores all collision shapes.
     Ignored,
 }
 
-/// Most capsules for one mesh.
+/// Largest number of capsules for one mesh.
 const MOST: usize = 6;
 
-/// The bodies of all links of `robot`.
+/// Returns the bodies of all links of `robot`.
 pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, packages: &Packages) -> Result<Bodies> {
     let mut bodies = Bodies::default();
     if wanted == CollisionShapes::Ignored {
@@ -64,7 +64,7 @@ pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, pa
 }
 
 impl UrdfMesh {
-    /// The mesh in the file at `path`.
+    /// Returns the mesh as read from `path`.
     fn at(&self, path: &Path) -> LinkMesh {
         let path = path.display().to_string();
         LinkMesh { link: self.link.clone(), path, scale: self.scale, origin: self.origin }
@@ -84,7 +84,7 @@ fn add_mesh(bodies: &mut Bodies, mesh: &UrdfMesh, path: &Path, wanted: Collision
     Ok(())
 }
 
-/// The convex hull of a mesh; `None` for a mesh in a plane, which has none.
+/// Returns the convex hull of a mesh; `None` for a planar mesh, which has none.
 fn hull(mesh: &UrdfMesh, path: &Path) -> Result<Option<Body>> {
     let UrdfMesh { link, file, scale, origin } = mesh;
     let shape = read_mesh(path, *scale)?;
@@ -93,7 +93,7 @@ fn hull(mesh: &UrdfMesh, path: &Path) -> Result<Option<Body>> {
     Ok(triangles.convex_hull(origin).map(body))
 }
 
-/// Capsules that cover a mesh, and how well.
+/// Returns capsules that cover a mesh, and the quality of the fit.
 fn fitted(mesh: &UrdfMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
     let UrdfMesh { link, file, scale, origin } = mesh;
     let cover = covered_mesh(path, *scale, MOST)?;
@@ -107,7 +107,7 @@ fn fitted(mesh: &UrdfMesh, path: &Path) -> Result<(Vec<Body>, MeshFit)> {
     Ok((bodies.collect::<Result<_>>()?, fit))
 }
 
-/// The file of a mesh.
+/// Locates the file of a mesh.
 fn found(mesh: &UrdfMesh, packages: &Packages) -> Result<PathBuf> {
     let UrdfMesh { link, file, .. } = mesh;
     packages.find(file).map_err(|looked| {

@@ -1,5 +1,5 @@
-//! The robot from the URDF joints between base and tip: adds the independent joints (entries of q, hence columns of the
-//! Jacobian) in order, then the elements of the chain that they drive.
+//! Robot from the URDF joints between base and tip: adds the independent joints (entries of q, hence columns of the Jacobian)
+//! in order, then the elements that they drive.
 
 use std::collections::HashMap;
 
@@ -11,8 +11,8 @@ use super::tree::{Tree, TreeStep};
 use crate::error::{Error, Result};
 use crate::robot::{ChainBuilder, Robot, require_supported};
 
-/// Builds the robot whose chain leads from link `base` to the first of `tips`; all other links branch off it, those to further tips
-/// with their joints.
+/// Builds the robot whose chain leads from link `base` to the first of `tips`. All other links become branches; branches to
+/// further tips keep their joints.
 pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, tips: &[&'a str]) -> Result<Robot> {
     let Some((tip, further)) = tips.split_first() else {
         return Err(Error::Urdf { line: None, problem: "no tip".into() });
@@ -48,13 +48,13 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
     robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())
 }
 
-/// The joints of a path that move.
+/// Returns the moving joints of a path.
 fn moving_on(document: &Document, path: &[TreeStep]) -> Vec<usize> {
     path.iter().map(|step| step.joint).filter(|joint| document.joints[*joint].kind != UrdfKind::Fixed).collect()
 }
 
-/// Adds the independent joints in the order of the chains, with limits narrowed by their mimic joints, and returns the index in q
-/// of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
+/// Adds the independent joints in the order of the chains, with limits narrowed by their mimic joints, and returns the index
+/// in q of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
 fn add_joints(
     chain: &mut ChainBuilder,
     document: &Document,

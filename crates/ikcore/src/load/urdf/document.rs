@@ -1,4 +1,4 @@
-//! URDF text as a checked list of links and joints. Ignores everything else but collision and visual shapes.
+//! Parsed and checked URDF: links, joints, and collision and visual shapes; all other elements are ignored.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,7 +9,7 @@ use super::{visuals, xml};
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Visual;
 
-/// A checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
+/// Checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
 pub(super) struct Document {
     pub(super) name: String,
     pub(super) links: Vec<String>,
@@ -23,13 +23,13 @@ pub(super) struct Document {
     pub(super) visuals: Vec<Visual>,
 }
 
-/// A joint as the text describes it, with the defaults of URDF filled in.
+/// Joint as described in the text, with the defaults of URDF filled in.
 pub(super) struct UrdfJoint {
     pub(super) name: String,
     pub(super) kind: UrdfKind,
     pub(super) parent: String,
     pub(super) child: String,
-    /// (m)
+    /// Translation of the joint origin (m).
     pub(super) xyz: [f64; 3],
     /// Fixed-axis roll, pitch and yaw (rad).
     pub(super) rpy: [f64; 3],
@@ -41,14 +41,14 @@ pub(super) struct UrdfJoint {
     pub(super) mimic: Option<Mimic>,
 }
 
-/// A joint follows another: value = multiplier * value of the other + offset.
+/// Mimic relation: value = multiplier * value of the other joint + offset.
 pub(super) struct Mimic {
     pub(super) joint: String,
     pub(super) multiplier: f64,
     pub(super) offset: f64,
 }
 
-/// The joint types of URDF.
+/// Joint types of URDF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UrdfKind {
     Revolute,
@@ -71,7 +71,7 @@ impl UrdfKind {
         ("spherical", Self::Spherical),
     ];
 
-    /// Whether a joint of this kind turns about one axis or slides along it.
+    /// Whether this kind of joint has exactly one axis.
     pub(super) fn moves_one_way(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous | Self::Prismatic)
     }
@@ -108,12 +108,12 @@ impl Document {
         Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules, visuals: visuals::read(root) })
     }
 
-    /// Index of the joint of this name.
+    /// Returns the index of the joint with this name.
     pub(super) fn joint_number(&self, name: &str) -> Option<usize> {
         self.joint_numbers.get(name).copied()
     }
 
-    /// An error at a joint.
+    /// Creates an error located at a joint.
     pub(super) fn error_at(&self, joint: usize, problem: String) -> Error {
         Error::Urdf { line: self.joint_lines.get(joint).copied(), problem }
     }
@@ -159,7 +159,7 @@ fn joint_kind(joint: Node, owner: &str) -> Result<UrdfKind> {
     Err(xml::error_at(joint, format!("{owner} has the unknown type '{}'{hint}; types: {known}", shortened(kind))))
 }
 
-/// Roll, pitch and yaw (rad).
+/// Returns roll, pitch and yaw (rad).
 fn rotation(joint: Node, owner: &str) -> Result<[f64; 3]> {
     let rpy = vector(joint, "origin", "rpy", owner)?;
     match xml::children(joint, "origin").next() {
@@ -170,7 +170,7 @@ fn rotation(joint: Node, owner: &str) -> Result<[f64; 3]> {
     }
 }
 
-/// The joint that a joint follows, if any.
+/// Returns the mimic relation of a joint, if any.
 fn mimic(joint: Node, owner: &str) -> Result<Option<Mimic>> {
     let Some(mimic) = xml::children(joint, "mimic").next() else { return Ok(None) };
     let master = xml::required(mimic, "joint", &format!("<mimic> of {owner}"))?;

@@ -1,4 +1,4 @@
-//! Collision shapes of a link: as they are, and as capsules that enclose them.
+//! Collision shapes of a link: original, and as enclosing capsules.
 
 use nalgebra::{Point3, Vector3};
 use roxmltree::Node;
@@ -8,7 +8,7 @@ use crate::math::{Pose, pose};
 use crate::robot::LinkCapsule;
 use crate::shape::Shape;
 
-/// The collision shapes of one link.
+/// Collision shapes of one link.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LinkCapsules {
     pub(super) primitives: Vec<Primitive>,
@@ -16,35 +16,35 @@ pub(super) struct LinkCapsules {
     pub(super) unread: Vec<UnreadShape>,
 }
 
-/// A sphere, box, cylinder or capsule.
+/// Sphere, box, cylinder or capsule.
 #[derive(Debug, Clone)]
 pub(super) struct Primitive {
-    /// The capsule that encloses it.
+    /// Enclosing capsule.
     pub(super) capsule: LinkCapsule,
-    /// The shape itself.
+    /// Original shape.
     pub(super) exact: Shape,
 }
 
-/// A collision shape that did not become a capsule.
+/// Collision shape without a capsule.
 #[derive(Debug, Clone)]
 pub(super) struct UnreadShape {
-    /// In words, such as "a mesh of link 'hand'".
+    /// Description, for example "a mesh of link 'hand'".
     pub(super) name: String,
     pub(super) mesh: Option<UrdfMesh>,
 }
 
-/// A mesh of a link, in a file.
+/// Mesh of a link, in a file.
 #[derive(Debug, Clone)]
 pub(super) struct UrdfMesh {
     pub(super) link: String,
-    /// As it is written in the URDF.
+    /// File name as written in the URDF.
     pub(super) file: String,
     pub(super) scale: [f64; 3],
     /// Pose of the mesh in its link.
     pub(super) origin: Pose,
 }
 
-/// Reads the shapes of a link. An unreadable shape is not an error: most callers never need it.
+/// Reads the shapes of a link. Unreadable shapes are not an error, since most callers never need them.
 pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
     let mut read = LinkCapsules::default();
     for collision in xml::children(link, "collision") {
@@ -62,7 +62,7 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
     read
 }
 
-/// A shape at `origin` in its link; `None` for unknown shapes, and for sizes that cannot be read.
+/// Reads a shape at `origin` in its link; `None` for unknown shapes, and for unreadable sizes.
 pub(super) fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primitive> {
     let (half, radius) = axis(shape)?;
     let [a, b] = [-1.0, 1.0].map(|sign| (origin * Point3::from(sign * half)).coords.into());
@@ -75,26 +75,26 @@ pub(super) fn primitive(link: &str, origin: &Pose, shape: Node) -> Option<Primit
     Some(Primitive { capsule: LinkCapsule { link: link.into(), a, b, radius }, exact: exact.ok()? })
 }
 
-/// A mesh with its place; `None` for other shapes, and for a mesh whose attributes cannot be read.
+/// Reads a mesh and its pose; `None` for other shapes, and for a mesh with unreadable attributes.
 pub(super) fn mesh(link: &str, element: Node, shape: Node) -> Option<UrdfMesh> {
     let file = shape.attribute("filename").filter(|_| shape.tag_name().name() == "mesh")?;
     let scale = xml::vector(shape, "scale", "scale").ok()?.unwrap_or([1.0; 3]);
     Some(UrdfMesh { link: link.into(), file: file.into(), scale, origin: origin(element)? })
 }
 
-/// Half of the axis, and the radius, of the capsule that encloses a shape at the origin; `None` for unknown shapes.
+/// Returns half of the axis, and the radius, of the capsule that encloses a shape at the origin; `None` for unknown shapes.
 fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     let size = |name: &str| xml::number(shape, name, name).ok()?.filter(|size| *size > 0.0 && size.is_finite());
     match shape.tag_name().name() {
         "sphere" => Some((Vector3::zeros(), size("radius")?)),
-        // The caps extend beyond the flat ends of a cylinder.
+        // Caps extend beyond the flat ends of a cylinder.
         "cylinder" | "capsule" => Some((Vector3::z() * 0.5 * size("length")?, size("radius")?)),
         "box" => {
             let edges = Vector3::from(xml::vector(shape, "size", "size").ok()??);
             if edges.min() <= 0.0 {
                 return None;
             }
-            // Along the longest edge; the radius reaches the corners of the cross-section.
+            // Axis along the longest edge; the radius reaches the corners of the cross-section.
             let along = edges.imax();
             let mut across = 0.5 * edges;
             across[along] = 0.0;
@@ -106,7 +106,7 @@ fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     }
 }
 
-/// Pose of the shape in its link; `None` if it cannot be read.
+/// Reads the pose of the shape in its link; `None` if it is unreadable.
 pub(super) fn origin(element: Node) -> Option<Pose> {
     let Some(origin) = xml::children(element, "origin").next() else { return Some(Pose::identity()) };
     let xyz = xml::vector(origin, "xyz", "xyz").ok()?.unwrap_or_default();

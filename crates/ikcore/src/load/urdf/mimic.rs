@@ -1,4 +1,4 @@
-//! Mimic joints: the independent joint that drives each, narrowed by the limits of its followers.
+//! Mimic joints: each is driven by an independent joint, whose limits are narrowed by its followers.
 
 use std::collections::HashSet;
 
@@ -7,14 +7,14 @@ use crate::error::{Error, Result, suggestion};
 use crate::robot::{Drive, Joint, JointKind};
 use crate::wording::listed;
 
-/// The independent joint that drives a joint (usually the joint itself), and its drive.
+/// Independent joint that drives a joint (usually the joint itself), and the drive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coupling {
     pub(super) master: usize,
     pub(super) drive: Drive,
 }
 
-/// The couplings of a document, each found once.
+/// Couplings of a document, with a cache.
 pub(super) struct Couplings<'a> {
     document: &'a Document,
     found: Vec<Option<Coupling>>,
@@ -25,7 +25,7 @@ impl<'a> Couplings<'a> {
         Self { document, found: vec![None; document.joints.len()] }
     }
 
-    /// Follows `<mimic>` from joint to joint: value = multiplier * value of the mimicked joint + offset.
+    /// Resolves a chain of `<mimic>` elements: value = multiplier * value of the mimicked joint + offset.
     pub(super) fn of(&mut self, joint: usize) -> Result<Coupling> {
         let mut followers = vec![];
         let coupling = self.master_above(joint, &mut followers)?;
@@ -37,8 +37,8 @@ impl<'a> Couplings<'a> {
         Ok(self.recorded(coupling, &followers))
     }
 
-    /// The same for a joint whose errors nobody needs to know: where the joints that it follows end in none that moves, the last
-    /// of them counts as independent.
+    /// Resolves the coupling of a joint beside the chain, without errors: if the chain of `<mimic>` elements does not end in
+    /// a movable joint, its last movable joint counts as independent.
     pub(super) fn of_bystander(&mut self, joint: usize) -> Coupling {
         let mut followers = vec![];
         let movable = |joint: usize| self.document.joints[joint].kind.moves_one_way();
@@ -53,7 +53,8 @@ impl<'a> Couplings<'a> {
         }
     }
 
-    /// The coupling of the last joint above `joint` that is independent or already found; `followers` gets those in between.
+    /// Returns the coupling of the first joint along the `<mimic>` elements that is independent or cached; `followers`
+    /// collects the joints before it.
     fn master_above(&self, joint: usize, followers: &mut Vec<usize>) -> Result<Coupling> {
         let (document, mut at) = (self.document, joint);
         let mut passed = HashSet::new();
@@ -77,7 +78,7 @@ impl<'a> Couplings<'a> {
         }
     }
 
-    /// Records the couplings of `followers`, the last of which follows `coupling`, and returns that of the first.
+    /// Caches the couplings of `followers`, the last of which follows `coupling`, and returns the coupling of the first.
     fn recorded(&mut self, mut coupling: Coupling, followers: &[usize]) -> Coupling {
         for &follower in followers.iter().rev() {
             if let Some(mimic) = &self.document.joints[follower].mimic {
@@ -99,8 +100,8 @@ fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {
     document.error_at(follower, problem)
 }
 
-/// Narrows the limits of the master so that its mimic joint `follower` keeps its own limits. The error explains an
-/// empty range.
+/// Narrows the limits of the master so that its mimic joint `follower` respects its own limits. The error explains an empty
+/// range.
 pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Result<(), String> {
     let Drive { scale, offset } = drive;
     if scale == 0.0 {

@@ -1,8 +1,7 @@
-//! Robots from URDF. [`read`] is the call, [`document`] checks the text and reduces it to links and joints, [`tree`]
-//! finds the joints from base to tip, and [`chain`] builds the robot from them ([`step`]: one joint), with mimic joints ([`mimic`]), the
-//! links beside the chain ([`off_chain`]) and capsules around collision shapes ([`link_capsules`], [`bodies`]), whose files
-//! [`package`] finds. [`visuals`] are
-//! for pictures. [`srdf`] adds what an SRDF says.
+//! Robots from URDF. [`read`] is the entry point: [`document`] parses and checks the text, [`tree`] finds the joints from
+//! base to tip, and [`chain`] builds the robot from them ([`step`]: one joint), with mimic joints ([`mimic`]), links beside
+//! the chain ([`off_chain`]) and collision shapes ([`link_capsules`], [`bodies`]), whose files [`package`] locates.
+//! [`visuals`] are for pictures. [`srdf`] adds the content of an SRDF.
 
 mod bodies;
 mod chain;

@@ -1,4 +1,4 @@
-//! The links beside the chain: those that joints of the chain move through mimics, and those whose joints are held.
+//! Links beside the chain: moved by chain joints through mimics, or attached by held joints.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,9 @@ use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
-/// The links that branch off the chain of `robot`, whose joints are `index_in_q`; those in `moving` lead to a tip. Joints beside the
-/// chains are held at zero, or at the limit nearest to it; those that cannot move about or along one axis stay in their origin.
+/// Returns the links that branch off the chain of `robot`, whose joints are `index_in_q`; joints in `moving` lead to a
+/// further tip. Other joints are held at zero, or at the limit nearest to zero; joints without a single axis stay in their
+/// origin.
 pub(super) fn of(
     document: &Document,
     tree: &Tree,
@@ -44,15 +45,15 @@ pub(super) fn of(
     Ok(off_chain)
 }
 
-/// Whether a joint has one axis to move about or along.
+/// Whether a joint has exactly one axis.
 fn moves(document: &Document, at: TreeStep) -> bool {
     let joint = &document.joints[at.joint];
     joint.kind.moves_one_way() && joint.axis != [0.0; 3]
 }
 
-/// A joint at zero, or at the limit nearest to it.
+/// Holds a joint at zero, or at the limit nearest to zero.
 fn held(joint: Joint) -> HeldJoint {
-    // The limits of a joint that nobody moves may contradict each other.
+    // Limits of a joint that never moves may be contradictory.
     let value = if joint.lower <= joint.upper { 0.0_f64.clamp(joint.lower, joint.upper) } else { 0.0 };
     HeldJoint { value, joint }
 }

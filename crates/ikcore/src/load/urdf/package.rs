@@ -1,17 +1,19 @@
-//! The file that a `filename` of a URDF means.
+//! Resolution of a URDF `filename` to a file.
 
 use std::path::{Path, PathBuf};
 
-/// Where files of a URDF are looked for.
+/// Search path for the files of a URDF.
 pub(super) struct Packages {
-    /// The folder of the URDF; empty for text.
+    /// Folder of the URDF; empty for text.
     directory: PathBuf,
-    /// Folders that hold packages, or are one: those of the caller, then those of the environment, then the ones around the URDF.
+    /// Folders that contain packages, or are packages: from the caller, from the environment, and around the URDF, in this
+    /// order.
     roots: Vec<PathBuf>,
 }
 
 impl Packages {
-    /// `given` come first, then `ROS_PACKAGE_PATH`, the `fraction` folders of `AMENT_PREFIX_PATH`, and the folders above the URDF.
+    /// Builds the search path: `given`, then `ROS_PACKAGE_PATH`, the `share` folders of `AMENT_PREFIX_PATH`, and the folders
+    /// above the URDF.
     pub(super) fn new(given: &[String], directory: Option<&Path>) -> Self {
         let ros = folders_of("ROS_PACKAGE_PATH");
         let ament = folders_of("AMENT_PREFIX_PATH").iter().map(|prefix| prefix.join("share")).collect();
@@ -21,12 +23,12 @@ impl Packages {
         Self { directory: directory.unwrap_or_default(), roots }
     }
 
-    /// Whether the URDF is a file: those that it names will be there later too.
+    /// Whether the URDF is a file, so that the files that it names will remain available.
     pub(super) fn of_a_file(&self) -> bool {
         !self.directory.as_os_str().is_empty()
     }
 
-    /// The file, or where it was looked for.
+    /// Returns the file, or the paths that were tried.
     pub(super) fn find(&self, filename: &str) -> Result<PathBuf, Vec<PathBuf>> {
         let package = ["package://", "model://"].iter().find_map(|scheme| filename.strip_prefix(scheme));
         let candidates = match package {
@@ -36,7 +38,7 @@ impl Packages {
         candidates.iter().find(|file| file.is_file()).cloned().ok_or(candidates)
     }
 
-    /// `rest` is "package/path".
+    /// Returns candidates for `rest`, which has the form "package/path".
     fn in_packages(&self, rest: &str) -> Vec<PathBuf> {
         let (package, path) = rest.split_once('/').unwrap_or((rest, ""));
         let in_root = |root: &PathBuf| match root.file_name() {
@@ -47,7 +49,7 @@ impl Packages {
     }
 }
 
-/// The folders that a variable of the environment lists.
+/// Returns the folders listed by an environment variable.
 fn folders_of(variable: &str) -> Vec<PathBuf> {
     let listed = std::env::var_os(variable).unwrap_or_default();
     std::env::split_paths(&listed).filter(|folder| !folder.as_os_str().is_empty()).collect()

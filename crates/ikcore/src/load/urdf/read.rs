@@ -1,4 +1,4 @@
-//! `Robot::from_urdf`: from a file or its text to a robot.
+//! Constructor `Robot::from_urdf`: from a file or its text to a robot.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -13,52 +13,51 @@ use super::visuals;
 use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
 
-/// How a URDF becomes a robot.
+/// Options for loading a URDF.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UrdfOptions {
-    /// Link at the start of the chain; `None`: the root.
+    /// Link at the start of the chain; `None` means the root.
     pub base: Option<String>,
-    /// Links at the ends of the chains, one for a robot with one tip; none: the only leaf below the base.
+    /// Links at the ends of the chains, one for a robot with one tip; empty means the only leaf below the base.
     pub tips: Vec<String>,
-    /// Values of joints beside the chain (rad, m); the others are held at zero or at the limit nearest to it.
+    /// Values of joints beside the chain (rad, m); joints not listed are held at zero or at the limit nearest to zero.
     pub hold: Vec<(String, f64)>,
-    /// What becomes of the collision shapes.
+    /// Treatment of the collision shapes.
     pub collision: CollisionShapes,
-    /// Folders with packages, in which `package://` is looked for first; then in `ROS_PACKAGE_PATH`, `AMENT_PREFIX_PATH` and the
-    /// folders above the file.
+    /// Folders with packages, searched first for `package://`; then `ROS_PACKAGE_PATH`, `AMENT_PREFIX_PATH` and the folders
+    /// above the file are searched.
     pub package_dirs: Vec<String>,
-    /// The folder that relative names of meshes start from; `None`: that of the file.
+    /// Folder that relative mesh names refer to; `None` means the folder of the file.
     pub directory: Option<PathBuf>,
-    /// An SRDF, as a file or text, for [`with_srdf`](Robot::with_srdf).
+    /// SRDF, as a file or text, for [`with_srdf`](Robot::with_srdf).
     pub srdf: Option<String>,
 }
 
 impl Robot {
     /// Reads a robot from a URDF file, or from the XML itself (a string that contains `<`).
     ///
-    /// `base` and `tip` are link names. `None` means the root, and the only leaf below `base`. `base` need not be an
-    /// ancestor of `tip`: joints passed from child to parent move by -q. Poses are in the frame of `base`.
+    /// `base` and `tip` are link names. `None` means the root, and the only leaf below `base`. `base` need not be an ancestor
+    /// of `tip`: joints passed from child to parent move by -q. Poses are in the frame of `base`.
     ///
-    /// The independent joints are in chain order. A mimic joint on the chain follows its master, and its limits narrow
-    /// the master's; a master that is not on the chain becomes an independent joint at the position of its first mimic
-    /// joint. Only joints on the chain, and masters, are checked: an unsupported gripper does not prevent loading an
-    /// arm.
+    /// The independent joints are in chain order. A mimic joint on the chain follows its master, and its limits narrow the
+    /// master's; a master that is not on the chain becomes an independent joint at the position of its first mimic joint.
+    /// Only joints on the chain, and masters, are checked: an unsupported gripper does not prevent loading an arm.
     ///
     /// The links beside the chain are kept ([`all_link_names`](Robot::all_link_names)), and their joints
-    /// [held](Robot::held_joints) at zero or at the limit nearest to it; mimic joints beside the chain follow their masters.
-    /// Floating, planar and spherical joints beside the chain stay in their origin.
+    /// [held](Robot::held_joints) at zero or at the limit nearest to zero; mimic joints beside the chain follow their
+    /// masters. Floating, planar and spherical joints beside the chain stay in their origin.
     ///
-    /// Limits: a revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for
-    /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
-    /// unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
+    /// A revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for both would
+    /// lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is unlimited; an
+    /// explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
-    /// Collision shapes of all links become capsules that enclose them ([`Robot::bodies`]): exact for spheres, with
-    /// protruding caps for cylinders and boxes. Meshes are not read unless [`CollisionShapes::Fit`] or
-    /// [`CollisionShapes::Hulls`] says so; [`Robot::unread_collision_shapes`] names them.
+    /// Collision shapes of all links become enclosing capsules ([`Robot::bodies`]): exact for spheres, with protruding caps
+    /// for cylinders and boxes. Meshes are read only with [`CollisionShapes::Fit`] or [`CollisionShapes::Hulls`];
+    /// [`Robot::unread_collision_shapes`] lists the rest.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
-    /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; those of
+    /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; the errors of
     /// [`ChainBuilder::build`](crate::robot::ChainBuilder::build) for impossible limits.
     pub fn from_urdf(path_or_xml: &str, base: Option<&str>, tip: Option<&str>) -> Result<Self> {
         let tips = tip.into_iter().map(str::to_owned).collect();
@@ -66,11 +65,11 @@ impl Robot {
         Self::from_urdf_with(path_or_xml, &options)
     }
 
-    /// [`from_urdf`](Self::from_urdf) with further options. With several tips the independent joints are those of all chains, one
-    /// chain after another, shared ones once.
+    /// Reads a robot as [`from_urdf`](Self::from_urdf) does, with further options. With several tips the independent joints
+    /// are those of all chains, one chain after another, shared joints once.
     ///
     /// # Errors
-    /// Those of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
+    /// Errors of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
     pub fn from_urdf_with(path_or_xml: &str, options: &UrdfOptions) -> Result<Self> {
         let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
         let tree = Tree::new(&document)?;
@@ -99,7 +98,7 @@ impl Robot {
     }
 }
 
-/// The text itself if it contains `<`, otherwise that of the file.
+/// Returns the text itself if it contains `<`, otherwise the content of the file.
 pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) -> Result<Cow<'_, str>> {
     if path_or_xml.contains('<') { Ok(Cow::Borrowed(path_or_xml)) } else { read(path_or_xml).map(Cow::Owned) }
 }

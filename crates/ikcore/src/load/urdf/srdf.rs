@@ -11,15 +11,15 @@ use crate::robot::{Robot, Stance};
 use crate::wording::listed;
 
 impl Robot {
-    /// The same robot with what an SRDF (a file, or its text, which contains `<`) says of it: links that it disables are not
-    /// tested against each other ([`collision_pairs`](Robot::collision_pairs)), and each `<group_state>` that gives all joints of
-    /// the robot becomes one of its [`stances`](Robot::stances).
+    /// Applies an SRDF (a file, or its text, which contains `<`): disabled pairs of links are not tested against each other
+    /// ([`collision_pairs`](Robot::collision_pairs)), and each `<group_state>` with values for all joints of the robot
+    /// becomes one of its [`stances`](Robot::stances).
     ///
-    /// All other links with bodies are tested but those that always touch. Names of links that the robot lacks are passed over:
-    /// they disable nothing. An SRDF that disables nothing leaves the pairs to be found by sampling.
+    /// All other links with bodies are tested, except pairs that always touch. Unknown link names are ignored. An SRDF that
+    /// disables nothing leaves the pairs to be found by sampling.
     ///
     /// # Errors
-    /// [`Error::Unreadable`]; [`Error::Srdf`] for text that is no SRDF, or that of another robot.
+    /// [`Error::Unreadable`]; [`Error::Srdf`] for text that is no SRDF, or an SRDF of another robot.
     pub fn with_srdf(&self, path_or_xml: &str) -> Result<Self> {
         let text = text_of(path_or_xml, read)?;
         let described = Srdf::parse(&text).map_err(|error| match error {
@@ -33,11 +33,11 @@ impl Robot {
     }
 }
 
-/// The parts of an SRDF that are used.
+/// Relevant content of an SRDF.
 struct Srdf {
-    /// Pairs of links, by name.
+    /// Pairs of links without a collision test.
     disabled: Vec<[String; 2]>,
-    /// Links that are tested against no other by default.
+    /// Links that are tested against no other link by default.
     alone: HashSet<String>,
     /// Pairs of links that are tested nevertheless.
     enabled: HashSet<[String; 2]>,
@@ -67,7 +67,7 @@ impl Srdf {
         })
     }
 
-    /// Err if it disables pairs of links, and the robot has none of them.
+    /// Returns an error if the SRDF disables pairs of links, and the robot has none of them.
     fn require_same_robot(&self, robot: &Robot) -> Result<()> {
         let known: HashSet<&str> = robot.all_link_names().collect();
         let both_known = |[one, other]: &[String; 2]| known.contains(one.as_str()) && known.contains(other.as_str());
@@ -82,7 +82,7 @@ impl Srdf {
         Err(Error::Srdf { line: None, problem })
     }
 
-    /// The disabled pairs; `disable_default_collisions` of a link disables it with all others.
+    /// Returns the disabled pairs; `disable_default_collisions` of a link disables it with all other links.
     fn disabled_pairs(&self, robot: &Robot) -> Vec<[String; 2]> {
         let mut disabled = self.disabled.clone();
         for link in &self.alone {
@@ -96,7 +96,7 @@ impl Srdf {
         disabled
     }
 
-    /// The states that give all independent joints of the robot.
+    /// Returns the states that define all independent joints of the robot.
     fn stances(&self, robot: &Robot) -> Vec<Stance> {
         let complete = self.states.iter().filter_map(|(name, values)| {
             let q = robot.joints().iter().map(|joint| values.get(&joint.name).copied());
@@ -115,7 +115,7 @@ fn pair(node: Node) -> Result<[String; 2]> {
     Ok([name(node, "link1")?, name(node, "link2")?])
 }
 
-/// A name, and the values of joints of one axis; others have several values and are passed over.
+/// Reads a name and the values of single-axis joints; other joints have several values and are ignored.
 fn state(node: Node) -> Result<(String, HashMap<String, f64>)> {
     let mut values = HashMap::new();
     for joint in xml::children(node, "joint") {

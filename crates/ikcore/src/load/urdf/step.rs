@@ -1,4 +1,4 @@
-//! One joint of a URDF as elements of a robot, passed from parent to child or from child to parent.
+//! Conversion of one URDF joint to elements of a robot, in either direction.
 
 use nalgebra::Vector3;
 
@@ -8,15 +8,15 @@ use crate::error::Result;
 use crate::math::{Pose, pose};
 use crate::robot::{Drive, Element, Joint, JointKind};
 
-/// How a joint moves: by which joint of the robot, and how.
+/// Motion of a joint: the robot joint that drives it, its kind and its drive.
 pub(super) struct Moved {
     pub(super) joint: usize,
     pub(super) kind: JointKind,
     pub(super) drive: Drive,
 }
 
-/// The elements of one joint; `moved` is `None` for one that does not move. A reversed joint is the inverse: the motion by -q
-/// first, then the inverse of its origin.
+/// Returns the elements of one joint; `moved` is `None` for a joint that does not move. A reversed joint is the inverse: the
+/// motion by -q first, then the inverse of its origin.
 pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Moved>) -> Result<Vec<Element>> {
     let origin = origin(document, step.joint);
     let sign = if step.reversed { -1.0 } else { 1.0 };
@@ -33,7 +33,7 @@ pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Moved>
     })
 }
 
-/// A moving joint with its own limits.
+/// Returns a moving joint with its own limits.
 pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
     let joint = &document.joints[index];
     let kind = kind(document, index)?;
@@ -76,11 +76,12 @@ fn axis(document: &Document, index: usize) -> Result<Vector3<f64>> {
             document.error_at(index, format!("axis of joint '{}' is zero: it must have a direction", joint.name))
         );
     }
-    // The axis may have any length; squares of tiny or huge numbers must not vanish or overflow.
+    // Scaled to largest entry one: the axis may have any length, and squares of tiny or huge numbers must not vanish or
+    // overflow.
     Ok(axis / largest)
 }
 
-/// The link that a step leads to.
+/// Returns the link at the far end of a step.
 pub(super) fn far_link(document: &Document, step: TreeStep) -> &str {
     let joint = &document.joints[step.joint];
     if step.reversed { &joint.parent } else { &joint.child }

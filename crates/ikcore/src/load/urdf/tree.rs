@@ -1,4 +1,4 @@
-//! The tree of links and joints, and the path through it from base to tip.
+//! Tree of links and joints, and the path from base to tip.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,18 +6,18 @@ use super::document::{Document, UrdfKind};
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::wording::listed;
 
-/// Largest number of links of a cycle whose names fit into a message.
+/// Largest number of links of a cycle that a message lists.
 const CYCLE_SHOWN: usize = 10;
 
-/// The joints as a tree with one root.
+/// Joints as a tree with one root.
 pub(super) struct Tree<'a> {
     document: &'a Document,
-    /// The joint between each link and its parent.
+    /// Joint between each link and its parent.
     joint_above: HashMap<&'a str, usize>,
     root: &'a str,
 }
 
-/// A joint on the path from base to tip.
+/// Joint on the path from base to tip.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TreeStep {
     pub(super) joint: usize,
@@ -26,7 +26,7 @@ pub(super) struct TreeStep {
 }
 
 impl<'a> Tree<'a> {
-    /// Checks that every link has at most one parent, and all have the same root.
+    /// Checks that every link has at most one parent, and that all links have the same root.
     pub(super) fn new(document: &'a Document) -> Result<Self> {
         let joint_above = joints_above(document)?;
         let mut tree = Self { document, joint_above, root: "" };
@@ -52,7 +52,7 @@ impl<'a> Tree<'a> {
         self.root
     }
 
-    /// The link of this name.
+    /// Finds the link with this name.
     pub(super) fn link(&self, name: &str) -> Result<&'a str> {
         let moved_by = self.document.joints.iter().find(|joint| joint.name == name).map(|joint| &joint.child);
         self.links().find(|link| *link == name).ok_or_else(|| Error::UnknownLink {
@@ -66,13 +66,13 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The only leaf link below `base`.
+    /// Returns the only leaf link below `base`.
     pub(super) fn only_leaf_below(&self, base: &'a str) -> Result<&'a str> {
         let mut leaves = self.leaves_below(base);
         if let [(leaf, _)] = leaves[..] {
             return Ok(leaf);
         }
-        // Arms before wheels and sensors: a user looks for the end of an arm.
+        // Arms before wheels and sensors, since a user usually looks for the end of an arm.
         leaves.sort_by_key(|(_, joints)| std::cmp::Reverse(*joints));
         let described: Vec<String> = leaves.iter().map(|(leaf, joints)| format!("{leaf} ({joints})")).collect();
         Err(Error::AmbiguousTip {
@@ -82,8 +82,8 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The links below `base` from which no joint leads on, in the order of the document, each with the number of
-    /// independent joints that move it.
+    /// Returns the leaf links below `base` in the order of the document, each with the number of independent joints that move
+    /// it.
     fn leaves_below(&self, base: &'a str) -> Vec<(&'a str, usize)> {
         let joints = &self.document.joints;
         let below = self.joints_below();
@@ -101,7 +101,7 @@ impl<'a> Tree<'a> {
         self.links().filter_map(|link| Some((link, *leaves.get(link)?))).collect()
     }
 
-    /// The joints below each link.
+    /// Returns the joints below each link.
     fn joints_below(&self) -> HashMap<&'a str, Vec<usize>> {
         let mut below: HashMap<&str, Vec<usize>> = HashMap::new();
         for (index, joint) in self.document.joints.iter().enumerate() {
@@ -110,8 +110,8 @@ impl<'a> Tree<'a> {
         below
     }
 
-    /// The links that are not on a chain with these links, in the order in which they branch off it: parents first. Each has the
-    /// number of the link before it, counting those of the chain first, and the joint in between.
+    /// Returns the links that are not on the chain, in the order in which they branch off, parents first. Each has the number
+    /// of the link before it, counting the chain's links first, and the joint in between.
     pub(super) fn off_chain(&self, chain: &[&str]) -> Vec<(usize, TreeStep)> {
         let (joints, below) = (&self.document.joints, self.joints_below());
         let mut found: HashSet<&str> = chain.iter().copied().collect();
@@ -132,7 +132,7 @@ impl<'a> Tree<'a> {
         beside
     }
 
-    /// The joints from `base` to `tip`: up to the common ancestor, then down.
+    /// Returns the joints from `base` to `tip`: up to the common ancestor, then down.
     pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
@@ -151,20 +151,20 @@ impl<'a> Tree<'a> {
         Ok(up.chain(down).collect())
     }
 
-    /// The joints from a link up to the root.
+    /// Iterates over the joints from a link up to the root.
     fn joints_above(&self, link: &'a str) -> impl Iterator<Item = usize> {
         let joints = &self.document.joints;
         let above = |link: &str| self.joint_above.get(link).copied();
         std::iter::successors(above(link), move |joint| above(&joints[*joint].parent))
     }
 
-    /// The links from a link's parent up to the root.
+    /// Iterates over the links from a link's parent up to the root.
     fn links_above(&self, link: &'a str) -> impl Iterator<Item = &'a str> {
         self.joints_above(link).map(|joint| self.document.joints[joint].parent.as_str())
     }
 
-    /// Err if the way up from any link comes back to a link. A way ends where an earlier one passed, so that each link is
-    /// visited once.
+    /// Returns an error if the way up from a link is a cycle. The walk stops where an earlier one passed, so that each link
+    /// is visited once.
     fn refuse_cycles(&self) -> Result<()> {
         let mut passed_from = HashMap::new();
         for start in self.links() {
@@ -192,7 +192,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Returns the joint above each link. An error for a joint between links that do not exist, or two joints to one link.
+/// Returns the joint above each link, or an error for a joint between links that do not exist, or two joints to one link.
 fn joints_above(document: &Document) -> Result<HashMap<&str, usize>> {
     let links: Vec<&str> = document.links.iter().map(String::as_str).collect();
     let known: HashSet<&str> = links.iter().copied().collect();

@@ -10,7 +10,8 @@ use super::package::Packages;
 use super::xml;
 use crate::robot::{Robot, Visual, VisualShape};
 
-/// Reads the visual shapes of all links, with files as they are written. Unreadable ones are left out: only pictures lack them.
+/// Reads the visual shapes of all links, with file names as written. Unreadable shapes are left out, since only pictures need
+/// them.
 pub(super) fn read(root: Node) -> Vec<Visual> {
     let named = |material: Node| Some((material.attribute("name")?.to_owned(), color(material)?));
     let materials: HashMap<_, _> = xml::children(root, "material").filter_map(named).collect();
@@ -26,7 +27,7 @@ pub(super) fn read(root: Node) -> Vec<Visual> {
     visuals
 }
 
-/// Those of the links of `robot`, with files where they are found.
+/// Returns the visual shapes of the links of `robot`, with their files located.
 pub(super) fn of(visuals: &[Visual], robot: &Robot, packages: &Packages) -> Vec<Visual> {
     let links: Vec<&str> = robot.all_link_names().collect();
     let mut found: Vec<Visual> = visuals.iter().filter(|each| links.contains(&each.link.as_str())).cloned().collect();

@@ -1,4 +1,4 @@
-//! Reading attributes of XML elements, with errors that name the line, the attribute and its owner.
+//! Readers of XML attributes, with errors that name the line, the attribute and its owner.
 
 use roxmltree::Node;
 
@@ -7,8 +7,8 @@ use crate::error::{Error, Result, shortened};
 /// Advice for unexpanded xacro.
 const EXPAND: &str = "run `xacro robot.xacro > robot.urdf` and load the result";
 
-/// The text without its XML declaration: the encoding it declares does not apply to a decoded string, and a line break
-/// before it, as in triple-quoted strings, would be an XML error. Line numbers are kept.
+/// Removes the XML declaration: its encoding does not apply to a decoded string, and a line break before it, as in
+/// triple-quoted strings, would be an XML error. Line numbers are kept.
 pub(super) fn without_declaration(text: &str) -> String {
     let start = text.trim_start_matches(|c: char| c == '\u{feff}' || c.is_whitespace());
     let body = match start.strip_prefix("<?xml ").and_then(|declaration| declaration.split_once("?>")) {
@@ -19,7 +19,7 @@ pub(super) fn without_declaration(text: &str) -> String {
     "\n".repeat(cut.matches('\n').count()) + body
 }
 
-/// The error of text that is not XML.
+/// Creates the error for text that is not XML.
 pub(super) fn not_xml(error: &roxmltree::Error) -> Error {
     let problem = match error {
         roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
@@ -33,12 +33,13 @@ pub(super) fn not_xml(error: &roxmltree::Error) -> Error {
     Error::Urdf { line: Some(error.pos().row), problem }
 }
 
-/// Line of an element, from 1.
+/// Returns the line of an element, from 1.
 pub(super) fn line(node: Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
-/// Lines of elements in the order of the text, from 1. One pass: [`line`] reads from the beginning for each.
+/// Returns the lines of elements in the order of the text, from 1. Takes one pass, whereas [`line`] reads from the beginning
+/// for each element.
 pub(super) fn lines<'a, 'x: 'a>(text: &str, nodes: impl Iterator<Item = Node<'a, 'x>>) -> Vec<u32> {
     let (mut at, mut line) = (0, 1);
     nodes
@@ -51,7 +52,7 @@ pub(super) fn lines<'a, 'x: 'a>(text: &str, nodes: impl Iterator<Item = Node<'a,
         .collect()
 }
 
-/// An error at an element.
+/// Creates an error located at an element.
 pub(super) fn error_at(node: Node, problem: impl Into<String>) -> Error {
     Error::Urdf { line: Some(line(node)), problem: problem.into() }
 }
@@ -65,12 +66,12 @@ pub(super) fn refuse_xacro(root: Node) -> Result<()> {
     }
 }
 
-/// The child elements with this tag, in any namespace.
+/// Iterates over the child elements with this tag, in any namespace.
 pub(super) fn children<'a, 'x: 'a>(node: Node<'a, 'x>, tag: &'a str) -> impl Iterator<Item = Node<'a, 'x>> {
     node.children().filter(move |child| child.is_element() && child.tag_name().name() == tag)
 }
 
-/// The text of an attribute. Unexpanded xacro in it is an error.
+/// Returns the text of an attribute. Unexpanded xacro in it is an error.
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<Option<&'a str>> {
     match node.attribute(name) {
         Some(text) if text.contains("${") || text.contains("$(") => {
@@ -80,12 +81,12 @@ pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<Option<&'a
     }
 }
 
-/// A required attribute; `owner` names the element.
+/// Returns a required attribute; `owner` names the element.
 pub(super) fn required<'a>(node: Node<'a, '_>, name: &str, owner: &str) -> Result<&'a str> {
     attribute(node, name)?.ok_or_else(|| error_at(node, format!("{owner} has no attribute {name}=\"...\"")))
 }
 
-/// Three finite numbers, or `None` if the attribute is missing; `what` names them.
+/// Reads three finite numbers, or `None` if the attribute is missing; `what` names the numbers.
 pub(super) fn vector(node: Node, name: &str, what: &str) -> Result<Option<[f64; 3]>> {
     let Some(text) = attribute(node, name)? else { return Ok(None) };
     let numbers: Vec<f64> = text.split_whitespace().map_while(|word| word.parse().ok()).collect();
@@ -98,7 +99,7 @@ pub(super) fn vector(node: Node, name: &str, what: &str) -> Result<Option<[f64; 
     }
 }
 
-/// One number, or `None` if the attribute is missing; `what` names it. It may be infinite, but not NaN.
+/// Reads one number, or `None` if the attribute is missing; `what` names the number. It may be infinite, but not NaN.
 pub(super) fn number(node: Node, name: &str, what: &str) -> Result<Option<f64>> {
     let Some(text) = attribute(node, name)? else { return Ok(None) };
     match text.trim().parse::<f64>() {

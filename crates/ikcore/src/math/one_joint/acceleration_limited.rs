@@ -1,10 +1,10 @@
-//! The motion of a given duration that takes a joint as far as possible in the positive direction, without a jerk limit.
+//! Extremal motion of one joint without a jerk limit: the largest displacement in a given duration.
 
 use super::motion_state::{MotionState, Rates};
 use super::phases::{Durations, Phase, Phases, Possible};
 
-/// Full acceleration, the velocity limit if it is reached, full deceleration. Without an acceleration limit, the velocity
-/// limit all the time.
+/// Profile of full acceleration, the velocity limit if it is reached, and full deceleration. Without an acceleration limit it
+/// keeps the velocity limit throughout.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AccelerationLimited {
     from: f64,
@@ -17,7 +17,7 @@ impl AccelerationLimited {
         Self { from: from.v, to: to.v, rates }
     }
 
-    /// The phases for a possible duration `t` (s).
+    /// Returns the phases for a possible duration `t` (s).
     pub(super) fn phases(&self, t: f64) -> Phases {
         let Self { from, to, rates: Rates { velocity, acceleration, .. } } = *self;
         let mut phases = [Phase::default(); 7];
@@ -39,13 +39,14 @@ impl AccelerationLimited {
         Phases { velocity: from, phases }
     }
 
-    /// As [`JerkLimited::possible`](super::jerk_limited::JerkLimited::possible).
+    /// Lists intervals of possible durations, as [`JerkLimited::possible`](super::jerk_limited::JerkLimited::possible) does.
     pub(super) fn possible(&self, found: &mut Possible) {
         let change = (self.to - self.from).abs() / self.rates.acceleration;
         found.push([change, f64::INFINITY]);
     }
 
-    /// As [`JerkLimited::critical_durations`](super::jerk_limited::JerkLimited::critical_durations).
+    /// Lists critical durations, as [`JerkLimited::critical_durations`](super::jerk_limited::JerkLimited::critical_durations)
+    /// does.
     pub(super) fn critical_durations(&self, found: &mut Durations) {
         let Self { from, to, rates: Rates { acceleration, .. } } = *self;
         if acceleration.is_finite() {
@@ -53,13 +54,13 @@ impl AccelerationLimited {
         }
     }
 
-    /// The shortest duration (s) in which the motion reaches the velocity limit; infinite without one.
+    /// Returns the shortest duration (s) in which the motion reaches the velocity limit; infinite without a limit.
     pub(super) fn full_speed_duration(&self) -> f64 {
         let Self { from, to, rates: Rates { velocity, acceleration, .. } } = *self;
         if acceleration.is_infinite() { 0.0 } else { (2.0 * velocity - from - to) / acceleration }
     }
 
-    /// As [`JerkLimited::rises_from`](super::jerk_limited::JerkLimited::rises_from).
+    /// Whether longer motions go farther, as [`JerkLimited::rises_from`](super::jerk_limited::JerkLimited::rises_from).
     pub(super) fn rises_from(&self, t: f64) -> bool {
         let Self { from, to, rates: Rates { acceleration, .. } } = *self;
         from + to + acceleration * t >= 0.0

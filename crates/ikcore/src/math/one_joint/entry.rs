@@ -1,10 +1,10 @@
-//! The way back inside the limits for a joint that is outside them, or cannot help leaving them.
+//! Return to the limits for a joint that violates them, or cannot avoid violating them.
 
 use super::joint_profile::JointProfile;
 use super::motion_state::{MotionState, Rates};
 
-/// The motion that brings a joint inside its limits with the largest jerk (or acceleration), and the state at its end.
-/// Empty for a joint that is inside and can stay there.
+/// Returns the motion that brings a joint inside its limits with the largest jerk (or acceleration), and the state at its
+/// end. The motion is empty for a joint that is inside and can stay there.
 pub(super) fn entry(from: MotionState, rates: &Rates) -> (JointProfile, MotionState) {
     let mut motion = JointProfile::empty();
     let mut state = from;
@@ -38,13 +38,13 @@ pub(super) fn entry(from: MotionState, rates: &Rates) -> (JointProfile, MotionSt
     (motion, state)
 }
 
-/// Whether a joint is faster than its limit in this direction (1 or -1), or cannot help getting there.
+/// Whether a joint exceeds its velocity limit in this direction (1 or -1), or cannot avoid it.
 fn leaves(state: &MotionState, sign: f64, rates: &Rates) -> bool {
     let to_come = if state.a * sign > 0.0 { 0.5 * state.a * state.a / rates.jerk } else { 0.0 };
     state.v * sign + to_come > rates.velocity * (1.0 + SPEED_ROUNDING)
 }
 
-/// Brings the speed in this direction down to its limit, with a deceleration that can end before the opposite limit.
+/// Reduces the velocity in this direction to its limit, with a deceleration that can end before the opposite limit.
 fn slow_down(state: &mut MotionState, sign: f64, rates: &Rates, go: &mut impl FnMut(&mut MotionState, f64, f64)) {
     let Rates { velocity, acceleration, jerk } = *rates;
     let last = acceleration.min((4.0 * jerk * velocity).sqrt());
@@ -61,8 +61,8 @@ fn slow_down(state: &mut MotionState, sign: f64, rates: &Rates, go: &mut impl Fn
     state.v = sign * (state.v * sign).min(velocity);
 }
 
-/// Excess of a velocity that counts as rounding, relative to its limit.
+/// Tolerance for rounding of a velocity, relative to its limit.
 const SPEED_ROUNDING: f64 = 1e-12;
 
-/// Most changes of direction: the second only undoes what the first could not avoid.
+/// Largest number of direction changes: the second only corrects what the first could not avoid.
 const ROUNDS: usize = 4;

@@ -1,12 +1,11 @@
-//! The extremal motions of a joint.
+//! Extremal motions of one joint.
 
 use super::acceleration_limited::AccelerationLimited;
 use super::jerk_limited::JerkLimited;
 use super::motion_state::{MotionState, Rates};
 use super::phases::{Durations, Phases, Possible};
 
-/// The motion of a given duration between two states that takes the joint as far as possible in the positive direction,
-/// whatever its final position.
+/// Motion between two states that maximises the displacement in a given duration, regardless of the final position.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Extremal {
     Jerk(JerkLimited),
@@ -22,7 +21,7 @@ impl Extremal {
         }
     }
 
-    /// The phases for a possible duration `t` (s).
+    /// Returns the phases for a possible duration `t` (s).
     pub(super) fn phases(&self, t: f64) -> Phases {
         match self {
             Self::Jerk(extremal) => extremal.phases(t),
@@ -30,7 +29,7 @@ impl Extremal {
         }
     }
 
-    /// The distance covered in a possible duration `t` (s).
+    /// Returns the displacement in a possible duration `t` (s).
     pub(super) fn displacement(&self, t: f64) -> f64 {
         match self {
             Self::Jerk(extremal) => extremal.displacement(t),
@@ -38,7 +37,7 @@ impl Extremal {
         }
     }
 
-    /// Intervals of possible durations (s), at most four, in order; the last has no end.
+    /// Returns intervals of possible durations (s), at most four, in order; the last is unbounded.
     pub(super) fn possible(&self) -> Possible {
         let mut found = Possible::new();
         match self {
@@ -48,7 +47,7 @@ impl Extremal {
         found
     }
 
-    /// Durations (s) between which the distance is monotone, as far as it is not known to rise.
+    /// Returns durations (s) between which the displacement is monotone, as far as it is not known to rise.
     pub(super) fn critical_durations(&self) -> Durations {
         let mut found = Durations::new();
         match self {
@@ -58,7 +57,7 @@ impl Extremal {
         found
     }
 
-    /// Whether all motions longer than `t` (s) get farther.
+    /// Whether every motion longer than `t` (s) goes farther.
     pub(super) fn rises_from(&self, t: f64) -> bool {
         match self {
             Self::Jerk(extremal) => extremal.rises_from(t),
@@ -66,7 +65,7 @@ impl Extremal {
         }
     }
 
-    /// The shortest duration (s) in which the motion reaches the velocity limit; infinite without one.
+    /// Returns the shortest duration (s) in which the motion reaches the velocity limit; infinite without a limit.
     pub(super) fn full_speed_duration(&self) -> f64 {
         match self {
             Self::Jerk(extremal) => extremal.full_speed_duration(),

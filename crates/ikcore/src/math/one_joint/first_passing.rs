@@ -1,16 +1,16 @@
-//! The first duration for which an extremal motion passes a position.
+//! Shortest duration in which an extremal motion reaches a position.
 
 use super::extremal::Extremal;
 use super::phases::Durations;
 
-/// Most durations that are tried: those where the motion changes its kind, then ever longer ones.
+/// Largest number of durations tried: those at which the profile changes its shape, then ever longer ones.
 const TRIES: usize = 400;
 
-/// Most steps of the search for a root; bisection alone ends in fewer.
+/// Largest number of steps of the root search; bisection alone takes fewer.
 const STEPS: usize = 200;
 
-/// The first duration between `start` and `end` for which the extremal motion gets to `goal`, which it misses by the
-/// `error` at the start.
+/// Returns the first duration between `start` and `end` in which the extremal motion reaches `goal`; `error` is the
+/// displacement minus the goal at `start`.
 pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 2], error: f64) -> Option<f64> {
     let beyond = |t: f64| extremal.displacement(t) - goal;
     let mut pauses = if extremal.rises_from(start) { Durations::new() } else { extremal.critical_durations() };
@@ -38,8 +38,8 @@ pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 
     None
 }
 
-/// The point between `ends` where `error` with these values at them changes its sign, or the nearest point after it: by
-/// the method of Anderson and Bjoerck, and by bisection where that is slow.
+/// Finds the point between `ends` at which `error` changes sign, or the nearest point after it; `values` are the errors at
+/// the ends. Uses the Anderson-Björck method, and bisection where that is slow.
 fn root(error: impl Fn(f64) -> f64, ends: [f64; 2], values: [f64; 2]) -> f64 {
     let ([mut lower, mut upper], [mut left, mut right]) = (ends, values);
     let (sign, mut last, mut width) = (left.signum(), 0.0, upper - lower);

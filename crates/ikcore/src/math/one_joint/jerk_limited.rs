@@ -1,14 +1,15 @@
-//! The motion of a given duration that takes a joint as far as possible in the positive direction, under a jerk limit.
+//! Extremal motion of one joint under a jerk limit: the largest displacement in a given duration.
 //!
-//! The acceleration rises to a peak, is held there if the peak is its limit, falls to a trough, is held there likewise,
-//! and rises to its final value. If the velocity would exceed its limit between peak and trough, it cruises at the limit.
+//! The acceleration rises to a peak, falls to a trough, and rises to its final value; peak and trough are held where they
+//! equal the acceleration limit. If the velocity would exceed its limit between peak and trough, the motion cruises at the
+//! limit.
 //!
-//! With J the jerk, c = v - a^2 / (2 J) is constant while the acceleration rises. Let c1 be its value at the start and c3
-//! at the end, K = J (c3 - c1), and S = (J T + a0 - a3) / 2 for the duration T. Without holds, the phases last T if
-//! peak - trough = S, and change the velocity as required if peak^2 - trough^2 = K.
+//! With J the jerk, c = v - a^2 / (2 J) is constant while the acceleration rises. Let c1 be its value at the start and c3 at
+//! the end, K = J (c3 - c1), and S = (J T + a0 - a3) / 2 for the duration T. Without holds, the phases last T if peak -
+//! trough = S, and change the velocity as required if peak^2 - trough^2 = K.
 //!
-//! Motions that just exist are met often: states at a limit, a final state on the ramp through the initial one. So a phase
-//! that rounding makes shorter than nothing lasts no time, and no shape fails to exist for a possible duration.
+//! Borderline motions are common: states at a limit, or a final state on the ramp through the initial state. Phases with
+//! negative duration by rounding therefore get zero duration, and every possible duration has a shape.
 
 use std::cmp::Ordering;
 
@@ -24,11 +25,12 @@ pub(super) struct JerkLimited {
     c1: f64,
     c3: f64,
     k: f64,
-    /// K of the same motion with the direction of the axis reversed, negated: zero if a falling ramp joins the states.
+    /// Value of K for the motion with the axis reversed, negated: zero if a falling ramp joins the states.
     fall: f64,
 }
 
-/// Peak and trough of the acceleration, how long they are held (s), and how long the velocity limit is kept between (s).
+/// Shape of the profile: peak and trough of the acceleration, their hold times (s), and the cruise time at the velocity limit
+/// (s).
 struct Shape {
     peak: f64,
     peak_hold: f64,
@@ -41,7 +43,7 @@ impl JerkLimited {
     pub(super) fn new(from: MotionState, to: MotionState, rates: Rates) -> Self {
         let c = |state: &MotionState| state.v - 0.5 * state.a * state.a / rates.jerk;
         let (c1, c3) = (c(&from), c(&to));
-        // J (c3 - c1), with fewer roundings.
+        // Difference J (c3 - c1), with fewer roundings.
         let (change, ramp) = (rates.jerk * (to.v - from.v), 0.5 * (to.a - from.a) * (to.a + from.a));
         let size = rates.jerk * from.v.abs().max(to.v.abs()) + 0.5 * (from.a * from.a + to.a * to.a);
         let (k, fall) = match [change - ramp, change + ramp].map(|rest| rest.abs() <= ROUNDING * size) {
@@ -52,7 +54,7 @@ impl JerkLimited {
         Self { from, to, rates, c1, c3, k, fall }
     }
 
-    /// The shape for a possible duration `t` (s).
+    /// Returns the shape for a possible duration `t` (s).
     #[inline]
     fn shape(&self, t: f64) -> Shape {
         let shape = self.unlimited(larger(0.5 * (self.rates.jerk * t + self.from.a - self.to.a), 0.0));
@@ -62,11 +64,11 @@ impl JerkLimited {
         shape
     }
 
-    /// The distance covered in the duration `t` (s).
+    /// Returns the displacement in the duration `t` (s).
     pub(super) fn displacement(&self, t: f64) -> f64 {
         let Self { from, to, c1, c3, rates: Rates { velocity, jerk, .. }, .. } = *self;
         let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t);
-        // A ramp from x to y along which the velocity is c + a^2 / (2 J).
+        // Displacement on a ramp from x to y with velocity c + a^2 / (2 J).
         let inverse = 1.0 / jerk;
         let [half, sixth] = [0.5 * inverse, inverse / 6.0];
         let ramp = |c: f64, x: f64, y: f64| (y - x) * inverse * (c + (x * x + x * y + y * y) * sixth);
@@ -82,7 +84,7 @@ impl JerkLimited {
         ramp(c1, from.a, peak) + holds + fall + ramp(c3, trough, to.a)
     }
 
-    /// The phases for the duration `t` (s).
+    /// Returns the phases for the duration `t` (s).
     pub(super) fn phases(&self, t: f64) -> Phases {
         let Shape { peak, peak_hold, cruise, trough, trough_hold } = self.shape(t);
         let j = self.rates.jerk;
@@ -109,11 +111,11 @@ impl JerkLimited {
         Phases { velocity: self.from.v, phases }
     }
 
-    /// The shape without a velocity limit. Whatever rounding does to it, its phases last the duration that belongs to `s`.
+    /// Returns the shape without a velocity limit. Despite rounding, its phases last the duration given by `s`.
     fn unlimited(&self, s: f64) -> Shape {
         let Self { from, to, k, rates: Rates { acceleration: limit, jerk, .. }, .. } = *self;
         let between = |x: f64, least: f64, most: f64| larger(smaller(x, most), least);
-        // Of a ramp that rises all the way (s = 0 and k = 0) every point is peak and trough.
+        // A ramp that rises throughout (s = 0 and k = 0) has its peak and trough at every point.
         let ratio = if k == 0.0 { 0.0 } else { k / s };
         let peak = between(0.5 * (ratio + s), from.a, to.a + s);
         let free = Shape { peak, peak_hold: 0.0, cruise: 0.0, trough: peak - s, trough_hold: 0.0 };
@@ -143,18 +145,18 @@ impl JerkLimited {
         }
     }
 
-    /// The velocity between peak and trough where the acceleration is zero.
+    /// Returns the velocity between peak and trough at which the acceleration is zero.
     fn top_speed(&self, shape: &Shape) -> f64 {
         self.c1 + shape.peak * (shape.peak / self.rates.jerk + shape.peak_hold)
     }
 
-    /// The shape that reaches the velocity limit.
+    /// Returns the shape that cruises at the velocity limit.
     fn cruising(&self, t: f64) -> Shape {
         let shape = self.at_top_speed();
         Shape { cruise: (t - self.duration(&shape)).max(0.0), ..shape }
     }
 
-    /// The shape that just reaches the velocity limit.
+    /// Returns the shape that just reaches the velocity limit.
     fn at_top_speed(&self) -> Shape {
         let Rates { velocity, acceleration: limit, jerk } = self.rates;
         let side = |c: f64, least: f64| {
@@ -170,14 +172,14 @@ impl JerkLimited {
         ramps / self.rates.jerk + shape.peak_hold + shape.trough_hold
     }
 
-    /// Where motions of this duration begin to exist, or cease to (s): pairs, in order.
+    /// Lists intervals of possible durations (s), in order.
     pub(super) fn possible(&self, found: &mut Possible) {
         let Self { from, to, k, fall, rates: Rates { acceleration: limit, .. }, .. } = *self;
         let [a0, a1] = [from.a, to.a];
-        // The square root vanishes where the states are on one ramp: with the terms that are smaller then.
+        // Discriminants, which vanish for states on one ramp: formed from the smaller terms to limit rounding.
         let [before, after] =
             if k.abs() < fall.abs() { [a0 * a0 - k, a1 * a1 + k] } else { [a1 * a1 - fall, a0 * a0 + fall] };
-        // The peak would be below the initial acceleration, or the trough above the final one.
+        // Excluded interval: the peak would be below the initial acceleration, or the trough above the final one.
         let excluded = |a: f64, k: f64, discriminant: f64| {
             let [shorter, longer] = sum_and_product(a, k, discriminant)?;
             let longer = if longer - a > limit { 0.5 * ((limit + a) * (limit + a) - k) / limit } else { longer };
@@ -185,7 +187,7 @@ impl JerkLimited {
         };
         let mut start = (a0 - a1).max(0.0);
         if a0 < a1 && k == 0.0 || a0 > a1 && fall == 0.0 {
-            // The ramp alone: a little longer there may be nothing.
+            // Single ramp: slightly longer motions may not exist.
             found.push([self.duration_of(start); 2]);
         }
         let mut excluded = [excluded(a0, k, before), excluded(-a1, -k, after)];
@@ -200,12 +202,13 @@ impl JerkLimited {
         found.push([self.duration_of(start), f64::INFINITY]);
     }
 
-    /// The duration that belongs to S.
+    /// Returns the duration for a value of S.
     fn duration_of(&self, s: f64) -> f64 {
         ((2.0 * s - self.from.a + self.to.a) / self.rates.jerk).max(0.0)
     }
 
-    /// Durations (s) at which the phases change their kind, or the distance turns: it is monotone in between.
+    /// Lists durations (s) at which the profile changes its shape or the displacement has an extremum; the displacement is
+    /// monotone in between.
     pub(super) fn critical_durations(&self, found: &mut Durations) {
         let Self { c1, c3, k, rates: Rates { acceleration: limit, jerk, .. }, .. } = *self;
         let mut add = |s: f64| {
@@ -213,7 +216,7 @@ impl JerkLimited {
                 found.push(self.duration_of(s));
             }
         };
-        // Without holds the distance is a multiple of S^3 / 4 + J (c1 + c3) S - K^2 / (4 S), up to a constant.
+        // Displacement without holds: a multiple of S^3 / 4 + J (c1 + c3) S - K^2 / (4 S), up to a constant.
         let half = -2.0 / 3.0 * jerk * (c1 + c3);
         both(half, -k * k / 3.0).into_iter().flatten().map(f64::sqrt).for_each(&mut add);
         if limit.is_finite() {
@@ -224,19 +227,18 @@ impl JerkLimited {
             let trough_held = |peak: f64| 0.5 * ((limit + peak) * (limit + peak) - k) / limit;
             both(0.25 * limit, -jerk * c3).into_iter().flatten().map(peak_held).for_each(&mut add);
             both(-0.25 * limit, -jerk * c1).into_iter().flatten().map(trough_held).for_each(&mut add);
-            // Both held: the distance turns where the velocity between them is -A^2 / J.
+            // Both accelerations held: the displacement has an extremum where the velocity in between is -A^2 / J.
             let peak_hold = (-limit * limit / jerk - c1) / limit - 0.5 * limit / jerk;
             add(2.0 * limit + peak_hold * jerk - 0.5 * k / limit);
         }
     }
 
-    /// The shortest duration (s) in which the motion reaches the velocity limit; infinite without one.
+    /// Returns the shortest duration (s) in which the motion reaches the velocity limit; infinite without a limit.
     pub(super) fn full_speed_duration(&self) -> f64 {
         if self.rates.velocity.is_finite() { self.duration(&self.at_top_speed()) } else { f64::INFINITY }
     }
 
-    /// Whether all motions longer than `t` (s) get farther, since they can spend the rest of the time at a velocity that
-    /// is not negative.
+    /// Whether every motion longer than `t` (s) goes farther: it can spend the additional time at a nonnegative velocity.
     pub(super) fn rises_from(&self, t: f64) -> bool {
         let passes_zero = |shape: &Shape| shape.peak >= 0.0 && shape.trough <= 0.0;
         let shape = self.shape(t);
@@ -244,17 +246,17 @@ impl JerkLimited {
     }
 }
 
-/// The real solutions of x^2 - 2 half x = rest, the smaller first.
+/// Returns the real solutions of x^2 - 2 half x = rest, the smaller first.
 fn both(half: f64, rest: f64) -> Option<[f64; 2]> {
     sum_and_product(half, -rest, half * half + rest)
 }
 
-/// The real numbers of this sum / 2 and product, the smaller first; `discriminant` is half^2 - product.
+/// Returns two real numbers with this half-sum and product, the smaller first; `discriminant` is half^2 - product.
 fn sum_and_product(half: f64, product: f64, discriminant: f64) -> Option<[f64; 2]> {
     if !(discriminant >= 0.0) {
         return None;
     }
-    // Without cancellation.
+    // Form without cancellation.
     let outer = half + discriminant.sqrt().copysign(half);
     let inner = if outer == 0.0 { 0.0 } else { product / outer };
     Some([outer.min(inner), outer.max(inner)])

@@ -1,4 +1,4 @@
-//! The motion of one joint in time.
+//! Motion profile of one joint in time.
 
 use smallvec::SmallVec;
 
@@ -7,10 +7,10 @@ use super::phases::{Phases, ROUNDING};
 use crate::math::polynomial::quadratic_roots;
 use crate::math::vector::between;
 
-/// A part of a motion with constant jerk: its start (s), and state and jerk there.
+/// Segment of constant jerk: its start (s), and state and jerk there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointSegment {
-    /// Start (s).
+    /// Start time (s).
     pub time: f64,
     /// State at the start.
     pub state: MotionState,
@@ -18,22 +18,22 @@ pub struct JointSegment {
     pub jerk: f64,
 }
 
-/// A motion of one joint from t = 0 on.
+/// Motion profile of one joint from t = 0 on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointProfile {
-    /// The segments, in order; the first starts at zero.
+    /// Segments in order; the first starts at zero.
     pub segments: SmallVec<[JointSegment; 8]>,
     /// Duration (s).
     pub duration: f64,
 }
 
 impl JointProfile {
-    /// No motion yet.
+    /// Creates an empty profile.
     pub(super) fn empty() -> Self {
         Self { segments: SmallVec::new(), duration: 0.0 }
     }
 
-    /// No motion at `state`, which lasts no time.
+    /// Returns a profile of zero duration at `state`.
     pub fn still(state: MotionState) -> Self {
         let mut profile = Self::empty();
         profile.segments.push(JointSegment { time: 0.0, state, jerk: 0.0 });
@@ -48,7 +48,7 @@ impl JointProfile {
         }
     }
 
-    /// The motion of these phases from the position `q` in `duration` (s), which is theirs but for rounding.
+    /// Builds the profile of these phases from the position `q`; `duration` (s) equals their sum up to rounding.
     pub(super) fn of(phases: &Phases, q: f64, duration: f64) -> Self {
         let mut motion = Self::empty();
         let mut state = MotionState { q, v: phases.velocity, a: 0.0 };
@@ -66,8 +66,8 @@ impl JointProfile {
         Self { duration, ..motion }
     }
 
-    /// The same motion to the position `q`, which it misses by rounding. The longest segment makes up for it by its
-    /// velocity, as far as `rounding` (rad/s or m/s) goes, and then by its position.
+    /// Corrects rounding of the final position to `q`: by the velocity of the longest segment, changed by up to `rounding`
+    /// (rad/s or m/s), and otherwise by the position after it.
     pub(super) fn ending_at(mut self, q: f64, rounding: f64) -> Self {
         let error = q - self.at(self.duration).q;
         let (mut longest, mut longest_span) = (0, 0.0);
@@ -77,7 +77,7 @@ impl JointProfile {
                 (longest, longest_span) = (i, span);
             }
         }
-        // The velocities at both ends stay.
+        // The velocities at both ends must not change.
         if 0 < longest && longest + 1 < self.segments.len() {
             self.segments[longest].state.v += (error / longest_span).clamp(-rounding, rounding);
         }
@@ -85,24 +85,24 @@ impl JointProfile {
         self
     }
 
-    /// The time at which a segment ends (s).
+    /// Returns the end time of a segment (s).
     fn end_of(&self, segment: usize) -> f64 {
         self.segments.get(segment + 1).map_or(self.duration, |next| next.time)
     }
 
-    /// JointSegment at time `t` (s), clamped to the motion.
+    /// Returns the segment at time `t` (s), clamped to the motion.
     pub fn segment_at(&self, t: f64) -> &JointSegment {
         let started = self.segments.partition_point(|segment| segment.time <= t);
         &self.segments[started.saturating_sub(1)]
     }
 
-    /// The state at time `t` (s) from the start to the end.
+    /// Returns the state at time `t` (s), between start and end.
     pub fn at(&self, t: f64) -> MotionState {
         let segment = self.segment_at(t);
         segment.state.after(segment.jerk, t - segment.time)
     }
 
-    /// The lowest and the highest position.
+    /// Returns the lowest and the highest position.
     pub fn range(&self) -> (f64, f64) {
         let mut range = (f64::INFINITY, f64::NEG_INFINITY);
         let mut visit = |q: f64| range = (range.0.min(q), range.1.max(q));
@@ -115,7 +115,7 @@ impl JointProfile {
         range
     }
 
-    /// The motion weighted by `fraction`, plus `other` of the same duration weighted by the rest.
+    /// Returns the weighted mean with `other`, which has the same duration; `fraction` is the weight of this motion.
     pub(super) fn mean(&self, fraction: f64, other: &Self) -> Self {
         let mut mean = Self { segments: SmallVec::new(), duration: self.duration };
         let (mut i, mut k) = (0, 0);
@@ -139,13 +139,13 @@ impl JointProfile {
             if start(other, k + 1) <= together {
                 k += 1;
             }
-            // The positions of both may be far away, and their mean near.
+            // Integration of the mean: blending two distant positions would lose digits.
             q = segment.state.after(segment.jerk, next - time).q;
             time = next;
         }
     }
 
-    /// This motion, then constant velocity until `duration` (s).
+    /// Appends constant velocity until `duration` (s).
     pub fn extended_to(mut self, duration: f64) -> Self {
         let last = self.segments.last().map(|segment| segment.state.after(segment.jerk, self.duration - segment.time));
         let state = MotionState { a: 0.0, ..last.unwrap_or_default() };
@@ -154,7 +154,7 @@ impl JointProfile {
         self
     }
 
-    /// This motion, then `next`.
+    /// Appends the motion `next`.
     pub(super) fn then(mut self, next: &Self) -> Self {
         let start = self.duration;
         self.segments

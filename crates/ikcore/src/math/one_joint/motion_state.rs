@@ -1,4 +1,4 @@
-//! The state of one joint, and its limits.
+//! State and limits of one joint.
 
 /// Position, velocity and acceleration of a joint (rad or m, per s, per s^2).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,12 +12,12 @@ pub struct MotionState {
 }
 
 impl MotionState {
-    /// At rest.
+    /// Returns the state of rest at `q`.
     pub fn rest(q: f64) -> Self {
         Self { q, v: 0.0, a: 0.0 }
     }
 
-    /// The state after `t` (s) of constant jerk.
+    /// Returns the state after `t` (s) of constant jerk.
     pub fn after(&self, jerk: f64, t: f64) -> Self {
         Self {
             q: self.q + t * (self.v + t * (0.5 * self.a + t * jerk / 6.0)),
@@ -26,13 +26,13 @@ impl MotionState {
         }
     }
 
-    /// The same state with the direction of the axis reversed.
+    /// Returns the state with the axis reversed.
     pub fn mirrored(&self) -> Self {
         Self { q: -self.q, v: -self.v, a: -self.a }
     }
 }
 
-/// Largest speed, acceleration and jerk of a joint, all positive; infinite without a limit.
+/// Velocity, acceleration and jerk limits of a joint, all positive; infinite if unlimited.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rates {
     /// Largest speed (rad/s, m/s).

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::motion_state::MotionState;
 
-/// A phase: its duration (s), and acceleration and jerk at its start.
+/// Phase of constant jerk: its duration (s), and acceleration and jerk at its start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Phase {
     pub duration: f64,
@@ -12,7 +12,7 @@ pub(super) struct Phase {
     pub jerk: f64,
 }
 
-/// Seven phases one after the other; some may last no time.
+/// Seven consecutive phases; some may have zero duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Phases {
     /// Velocity at the start.
@@ -21,7 +21,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Distance covered in all phases.
+    /// Returns the displacement over all phases.
     pub(super) fn displacement(&self) -> f64 {
         let mut state = MotionState { q: 0.0, v: self.velocity, a: 0.0 };
         for phase in &self.phases {
@@ -31,7 +31,7 @@ impl Phases {
         state.q
     }
 
-    /// The same motion with the direction of the axis reversed.
+    /// Returns the motion with the axis reversed.
     pub(super) fn mirrored(&self) -> Self {
         let phases = self.phases.map(|phase| Phase {
             duration: phase.duration,

@@ -1,4 +1,4 @@
-//! The possible durations of a motion of one joint between two states, and the motion for one of them.
+//! Possible durations of a motion of one joint between two states, and the motion for one of them.
 
 use super::entry::entry;
 use super::extremal::Extremal;
@@ -7,8 +7,8 @@ use super::joint_profile::JointProfile;
 use super::motion_state::{MotionState, Rates};
 use super::phases::{Phases, ROUNDING};
 
-/// A joint that has to get from one state to another within its limits. Outside its limits it first returns inside them,
-/// as quickly as possible.
+/// Transfer of a joint from one state to another within its limits. A joint that violates the limits first returns to them as
+/// quickly as possible.
 #[derive(Debug, Clone)]
 pub struct Transfer {
     entry: JointProfile,
@@ -21,7 +21,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// From one state to another; the final state is inside the limits and can be reached inside them.
+    /// Prepares the transfer; the final state must satisfy the limits and be reachable within them.
     pub fn new(from: MotionState, to: MotionState, rates: &Rates) -> Self {
         let (entry, inside) = entry(from, rates);
         Self {
@@ -35,7 +35,7 @@ impl Transfer {
         }
     }
 
-    /// The quickest way for a joint to the velocity and acceleration of `to`, wherever it gets there.
+    /// Returns the fastest motion to the velocity and acceleration of `to`, whatever its final position.
     pub fn to_velocity(from: MotionState, to: MotionState, rates: &Rates) -> Option<JointProfile> {
         let transfer = Self::new(from, to, rates);
         let [shortest, _] = *transfer.up.possible().first()?;
@@ -44,13 +44,13 @@ impl Transfer {
         Some(if profile.segments.is_empty() { JointProfile::still(transfer.from) } else { profile })
     }
 
-    /// The shortest possible duration of at least `least` (s); infinite if there is none.
+    /// Returns the shortest possible duration of at least `least` (s); infinite if there is none.
     pub fn duration(&self, least: f64) -> f64 {
         let least = (least - self.entry.duration).max(0.0);
         self.entry.duration + self.inside_duration(least)
     }
 
-    /// The motion of a possible duration (s).
+    /// Returns the motion for a possible duration (s).
     pub fn motion(&self, duration: f64) -> JointProfile {
         let t = duration - self.entry.duration;
         if t <= 0.0 {
@@ -68,19 +68,19 @@ impl Transfer {
         self.entry.clone().then(&inside.ending_at(self.to.q, ROUNDING * self.fastest(t)))
     }
 
-    /// Distance from the goal that counts as rounding after `t` (s): relative to the positions, and to the way there.
+    /// Returns the rounding error of the final position after `t` (s), from the positions and the path length.
     fn rounding(&self, t: f64) -> f64 {
         ROUNDING * (self.displacement.abs() + self.from.q.abs() + t * self.fastest(t))
     }
 
-    /// A speed that no motion of the duration `t` (s) exceeds.
+    /// Bounds the speed of all motions of the duration `t` (s).
     fn fastest(&self, t: f64) -> f64 {
         let Self { from, to, rates: Rates { velocity, acceleration, jerk }, .. } = self;
         let largest = (from.a.abs() + to.a.abs() + t * jerk).min(*acceleration);
         (from.v.abs() + to.v.abs() + t * largest).min(*velocity)
     }
 
-    /// The shortest possible duration of at least `least` (s), from inside the limits.
+    /// Returns the shortest possible duration of at least `least` (s), starting within the limits.
     fn inside_duration(&self, least: f64) -> f64 {
         if least == 0.0 && self.from == self.to {
             return 0.0;
@@ -93,7 +93,7 @@ impl Transfer {
             .unwrap_or(f64::INFINITY)
     }
 
-    /// The shortest duration in an interval for which motions exist throughout.
+    /// Returns the shortest duration in an interval throughout which motions exist.
     fn first_in(&self, [start, end]: [f64; 2]) -> Option<f64> {
         let (up, down) = (self.up.displacement(start), self.down.displacement(start));
         let (short, past, rounding) = (self.displacement - up, -self.displacement - down, self.rounding(start));

@@ -1,4 +1,4 @@
-//! Small capsules that hold given points.
+//! Small capsules around given points.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,7 +8,7 @@ use crate::shape::checked_shape::Shape;
 use crate::shape::collision_crate::Polyhedron;
 use crate::shape::tangent::nearest_on_segment;
 
-/// A capsule that holds the points it was made for (m).
+/// Capsule fitted around points (m).
 #[derive(Debug, Clone, Copy)]
 pub(in crate::shape) struct FittedCapsule {
     a: Vector3<f64>,
@@ -22,43 +22,43 @@ impl FittedCapsule {
         area * ((self.b - self.a).norm() + 4.0 / 3.0 * self.radius)
     }
 
-    /// The same capsule, grown if need be to hold all `points`: no bound of the fit is relied on.
+    /// Enlarges the radius if necessary to contain all `points`, so that the result does not rely on the accuracy of the fit.
     fn holding(self, points: &[Vector3<f64>]) -> Self {
         let apart = |point: &Vector3<f64>| (nearest_on_segment(&self.a, &self.b, point) - point).norm();
         let farthest = points.iter().map(apart).fold(0.0, f64::max);
         Self { radius: self.radius.max(farthest * GROWTH), ..self }
     }
 
-    /// Ends of the axis, and radius.
+    /// Returns the ends of the axis and the radius.
     pub fn parts(&self) -> ([f64; 3], [f64; 3], f64) {
         (self.a.into(), self.b.into(), self.radius)
     }
 
-    /// As a shape: a sphere if it has no length.
+    /// Converts to a shape: a sphere if the axis has no length.
     pub fn shape(&self) -> Result<Shape> {
         let (a, b, radius) = self.parts();
         Shape::swept_ball(a, b, radius)
     }
 }
 
-/// Steps towards the centre of the smallest circle, ...
+/// Number of steps towards the centre of the smallest circle.
 const CIRCLE_STEPS: usize = 40;
-/// ... and for a rough fit.
+/// Number of steps for a rough fit.
 const FEW_STEPS: usize = 10;
-/// Number of points that a rough fit looks at.
+/// Number of points in a rough fit.
 const FEW_POINTS: usize = 150;
-/// With more points than this only the corners of their hull are looked at.
+/// Number of points above which only the corners of their hull are used.
 const MANY_POINTS: usize = 60;
-/// Radii tried, over that of the circle: a larger radius makes a shorter capsule.
+/// Radii tried, relative to the smallest circle: a larger radius makes a shorter capsule.
 const RADII: [f64; 4] = [1.0, 1.03, 1.08, 1.18];
-/// Turns of the axis tried around the best one (rad), one after the other.
+/// Successive rotations of the axis about the best one (rad).
 const TURNS: [f64; 4] = [0.2, 0.1, 0.05, 0.02];
-/// Grown by this, so that rounding leaves no point outside.
+/// Relative enlargement, so that rounding leaves no point outside.
 const GROWTH: f64 = 1.0 + 1e-9;
-/// The least radius (m), of a capsule for a straight line.
+/// Smallest radius (m), for points on a straight line.
 const THINNEST: f64 = 1e-6;
 
-/// The smallest capsule found that holds all `points`.
+/// Returns the smallest capsule found that contains all points.
 pub(in crate::shape) fn smallest_capsule(all: &[Vector3<f64>]) -> FittedCapsule {
     let hull = (all.len() > MANY_POINTS).then(|| hull_corners(all)).flatten();
     let points = hull.as_deref().unwrap_or(all);
@@ -80,26 +80,27 @@ pub(in crate::shape) fn smallest_capsule(all: &[Vector3<f64>]) -> FittedCapsule 
     best.1.holding(all)
 }
 
-/// About the volume of the smallest capsule (m^3).
+/// Estimates the volume of the smallest capsule (m^3).
 pub(super) fn rough_volume(points: &[Vector3<f64>]) -> f64 {
     let few: Vec<Vector3<f64>> = points.iter().copied().step_by(points.len().div_ceil(FEW_POINTS).max(1)).collect();
     let volumes = principal_axes(&few).map(|axis| along(&few, &axis, FEW_STEPS).volume());
     volumes.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The corners of the convex hull; `None` for points in a plane.
+/// Returns the corners of the convex hull; `None` for points in a plane.
 fn hull_corners(points: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
     let points: Vec<[f64; 3]> = points.iter().map(|point| (*point).into()).collect();
-    // A capsule that holds all is wanted, so corners that are missing do no harm.
+    // Missing corners do no harm, since the capsule is enlarged afterwards.
     Polyhedron::hull_of(&points, &Matrix3::identity()).map(|hull| hull.corners())
 }
 
-/// The smallest capsule found with its axis along `axis`.
+/// Returns the smallest capsule found with its axis along `axis`.
 fn along(points: &[Vector3<f64>], axis: &Vector3<f64>, steps: usize) -> FittedCapsule {
     let (center, circle) = smallest_circle(points, axis, steps);
     let capsules = RADII.map(|growth| {
         let radius = (circle * growth * GROWTH).max(THINNEST);
-        // A point at `height` and `aside` from the axis is in the capsule if the axis reaches to within `rest` of it.
+        // Containment: a point at `height` and at distance `aside` from the axis is inside if the axis extends to within
+        // `rest` of that height.
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for point in points {
             let offset = point - center;
@@ -109,7 +110,7 @@ fn along(points: &[Vector3<f64>], axis: &Vector3<f64>, steps: usize) -> FittedCa
             low = low.min(height + rest);
             high = high.max(height - rest);
         }
-        // All points are near one place of the axis.
+        // All points are near one position on the axis.
         if low > high {
             (low, high) = (0.5 * (low + high), 0.5 * (low + high));
         }
@@ -121,7 +122,7 @@ fn along(points: &[Vector3<f64>], axis: &Vector3<f64>, steps: usize) -> FittedCa
         .unwrap_or(capsules[0])
 }
 
-/// A point of the axis and the radius of a small cylinder along `axis` around all points (Badoiu and Clarkson 2003).
+/// Returns a point of the axis and the radius of a small cylinder along `axis` around all points (Badoiu and Clarkson 2003).
 fn smallest_circle(points: &[Vector3<f64>], axis: &Vector3<f64>, steps: usize) -> (Vector3<f64>, f64) {
     let first = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
     let second = axis.cross(&first);

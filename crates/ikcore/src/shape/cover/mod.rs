@@ -1,7 +1,7 @@
-//! Covers of meshes: few spheres and capsules that hold a mesh, with what it encloses.
+//! Covers of meshes: few spheres and capsules that contain a mesh and its interior.
 //!
-//! Planes cut the mesh into parts; each part gets the smallest capsule found for it. A capsule is convex, so it holds a part,
-//! triangles and inside, if it holds the corners of the part, and those on the cuts.
+//! Planes cut the mesh into parts, and each part gets the smallest capsule found for it. Since a capsule is convex, it
+//! contains a part, triangles and interior, if it contains the corners of the part and the corners on its cuts.
 
 mod fit;
 mod parts;
@@ -16,24 +16,24 @@ pub(super) use fit::smallest_capsule;
 use fit::{FittedCapsule, rough_volume};
 use parts::CoveredPart;
 
-/// Few spheres and capsules that hold a mesh.
+/// Spheres and capsules that contain a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cover {
-    /// The spheres and capsules.
+    /// Spheres and capsules of the cover.
     pub shapes: Vec<Shape>,
-    /// Volume of the cover over that of the mesh; NaN for a mesh that is not closed. To about 1 %.
+    /// Volume of the cover relative to the mesh, to about 1 %; NaN for a mesh that is not closed.
     pub volume_ratio: f64,
-    /// No point of the cover is farther than this from the mesh (m). At most 5 %, 0.2 mm, or a 4,000th of the way over its
-    /// largest capsule more than the farthest.
+    /// Upper bound on the distance of any point of the cover from the mesh (m). Exceeds the true maximum by at most 5 %, 0.2
+    /// mm, or a 4,000th of the meridian of its largest capsule.
     pub largest_distance: f64,
 }
 
-/// One more capsule must save this fraction of the volume.
+/// Fraction of the volume that one more capsule must save.
 const LEAST_GAIN: f64 = 0.02;
 
 impl Mesh {
-    /// A cover of at most `most` >= 1 spheres and capsules: the piece whose cut saves most is cut in two, until there are
-    /// `most`; of all numbers on the way, the one of least volume is taken.
+    /// Covers the mesh by at most `most` >= 1 spheres and capsules. The piece whose cut saves most volume is cut in two until
+    /// there are `most` pieces; the cover of least volume on the way is returned.
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for coordinates that are too large for a volume.
@@ -44,10 +44,10 @@ impl Mesh {
         Ok(Cover { shapes, volume_ratio, largest_distance })
     }
 
-    /// The shapes of [`cover`](Self::cover), and their volume (m^3).
+    /// Returns the shapes of [`cover`](Self::cover), and their volume (m^3).
     fn covering(&self, most: usize) -> Result<(f64, Vec<Shape>)> {
         let mut pieces = vec![Piece::of(CoveredPart::of(self))];
-        // The next cut of each piece is found once.
+        // Cache of the best cut of each piece.
         let mut cuts = vec![pieces[0].best_cut()];
         let mut best = (f64::INFINITY, vec![]);
         loop {
@@ -72,13 +72,13 @@ impl Mesh {
     }
 }
 
-/// A part of the mesh, and the capsule that holds it.
+/// Part of the mesh, and the capsule that contains it.
 struct Piece {
     part: CoveredPart,
     capsule: FittedCapsule,
 }
 
-/// A cut of a piece in two, and the volume that it saves (m^3).
+/// Cut of a piece in two, and the volume that it saves (m^3).
 struct Cut {
     halves: [Piece; 2],
     gain: f64,
@@ -89,7 +89,7 @@ impl Piece {
         Self { capsule: smallest_capsule(&part.corners()), part }
     }
 
-    /// The cut that seems to save most by roughly fitted capsules.
+    /// Returns the cut that saves most volume according to roughly fitted capsules.
     fn best_cut(&self) -> Option<Cut> {
         let planes = self.part.candidate_planes();
         let cuts =
@@ -120,7 +120,7 @@ mod tests {
         Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
     }
 
-    /// An L of two boxes that overlap, and a torus-like ring of boxes.
+    /// Returns an L of two overlapping boxes, and a ring of boxes.
     fn bodies(rng: &mut LazyRng) -> Vec<Shape> {
         let cuboid = |center: [f64; 3], size: [f64; 3]| Shape::cuboid(center, size, None).unwrap().triangles();
         let l = [cuboid([0.0, 0.0, 0.25], [0.1, 0.1, 0.5]), cuboid([0.15, 0.0, 0.5], [0.4, 0.1, 0.1])].concat();
@@ -151,7 +151,7 @@ mod tests {
                         assert!(is_held(&cover, &(a + s * (b - a) + t * (c - a))));
                     }
                 }
-                // Nor of what it encloses.
+                // Points inside the mesh must be covered too.
                 for _ in 0..2000 {
                     let point = Vector3::from_fn(|_, _| rng.uniform_in(-0.6, 0.6));
                     assert!(!as_mesh(&body).encloses(&point) || is_held(&cover, &point), "{point}");
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_needle_of_extreme_length_has_a_cover() {
         let needle = |length: f64| mesh(&[[[0.0; 3], [length, 0.0, 0.0], [0.0, 1e-3, 1e-4]]]);
-        // It ends, whatever it finds.
+        // Termination is all that is required here.
         let _ = as_mesh(&needle(1e300)).cover(4);
         let cover = as_mesh(&needle(1e30)).cover(4).unwrap();
         assert!(cover.largest_distance >= 4e-4 && cover.largest_distance.is_finite(), "{}", cover.largest_distance);

@@ -5,24 +5,24 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use crate::math::vector::between;
 use crate::shape::mesh::Mesh;
 
-/// Polygons of a mesh on one side of the planes that cut it.
+/// Polygons of a mesh on one side of the cutting planes.
 #[derive(Debug, Clone)]
 pub(super) struct CoveredPart {
     polygons: Vec<Vec<Vector3<f64>>>,
 }
 
-/// All points x with normal . x = offset.
+/// Plane of points x with normal . x = offset.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CuttingPlane {
     normal: Vector3<f64>,
     offset: f64,
 }
 
-/// Where planes are tried, as fractions of the extent of a part.
+/// Positions of candidate planes, as fractions of the extent of a part.
 const PLACES: [f64; 7] = [0.15, 0.27, 0.38, 0.5, 0.62, 0.73, 0.85];
 
 impl CoveredPart {
-    /// All of `mesh`.
+    /// Converts a whole mesh.
     pub fn of(mesh: &Mesh) -> Self {
         Self { polygons: (0..mesh.faces().len()).map(|i| mesh.triangle(i).to_vec()).collect() }
     }
@@ -31,7 +31,7 @@ impl CoveredPart {
         self.polygons.is_empty()
     }
 
-    /// The corners of the polygons, each once.
+    /// Returns the corners of the polygons without duplicates.
     pub fn corners(&self) -> Vec<Vector3<f64>> {
         let mut corners: Vec<Vector3<f64>> = self.polygons.iter().flatten().copied().collect();
         let order = |p: &Vector3<f64>, q: &Vector3<f64>| {
@@ -42,7 +42,7 @@ impl CoveredPart {
         corners
     }
 
-    /// Planes across the principal axes of the corners.
+    /// Returns planes perpendicular to the principal axes of the corners.
     pub fn candidate_planes(&self) -> Vec<CuttingPlane> {
         let corners = self.corners();
         let axes = principal_axes(&corners);
@@ -53,7 +53,7 @@ impl CoveredPart {
         planes.collect()
     }
 
-    /// The parts below and above `plane`; polygons that it crosses are cut, and both parts have the new corners.
+    /// Splits the part at `plane`; polygons across the plane are cut, and both halves contain the new corners.
     pub fn cut(&self, plane: &CuttingPlane) -> [Self; 2] {
         [-1.0, 1.0].map(|side| {
             let halves = self.polygons.iter().map(|polygon| clipped(polygon, plane, side));
@@ -62,7 +62,7 @@ impl CoveredPart {
     }
 }
 
-/// The part of a convex polygon on the side of the plane.
+/// Clips a convex polygon to one side of the plane.
 fn clipped(polygon: &[Vector3<f64>], plane: &CuttingPlane, side: f64) -> Vec<Vector3<f64>> {
     let height = |p: &Vector3<f64>| side * (plane.normal.dot(p) - plane.offset);
     if polygon.iter().all(|p| height(p) >= 0.0) {
@@ -82,13 +82,13 @@ fn clipped(polygon: &[Vector3<f64>], plane: &CuttingPlane, side: f64) -> Vec<Vec
     kept
 }
 
-/// Least and largest coordinate along `axis`.
+/// Returns the smallest and the largest coordinate along `axis`.
 pub(super) fn extent(points: &[Vector3<f64>], axis: &Vector3<f64>) -> (f64, f64) {
     let along = points.iter().map(|point| axis.dot(point));
     along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// Principal axes of points.
+/// Returns the principal axes of points.
 pub(super) fn principal_axes(points: &[Vector3<f64>]) -> [Vector3<f64>; 3] {
     let middle = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
     let spread: Matrix3<f64> = points.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();

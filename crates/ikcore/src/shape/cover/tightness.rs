@@ -1,4 +1,4 @@
-//! By how much a cover is larger than its mesh.
+//! Tightness of a cover: its excess volume, and its distance from the mesh.
 
 use std::f64::consts::PI;
 
@@ -11,16 +11,16 @@ use crate::shape::geometry::Geometry;
 use crate::shape::mesh::Mesh;
 use crate::shape::signed_distance::at_right_angles;
 
-/// Points drawn for the volume of the cover.
+/// Number of random points for the volume of the cover.
 const DRAWS: usize = 20_000;
-/// The largest distance is found to this (m), ...
+/// Absolute accuracy of the largest distance (m).
 const ACCURACY: f64 = 2e-4;
-/// ... or to this fraction of it, ...
+/// Accuracy of the largest distance, relative to it.
 const RELATIVE_ACCURACY: f64 = 0.05;
-/// ... or to this fraction of the way over a capsule from pole to pole: a needle would have no end of pieces.
+/// Accuracy of the largest distance, relative to the meridian of a capsule: it bounds the number of cells of a needle.
 const FINEST: f64 = 2.5e-4;
 
-/// The volume of the union (m^3), to about 1 %.
+/// Estimates the volume of the union (m^3), to about 1 %.
 pub(super) fn volume(shapes: &[Shape]) -> f64 {
     let corners = shapes.iter().flat_map(|shape| {
         let ball = shape.bounding_ball();
@@ -35,11 +35,11 @@ pub(super) fn volume(shapes: &[Shape]) -> f64 {
     (upper - lower).product() * inside.count() as f64 / DRAWS as f64
 }
 
-/// A bound on the distance from the mesh of the points on the surface of the cover.
+/// Bounds the distance from the mesh of all points on the surface of the cover.
 pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
     let surfaces: Vec<(usize, Surface)> =
         shapes.iter().enumerate().filter_map(|(i, shape)| Some((i, Surface::of(shape)?))).collect();
-    // Deep inside another capsule it is no surface of the cover.
+    // Points deep inside another capsule are not on the surface of the cover.
     let depth = |own: usize, point: &Vector3<f64>| {
         let others = shapes.iter().enumerate().filter(|(i, _)| *i != own);
         others.map(|(_, other)| other.geometry().tangent(point).value).fold(f64::INFINITY, f64::min)
@@ -70,7 +70,7 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
             continue;
         }
         let enough = ACCURACY.max(RELATIVE_ACCURACY * seen).max(FINEST * surface.meridian());
-        // Not a number where squares of coordinates are infinite.
+        // NaN where squares of coordinates are infinite.
         if !(reach > enough) {
             proven = proven.max(distance + reach);
         } else {
@@ -80,7 +80,7 @@ pub(super) fn largest_distance(mesh: &Mesh, shapes: &[Shape]) -> f64 {
     seen.max(proven)
 }
 
-/// The surface of a capsule: a place is given by the way from one pole along a meridian (m), and a turn about the axis (rad).
+/// Surface of a capsule, with coordinates: the way from one pole along a meridian (m), and the angle about the axis (rad).
 struct Surface {
     pole: Vector3<f64>,
     axes: [Vector3<f64>; 3],
@@ -88,7 +88,7 @@ struct Surface {
     length: f64,
 }
 
-/// Ranges of way and turn.
+/// Cell of the surface: ranges of way and angle.
 #[derive(Clone, Copy)]
 struct Cell {
     way: [f64; 2],
@@ -111,7 +111,7 @@ impl Cell {
 }
 
 impl Surface {
-    /// The way from pole to pole (m).
+    /// Returns the length of a meridian from pole to pole (m).
     fn meridian(&self) -> f64 {
         PI * self.radius + self.length
     }
@@ -127,18 +127,18 @@ impl Surface {
         Some(Self { pole: a, axes: [first, axis.cross(&first), axis], radius, length: (b - a).norm() })
     }
 
-    /// Cells that make up the whole surface.
+    /// Returns cells that make up the whole surface.
     fn cells(&self) -> Vec<Cell> {
         let whole = self.meridian();
         let fraction = |i: usize, all: f64| [i as f64 / 8.0 * all, (i + 1) as f64 / 8.0 * all];
         (0..64).map(|i| Cell { way: fraction(i / 8, whole), turn: fraction(i % 8, 2.0 * PI) }).collect()
     }
 
-    /// The middle of a cell, and how far the rest of it is at most (m).
+    /// Returns the middle of a cell, and the largest distance to any other point of the cell (m).
     fn middle(&self, cell: &Cell) -> (Vector3<f64>, f64) {
         let (way, turn) = (0.5 * (cell.way[0] + cell.way[1]), 0.5 * (cell.turn[0] + cell.turn[1]));
         let quarter = 0.5 * PI * self.radius;
-        // On the first round end, on the side, or on the last.
+        // First cap, side, or second cap.
         let (height, polar) = match way {
             _ if way < quarter => (0.0, way / self.radius),
             _ if way < quarter + self.length => (way - quarter, 0.5 * PI),

@@ -1,20 +1,20 @@
-//! The best point of a run.
+//! Best point of a run.
 
 use crate::objective::Point;
 
-/// The best point of a run so far.
+/// Best point of a run so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestPoint {
-    /// The point; empty before the first evaluation.
+    /// Coordinates; empty before the first evaluation.
     pub x: Point,
-    /// Its value; infinite if the objective was never finite.
+    /// Value; infinite if the objective was never finite.
     pub value: f64,
-    /// Whether it passes the problem's own test.
+    /// Whether the point passes the problem's own test.
     pub solved: bool,
 }
 
 impl Default for BestPoint {
-    /// No point yet.
+    /// Best point before the first evaluation.
     fn default() -> Self {
         Self { x: Point::new(), value: f64::INFINITY, solved: false }
     }

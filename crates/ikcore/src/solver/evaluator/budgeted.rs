@@ -1,4 +1,4 @@
-//! The evaluator: counts, budgets, and the end of a run.
+//! Evaluator: counts, budgets, and the end of a run.
 
 use super::best_point::BestPoint;
 use crate::objective::{Bounds, CallPattern, Objective, Score};
@@ -9,7 +9,7 @@ use crate::solver::status::Status;
 use crate::solver::stop::Stop;
 use crate::solver::stopwatch::Stopwatch;
 
-/// A budgeted view of an objective in a box.
+/// Budgeted view of an objective in a box.
 pub struct Evaluator<'a, O: ?Sized> {
     pub(super) objective: &'a mut O,
     pub(super) bounds: &'a Bounds,
@@ -23,13 +23,13 @@ pub struct Evaluator<'a, O: ?Sized> {
     pub(super) domain: Domain,
     /// Whether the solver ends at its own threshold.
     pub(super) own_threshold: bool,
-    /// The period of each entry; empty if all entries are clipped.
+    /// Period of each entry; empty if all entries are clipped.
     pub(super) periods: Vec<Option<f64>>,
     /// Whether the last point was solved, but outside the box.
     pub(super) solved_outside: bool,
 }
 
-/// The counts of a run so far, and its best point.
+/// Counts of a run so far, and its best point.
 pub(super) struct Progress {
     pub(super) evaluations: usize,
     iterations: usize,
@@ -37,7 +37,7 @@ pub(super) struct Progress {
     next_poll: usize,
     best: BestPoint,
     attempts: usize,
-    /// The best value of the current attempt.
+    /// Best value of the current attempt.
     attempt_value: f64,
 }
 
@@ -55,7 +55,7 @@ impl Default for Progress {
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
-    /// An evaluator with nothing counted yet.
+    /// Evaluator with all counts at zero.
     pub fn new(
         objective: &'a mut O,
         bounds: &'a Bounds,
@@ -97,17 +97,17 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.dimension
     }
 
-    /// The box that points must be in.
+    /// Box of the search.
     pub fn bounds(&self) -> &'a Bounds {
         self.bounds
     }
 
-    /// The run's random generator.
+    /// Random generator of the run.
     pub fn rng(&mut self) -> &mut LazyRng {
         self.rng
     }
 
-    /// The best point so far.
+    /// Best point so far.
     pub fn best(&self) -> &BestPoint {
         &self.progress.best
     }
@@ -117,7 +117,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.progress.evaluations
     }
 
-    /// Steps finished so far.
+    /// Finished steps so far.
     pub fn iterations(&self) -> usize {
         self.progress.iterations
     }
@@ -127,7 +127,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.progress.attempts
     }
 
-    /// The best value since the current attempt began.
+    /// Best value of the current attempt.
     pub fn attempt_value(&self) -> f64 {
         self.progress.attempt_value
     }
@@ -139,7 +139,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.progress.attempt_value = f64::INFINITY;
     }
 
-    /// Clips `x` to the box or wraps it into the box, as the solver declared.
+    /// Clips `x` to the box or wraps it into the box, as declared by the solver.
     #[inline]
     pub(super) fn admit(&self, x: &mut [f64]) {
         match self.domain {
@@ -159,7 +159,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// Counts a finished step and checks whether the run ends after it.
     ///
     /// # Errors
-    /// The status with which it ends.
+    /// Status that ends the run.
     pub(in crate::solver) fn after_step(&mut self) -> Result<(), Status> {
         self.progress.iterations += 1;
         let iterations = self.progress.iterations;
@@ -174,8 +174,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// The status of a run that `signal` ended: if a budget runs out within a step, that step may still have found a
-    /// solution.
+    /// Final status of a run that `signal` ended. A step may have found a solution before a budget ran out.
     pub(in crate::solver) fn final_status(&self, signal: Status) -> Status {
         if self.progress.best.solved { Status::Solved } else { signal }
     }
@@ -196,7 +195,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.solved_outside { Err(Status::OutsideLimits) } else { Ok(()) }
     }
 
-    /// Checks the end of the run; a solver with its own threshold continues when others are done.
+    /// Ends the run if it is solved, unless the solver has its own threshold.
     fn check_termination(&self) -> Result<(), Status> {
         if self.own_threshold { Ok(()) } else { self.check_solved() }
     }

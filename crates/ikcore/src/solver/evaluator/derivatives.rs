@@ -1,4 +1,4 @@
-//! Evaluations of residuals and derivatives, and the evaluator for solvers that use only values.
+//! Evaluation of residuals and derivatives, and the evaluator for solvers that use only values.
 
 use std::mem;
 
@@ -9,7 +9,7 @@ use crate::objective::{
 use crate::solver::status::Status;
 
 impl<O: Residual + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box and returns the value; writes the residuals.
+    /// Clips `x` to the box, writes the residuals, and returns the value.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -23,7 +23,7 @@ impl<O: Residual + ?Sized> Evaluator<'_, O> {
 }
 
 impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box and returns the value; writes residuals and Jacobians. Counts as one evaluation.
+    /// Clips `x` to the box, writes residuals and Jacobians, and returns the value. Counts as one evaluation.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -37,8 +37,8 @@ impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
 }
 
 impl<O: Gradient + ?Sized> Evaluator<'_, O> {
-    /// Brings `x` into the domain and returns the smooth error, infinite if it is not finite; writes the gradient.
-    /// Counts as one evaluation.
+    /// Brings `x` into the domain, writes the gradient, and returns the smooth error, infinite if it is not finite. Counts as
+    /// one evaluation.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).

@@ -1,7 +1,7 @@
-//! The evaluator sits between solver and objective: it counts, clips, checks, and keeps the best point.
+//! Evaluator between solver and objective: counts, clips, checks, and keeps the best point.
 //!
-//! `budgeted` holds the evaluator itself: counts, budgets, the end of a run. `values` and `derivatives` are the
-//! evaluations that solvers call; `best_point` is the best of them.
+//! `budgeted` holds the evaluator itself: counts, budgets, the end of a run. `values` and `derivatives` are the evaluations
+//! that solvers call; `best_point` keeps the best point.
 
 mod best_point;
 mod budgeted;

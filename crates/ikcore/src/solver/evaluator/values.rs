@@ -1,4 +1,4 @@
-//! Evaluations of values, one point or many.
+//! Evaluation of values, at one point or many.
 
 use smallvec::SmallVec;
 
@@ -6,7 +6,7 @@ use super::budgeted::Evaluator;
 use crate::objective::{Objective, Score};
 use crate::solver::status::Status;
 
-/// Number of points whose scores are kept on the stack.
+/// Number of scores kept on the stack.
 const CHUNK: usize = 8;
 
 impl<O: Objective + ?Sized> Evaluator<'_, O> {
@@ -22,11 +22,10 @@ impl<O: Objective + ?Sized> Evaluator<'_, O> {
         Ok(self.record(x, score))
     }
 
-    /// Clips the points stored one after another in `xs` and writes the value of each.
+    /// Clips the points stored consecutively in `xs`, and writes the value of each.
     ///
     /// # Errors
-    /// As for one point. If the budget covers only some of the points, the first ones are evaluated before the run
-    /// ends.
+    /// As for one point. If the budget covers only some of the points, the first ones are evaluated before the run ends.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Status> {
         for values in values.chunks_mut(self.pattern.batch_size) {
             let affordable = values.len().min(self.stop.max_evaluations - self.progress.evaluations);

@@ -9,18 +9,18 @@ use crate::solver::Status;
 use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 
-/// Artificial bee colony.
+/// Options of the artificial bee colony.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeeColony {
-    /// Food sources, each with an employed bee; there are as many onlookers. Karaboga's colony size is twice that.
+    /// Schedule of the food sources, each with an employed bee; there are as many onlookers. Karaboga's colony size is twice
+    /// that.
     pub schedule: Schedule,
-    /// Failed trials after which a source is abandoned. `None` means sources times dimensions (Karaboga and Basturk
-    /// 2007).
+    /// Failed trials after which a source is abandoned. `None` means sources times dimensions (Karaboga and Basturk 2007).
     pub limit: Option<usize>,
 }
 
 impl Default for BeeColony {
-    /// 20 sources: the colony of 40 of Karaboga and Basturk (2007).
+    /// Default of 20 sources: the colony of 40 of Karaboga and Basturk (2007).
     fn default() -> Self {
         Self { schedule: Schedule::of(20), limit: None }
     }
@@ -40,13 +40,13 @@ impl BeeColony {
     }
 }
 
-/// The colony between cycles.
+/// State of the colony between cycles.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     /// Failed trials at each source.
     trials: Vec<usize>,
-    /// The source that each onlooker flies to.
+    /// Source chosen by each onlooker.
     chosen: Vec<usize>,
     /// Candidate positions.
     candidates: Members,
@@ -69,7 +69,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeeColony {
         Ok(())
     }
 
-    /// One cycle: employed bees, onlookers, a scout.
+    /// Runs one cycle: employed bees, onlookers, a scout.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
@@ -106,8 +106,8 @@ impl BeeColony {
 }
 
 impl State {
-    /// v = x with one coordinate moved: v_j = x_j + phi (x_j - y_j), phi in [-1, 1), y another source, eq. (2) of
-    /// Karaboga and Basturk (2007). The better of x and v remains.
+    /// Searches near each chosen source x, one coordinate at a time: v_j = x_j + phi (x_j - y_j), phi in [-1, 1), y another
+    /// source, eq. (2) of Karaboga and Basturk (2007). The better of x and v remains.
     fn search<O: Objective + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let Self { population: Population { members, .. }, trials, chosen, candidates, .. } = self;
         let n = evaluator.dimension();
@@ -134,7 +134,7 @@ impl State {
         Ok(())
     }
 
-    /// Onlookers choose in proportion to fitness: 1 / (1 + f), or 1 + |f| for negative f.
+    /// Chooses sources for the onlookers in proportion to fitness: 1 / (1 + f), or 1 + |f| for negative f.
     fn choose_sources<O: Objective + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) {
         let mut sum = 0.0;
         for (running, value) in self.fitness.iter_mut().zip(&self.population.members.values) {

@@ -1,5 +1,5 @@
 //! Beetle swarm optimisation (Wang et al. 2019, "trajectory-planning beetle swarm optimization", equations (26) to (32)):
-//! particles with antennae, which lie along their velocity.
+//! particles with antennae along their velocity.
 //!
 //! The equations do not work as printed. In our reading, eq. (27) has an inertia weight and a limit on the velocity,
 //! without which the swarm diverges; the antennae of eq. (28) to (30) are at x +- V d/2 (the paper prints one name for
@@ -18,24 +18,24 @@ use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// The direction of a beetle along its velocity, given the values at its antennae.
+/// Direction of a beetle along its velocity, given the values at its antennae.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeetleDirection {
-    /// With the sign of F(right) - F(left), as printed in eq. (28): uphill if the velocity leads downhill, which slows
-    /// the contraction of the swarm.
+    /// Direction with the sign of F(right) - F(left), as printed in eq. (28): uphill if the velocity leads downhill, which
+    /// slows the contraction of the swarm.
     Printed,
-    /// To the antenna with the lower value.
+    /// Direction to the antenna with the lower value.
     Downhill,
 }
 
 words!("direction": BeetleDirection { Printed => "printed", Downhill => "downhill" });
 
-/// Beetle swarm optimisation.
+/// Options of beetle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeetleSwarm {
-    /// Beetles and generations; every beetle takes three evaluations per generation.
+    /// Number of beetles and generations; every beetle takes three evaluations per generation.
     pub schedule: Schedule,
-    /// Inertia weight; eq. (27) has none, which is 1.
+    /// Inertia weight; eq. (27) has none, equivalent to 1.
     pub inertia: f64,
     /// Attraction to the best position of the beetle, eq. (27).
     pub c1: f64,
@@ -43,21 +43,21 @@ pub struct BeetleSwarm {
     pub c2: f64,
     /// Largest velocity per generation, relative to the width of the box.
     pub velocity_limit: f64,
-    /// lambda of eq. (26): the weight of the velocity in a move; the rest comes from the antennae.
+    /// Weight lambda of the velocity in a move, eq. (26); the rest comes from the antennae.
     pub velocity_share: f64,
-    /// Initial delta, eq. (28).
+    /// Initial step delta, eq. (28).
     pub step: f64,
-    /// eta of eq. (32): factor on delta per generation.
+    /// Factor eta on delta per generation, eq. (32).
     pub step_decay: f64,
-    /// c of eq. (31): ratio of delta to the distance d of the antennae.
+    /// Ratio c of delta to the distance d of the antennae, eq. (31).
     pub step_over_antennae: f64,
-    /// The sign in eq. (28).
+    /// Direction of the antenna term of eq. (28).
     pub direction: BeetleDirection,
 }
 
 impl Default for BeetleSwarm {
-    /// Constants that work well for trajectories of arms with two to five joints; the paper prints only the update of
-    /// delta. Inertia and attractions are those of Eberhart and Shi (2000).
+    /// Constants that work well for trajectories of arms with two to five joints; the paper prints only the update of delta.
+    /// Inertia and attractions are from Eberhart and Shi (2000).
     fn default() -> Self {
         Self {
             schedule: Schedule::of(50),
@@ -75,7 +75,7 @@ impl Default for BeetleSwarm {
 }
 
 impl BeetleSwarm {
-    /// Eq. (27) as printed, without inertia weight; velocities may cross the whole box.
+    /// Options of eq. (27) as printed, without inertia weight; velocities may cross the whole box.
     pub fn literal() -> Self {
         Self { inertia: 1.0, velocity_limit: 1.0, ..Self::default() }
     }
@@ -107,7 +107,7 @@ impl BeetleSwarm {
     }
 }
 
-/// The swarm between generations.
+/// State of the swarm between generations.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
@@ -115,7 +115,7 @@ pub struct State {
     velocities: Velocities,
     /// Right and left antenna of each beetle, alternating.
     antennae: Members,
-    /// delta of eq. (32).
+    /// Step delta of eq. (32).
     step: f64,
 }
 
@@ -135,7 +135,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
         Ok(())
     }
 
-    /// Lines 5 to 21 of Algorithm 1.
+    /// Runs one generation: lines 5 to 21 of Algorithm 1.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, memory, velocities, antennae, step } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
@@ -143,7 +143,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
             // The draw spans half the width; the limit applies to all velocities.
             velocities.all.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
         } else {
-            // eq. (27), with inertia and limit
+            // Eq. (27), with inertia and limit.
             velocities.update([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
             self.evaluate_antennae(&population.members, &velocities.all, *step, antennae, evaluator)?;
             self.advance(&mut population.members, &velocities.all, antennae, *step);
@@ -178,7 +178,7 @@ impl BeetleSwarm {
         antennae.evaluate_from(0, evaluator)
     }
 
-    /// x = x + lambda V + (1 - lambda) xi, eq. (26), with xi = delta V sign(F(right) - F(left)), eq. (28).
+    /// Moves the beetles: x = x + lambda V + (1 - lambda) xi, eq. (26), with xi = delta V sign(F(right) - F(left)), eq. (28).
     fn advance(&self, beetles: &mut Members, velocities: &[f64], antennae: &Members, step: f64) {
         let n = beetles.dimension();
         let beetles = beetles.points.chunks_exact_mut(n).zip(velocities.chunks_exact(n));

@@ -1,23 +1,23 @@
-//! The best position of each member, and of the whole population.
+//! Best position of each member, and of the whole population.
 
 use super::population::{Members, Population};
 
-/// The best position of each member so far: p of particle swarms, and g, the best of them.
+/// Best positions so far: p of each member in particle swarms, and g, the best of all.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BestPlaces {
-    /// The best position of each member.
+    /// Best position of each member.
     pub members: Members,
-    /// Index of the best of them.
+    /// Index of the best member.
     pub leader: usize,
 }
 
 impl BestPlaces {
-    /// `population` members without a best position.
+    /// Memory of `population` members without a best position.
     pub fn new(population: usize, dimension: usize) -> Self {
         Self { members: Members::new(population, dimension), leader: 0 }
     }
 
-    /// Updates the positions that are better in `now`; the first time, all of them.
+    /// Replaces positions by better ones in `now`; the first time, replaces all.
     pub fn update(&mut self, now: &Population) {
         for i in 0..now.members.values.len() {
             if now.members.values[i] < self.members.values[i] || now.generation == 1 {

@@ -10,32 +10,32 @@ use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// When a trial that is no worse replaces its vector.
+/// Time at which a trial replaces its vector, if it is no worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrialUpdate {
-    /// After all trials, as published: they are evaluated together.
+    /// Replacement after all trials, as published; the trials are evaluated together.
     Generation,
-    /// At once, so that the next trials build on it: fewer evaluations, one by one.
+    /// Immediate replacement, so that the next trials build on it: fewer evaluations, one by one.
     Immediate,
 }
 
 words!("update": TrialUpdate { Generation => "generation", Immediate => "immediate" });
 
-/// Differential evolution.
+/// Options of differential evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferentialEvolution {
-    /// Vectors and generations.
+    /// Number of vectors and generations.
     pub schedule: Schedule,
-    /// F: weight of the difference of two vectors.
+    /// Weight F of the difference of two vectors.
     pub weight: f64,
-    /// CR: probability that a coordinate comes from the mutant.
+    /// Crossover rate CR: probability that a coordinate comes from the mutant.
     pub crossover_rate: f64,
-    /// When a trial that is no worse replaces its vector.
+    /// Time at which a trial replaces its vector, if it is no worse.
     pub update: TrialUpdate,
 }
 
 impl Default for DifferentialEvolution {
-    /// F = 0.5 and CR = 0.9, the first choices of Storn and Price (1997).
+    /// Default of F = 0.5 and CR = 0.9, the first choices of Storn and Price (1997).
     fn default() -> Self {
         Self { schedule: Schedule::of(50), weight: 0.5, crossover_rate: 0.9, update: TrialUpdate::Generation }
     }
@@ -58,7 +58,7 @@ impl DifferentialEvolution {
     }
 }
 
-/// The population between generations.
+/// State of the population between generations.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
@@ -95,7 +95,7 @@ impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
     }
 }
 
-/// Replaces vector `i` by its trial if that is no worse.
+/// Replaces vector `i` by its trial if the trial is no worse.
 fn select(members: &mut Members, trials: &Members, i: usize) {
     if trials.values[i] <= members.values[i] {
         members.take(i, trials, i);
@@ -103,8 +103,8 @@ fn select(members: &mut Members, trials: &Members, i: usize) {
 }
 
 impl DifferentialEvolution {
-    /// u_j = x_r1,j + F (x_r2,j - x_r3,j) with probability CR and for one coordinate in any case, else x_i,j: eq. (2) and
-    /// (4). Beyond a bound, half way from x_i to it.
+    /// Writes the trial u_j = x_r1,j + F (x_r2,j - x_r3,j) with probability CR and for at least one coordinate, else x_i,j: eq.
+    /// (2) and (4). A coordinate beyond a bound moves half way from x_i to the bound.
     fn cross(&self, members: &Members, i: usize, bounds: &Bounds, rng: &mut LazyRng, trial: &mut [f64]) {
         let [r1, r2, r3] = three_others(i, members.values.len(), rng);
         let (x, x1, x2, x3) = (members.point(i), members.point(r1), members.point(r2), members.point(r3));
@@ -124,12 +124,12 @@ impl DifferentialEvolution {
     }
 }
 
-/// Three different members other than `i`; each is drawn from the remaining ones.
+/// Draws three different members other than `i`, each from the remaining ones.
 fn three_others(i: usize, count: usize, rng: &mut LazyRng) -> [usize; 3] {
     let mut taken = [i; 4];
     for k in 1..4 {
         let mut drawn = rng.below(count - k);
-        // In ascending order, each member taken at or below the draw increases it by one.
+        // Each smaller index already taken, in ascending order, shifts the draw by one.
         let mut before = taken;
         before[..k].sort_unstable();
         for other in &before[..k] {

@@ -1,8 +1,8 @@
 //! Firefly algorithm (Yang 2009): fireflies move towards brighter ones, less so at a distance, plus a random part.
 //!
-//! The published loop runs over fireflies i and j, moves i towards j if j is brighter, and evaluates i at once. Here
-//! the loop over j is the outer one: in its turn, each firefly attracts all dimmer ones, which are evaluated together.
-//! A step is one turn; a generation is a turn of each.
+//! The published loop runs over fireflies i and j, moves i towards j if j is brighter, and evaluates i at once. Here the loop
+//! over j is the outer one: each firefly in turn attracts all dimmer ones, which are evaluated together. A step is one such
+//! turn; a generation is one turn of each firefly.
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
@@ -13,23 +13,23 @@ use crate::solver::Status;
 use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 
-/// Firefly algorithm.
+/// Options of the firefly algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Firefly {
-    /// Fireflies and generations.
+    /// Number of fireflies and generations.
     pub schedule: Schedule,
-    /// beta_0: attractiveness at zero distance.
+    /// Attractiveness beta_0 at zero distance.
     pub attractiveness: f64,
-    /// gamma: absorption of light, with distances relative to the width of the box.
+    /// Absorption gamma of light, with distances relative to the width of the box.
     pub absorption: f64,
-    /// alpha: size of the random part, relative to the width of the box.
+    /// Randomness alpha: size of the random part, relative to the width of the box.
     pub randomness: f64,
     /// Factor on alpha per turn.
     pub randomness_decay: f64,
 }
 
 impl Default for Firefly {
-    /// beta_0 = 1, gamma = 1, alpha = 0.2 and 25 fireflies (Yang 2009, 2010); the decay is Yang's (2014) 0.97.
+    /// Default of beta_0 = 1, gamma = 1, alpha = 0.2 and 25 fireflies (Yang 2009, 2010); the decay is Yang's (2014) 0.97.
     fn default() -> Self {
         Self {
             schedule: Schedule::of(25),
@@ -59,7 +59,7 @@ impl Firefly {
         Ok(())
     }
 
-    /// The schedule in turns.
+    /// Schedule in turns.
     fn turns(&self) -> Schedule {
         let Schedule { population, max_generations, stall_generations } = self.schedule;
         Schedule {
@@ -70,16 +70,16 @@ impl Firefly {
     }
 }
 
-/// The swarm between turns.
+/// State of the swarm between turns.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
     /// Indices of the fireflies that move this turn (a prefix of the list is in use), and their next positions.
     moving: Vec<usize>,
     moved: Members,
-    /// The firefly whose turn it is.
+    /// Index of the attracting firefly.
     attractor: usize,
-    /// alpha of this turn.
+    /// Randomness alpha of this turn.
     randomness: f64,
     /// Inverse widths of the box; zero for a locked coordinate, which does not contribute to distances.
     scales: Point,
@@ -131,8 +131,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
     }
 }
 
-/// Lists the fireflies dimmer than `light` in `moving` and returns their number. Without branches, which would be
-/// unpredictable.
+/// Lists the fireflies dimmer than `light` in `moving`, and returns their number. The loop is free of unpredictable branches.
 fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
     let mut count = 0;
     for (i, value) in values.iter().enumerate() {
@@ -143,7 +142,7 @@ fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
 }
 
 impl Firefly {
-    /// beta = beta_0 exp(-gamma r^2), eq. (9) of Yang (2009).
+    /// Attractiveness beta = beta_0 exp(-gamma r^2), eq. (9) of Yang (2009).
     #[inline]
     fn attractiveness_at(&self, x: &[f64], x_j: &[f64], scales: &[f64]) -> f64 {
         let apart = x.iter().zip(x_j).zip(scales).map(|((x, x_j), scale)| (x_j - x) * scale);
@@ -152,7 +151,7 @@ impl Firefly {
     }
 }
 
-/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); one draw gives two values of u.
+/// Writes x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); one draw gives two values of u.
 #[inline]
 fn fly(x: &[f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], draws: &[f64], to: &mut [f64]) {
     let n = to.len();

@@ -1,10 +1,9 @@
-//! Genetic algorithm on real numbers, with the operators and options of the MATLAB `ga`, against which papers on
-//! manipulators compare: elite, tournament selection, scattered crossover, Gaussian mutation (Goldberg 1989 for the
-//! scheme).
+//! Genetic algorithm on real numbers, with the operators and options of the MATLAB `ga`, the usual reference of papers on
+//! manipulators: elite, tournament selection, scattered crossover, Gaussian mutation (Goldberg 1989 for the scheme).
 //!
-//! A generation is the elite, then children by crossover, then children by mutation. The standard deviation of
-//! mutations shrinks by a constant factor: MATLAB's linear shrinking requires the last generation to be known in
-//! advance, which it is not with a budget of evaluations or a tolerance.
+//! A generation is the elite, then children by crossover, then children by mutation. The standard deviation of mutations
+//! shrinks by a constant factor: MATLAB's linear shrinking needs the number of generations in advance, which a budget of
+//! evaluations or a tolerance does not give.
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
@@ -15,19 +14,19 @@ use crate::solver::Status;
 use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 
-/// Genetic algorithm.
+/// Options of the genetic algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Genetic {
-    /// Members and generations.
+    /// Number of members and generations.
     pub schedule: Schedule,
     /// Fraction of the members that survive unchanged, rounded up: MATLAB's EliteCount, 5 %.
     pub elite_share: f64,
     /// Fraction of the other members that come from crossover: MATLAB's CrossoverFraction.
     pub crossover_share: f64,
-    /// Number of members in a tournament, the best of which becomes a parent: MATLAB's selectiontournament.
+    /// Number of members in a tournament, whose best becomes a parent: MATLAB's selectiontournament.
     pub tournament: usize,
-    /// Probability that a coordinate of a mutant changes; at least one changes. MATLAB's Gaussian mutation changes all
-    /// (1); one over the dimension searches coordinate by coordinate.
+    /// Probability that a coordinate of a mutant changes; at least one changes. MATLAB's Gaussian mutation changes all (1); one
+    /// over the dimension searches coordinate by coordinate.
     pub mutation_rate: f64,
     /// Initial standard deviation of mutations, relative to the width of the box.
     pub mutation_scale: f64,
@@ -36,8 +35,8 @@ pub struct Genetic {
 }
 
 impl Default for Genetic {
-    /// MATLAB's elite, crossover fraction and population; tournaments of two, which keep more variety than MATLAB's
-    /// four.
+    /// Default of MATLAB's elite, crossover fraction and population, with tournaments of two, which keep more variety than
+    /// MATLAB's four.
     fn default() -> Self {
         Self {
             schedule: Schedule::of(50),
@@ -85,7 +84,7 @@ impl Genetic {
     }
 }
 
-/// The population between generations.
+/// State of the population between generations.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
@@ -152,7 +151,7 @@ fn keep_elite(parents: &Members, elite: usize, ranking: &mut [usize], children: 
 }
 
 impl Genetic {
-    /// The best of a tournament, drawn two at a time.
+    /// Draws the best of a tournament, two members at a time.
     fn parent<'a>(&self, parents: &'a Members, rng: &mut LazyRng) -> &'a [f64] {
         let count = parents.values.len();
         let better = |i: usize, j: usize| if parents.values[j] < parents.values[i] { j } else { i };
@@ -163,7 +162,7 @@ impl Genetic {
         parents.point(winner)
     }
 
-    /// Scattered crossover: each coordinate from either parent.
+    /// Writes a child by scattered crossover: each coordinate from either parent.
     fn cross(&self, parents: &Members, rng: &mut LazyRng, child: &mut [f64]) {
         let (mother, father) = (self.parent(parents, rng), self.parent(parents, rng));
         let mut coins = Coins::default();
@@ -173,13 +172,13 @@ impl Genetic {
     }
 }
 
-/// The better of two members.
+/// Draws the better of two members.
 fn better_of_two(parents: &Members, rng: &mut LazyRng) -> usize {
     let [one, other] = rng.pair_below(parents.values.len());
     [one, other][usize::from(parents.values[other] < parents.values[one])]
 }
 
-/// Gaussian mutation of all coordinates.
+/// Applies Gaussian mutation to all coordinates.
 fn mutate(x: &mut [f64], widths: &[f64], scale: f64, rng: &mut LazyRng) {
     for (pair, widths) in x.chunks_mut(2).zip(widths.chunks(2)) {
         let normals = rng.normal_pair();
@@ -189,7 +188,7 @@ fn mutate(x: &mut [f64], widths: &[f64], scale: f64, rng: &mut LazyRng) {
     }
 }
 
-/// Gaussian mutation of each coordinate with probability `rate`, and of at least one.
+/// Applies Gaussian mutation to each coordinate with probability `rate`, and to at least one.
 fn mutate_some(x: &mut [f64], widths: &[f64], scale: f64, rate: f64, rng: &mut LazyRng) {
     let forced = rng.below(x.len());
     for (k, (x, width)) in x.iter_mut().zip(widths).enumerate() {
@@ -199,7 +198,7 @@ fn mutate_some(x: &mut [f64], widths: &[f64], scale: f64, rate: f64, rng: &mut L
     }
 }
 
-/// Coin tosses, 32 per draw.
+/// Source of coin tosses, 32 per draw.
 #[derive(Default)]
 struct Coins {
     bits: u32,

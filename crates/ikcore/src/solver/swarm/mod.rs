@@ -1,8 +1,7 @@
 //! Population methods: swarms, colonies and evolution. They need only objective values.
 //!
 //! `schedule` is the size of a population and its stopping rule; `population` holds its members, `best_places` the best
-//! position of each member, `velocities` the velocities for the two methods that have them. Every other file is one
-//! algorithm.
+//! position of each member, `velocities` the velocities of the two methods that have them. Every other file is one algorithm.
 
 mod bee_colony;
 mod beetle_swarm;

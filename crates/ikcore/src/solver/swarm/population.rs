@@ -1,7 +1,7 @@
-//! The members of a population and their generations.
+//! Members and generations of a population.
 //!
-//! The first generation is the start and uniform draws in the box. A step of a swarm is one generation: the first step
-//! draws and evaluates the other members, so that a start that is already solved costs one evaluation.
+//! The first generation is the start and uniform draws in the box. A step of a swarm is one generation: the first step draws
+//! and evaluates the other members, so that a start that is already solved costs one evaluation.
 
 use super::schedule::Schedule;
 use crate::objective::{Objective, Point};
@@ -14,15 +14,15 @@ const GAIN: f64 = 1e-6;
 /// Points, stored consecutively, and their values.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Members {
-    /// All coordinates, member by member.
+    /// Coordinates, member by member.
     pub points: Vec<f64>,
-    /// One value per member.
+    /// Value of each member.
     pub values: Vec<f64>,
     dimension: usize,
 }
 
 impl Members {
-    /// `count` members without values.
+    /// List of `count` members without values.
     pub fn new(count: usize, dimension: usize) -> Self {
         Self { points: vec![0.0; count * dimension], values: vec![f64::INFINITY; count], dimension }
     }
@@ -32,19 +32,19 @@ impl Members {
         self.dimension
     }
 
-    /// Member `i`.
+    /// Coordinates of member `i`.
     #[inline]
     pub fn point(&self, i: usize) -> &[f64] {
         &self.points[i * self.dimension..(i + 1) * self.dimension]
     }
 
-    /// Member `i`, writable.
+    /// Coordinates of member `i`, writable.
     #[inline]
     pub fn point_mut(&mut self, i: usize) -> &mut [f64] {
         &mut self.points[i * self.dimension..(i + 1) * self.dimension]
     }
 
-    /// All points in order.
+    /// Iterates over all points in order.
     pub fn points(&self) -> impl Iterator<Item = &[f64]> {
         self.points.chunks_exact(self.dimension)
     }
@@ -61,7 +61,7 @@ impl Members {
         (1..self.values.len()).fold(0, |best, i| if self.values[i] < self.values[best] { i } else { best })
     }
 
-    /// Evaluates the first `count` members, in bulk; clips them to the box.
+    /// Clips the first `count` members to the box, and evaluates them in bulk.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
@@ -73,7 +73,7 @@ impl Members {
         evaluator.evaluate_all(&mut self.points[..count * self.dimension], &mut self.values[..count])
     }
 
-    /// Evaluates the members from `first` on, in bulk; clips them to the box.
+    /// Clips the members from `first` on to the box, and evaluates them in bulk.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
@@ -86,32 +86,32 @@ impl Members {
     }
 }
 
-/// The present generation.
+/// Current generation of a population.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Population {
-    /// The members.
+    /// Points and values of the members.
     pub members: Members,
     /// Widths of the ranges that the first generation is drawn from.
     pub widths: Point,
     /// Generations so far, the first included.
     pub generation: usize,
-    /// The best value at the last gain.
+    /// Best value at the last gain.
     milestone: f64,
     /// Generations since the last gain.
     without_gain: usize,
 }
 
-/// The generation that a step begins.
+/// Generation that a step begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Generation {
-    /// The first one; its members are already drawn and evaluated.
+    /// First generation, whose members are already drawn and evaluated.
     First,
-    /// A later one, which the algorithm makes from the previous one.
+    /// Later generation, which the algorithm derives from the previous one.
     Later,
 }
 
 impl Population {
-    /// Evaluates the start, which is the first member.
+    /// Evaluates the start as the first member.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
@@ -128,8 +128,8 @@ impl Population {
         Ok(Self { members, widths, generation: 0, milestone: f64::INFINITY, without_gain: 0 })
     }
 
-    /// Begins a step: gives up if the schedule says so, and completes the first generation by drawing and evaluating
-    /// its other members. Later generations are left to the algorithm.
+    /// Begins a step: gives up if the schedule requires it, and completes the first generation by drawing and evaluating its
+    /// other members. Later generations are left to the algorithm.
     ///
     /// # Errors
     /// The evaluator's [`Status`]; [`Status::Stalled`] by the schedule.

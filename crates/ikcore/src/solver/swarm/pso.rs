@@ -1,8 +1,8 @@
 //! Particle swarm optimisation, with a constriction factor (Clerc and Kennedy 2002) or an inertia weight (Shi and
 //! Eberhart 1998).
 //!
-//! The global-best swarm. Velocities are clamped relative to the width of the box, as Eberhart and Shi (2000) recommend
-//! for both forms, and by default a particle stops at the walls of the box.
+//! The implementation is the global-best swarm. Velocities are clamped relative to the width of the box, as Eberhart and Shi
+//! (2000) recommend for both forms, and by default a particle stops at the walls of the box.
 
 use std::fmt;
 
@@ -18,12 +18,12 @@ use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// The rule that keeps velocities from growing.
+/// Rule that keeps velocities bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PsoForm {
-    /// The new velocity is multiplied by chi, which follows from the attractions.
+    /// Constriction: the new velocity is multiplied by chi, which follows from the attractions.
     Constriction,
-    /// The old velocity is multiplied by this weight.
+    /// Inertia: the old velocity is multiplied by this weight.
     Inertia(f64),
 }
 
@@ -37,7 +37,7 @@ impl fmt::Display for PsoForm {
 }
 
 impl PsoForm {
-    /// The form with this name; `inertia` is the weight of "inertia", by default 0.729 (Eberhart and Shi 2000).
+    /// Returns the form with this name; `inertia` is the weight of "inertia", by default 0.729 (Eberhart and Shi 2000).
     ///
     /// # Errors
     /// [`Error::UnknownOption`] lists the names; [`Error::OutOfRange`] if an inertia is given to another form.
@@ -52,7 +52,7 @@ impl PsoForm {
         }
     }
 
-    /// The published attraction to either place: phi = c1 + c2 = 4.1 of Clerc and Kennedy (2002), 1.49445 of Eberhart and
+    /// Published attraction to either best position: phi = c1 + c2 = 4.1 of Clerc and Kennedy (2002), 1.49445 of Eberhart and
     /// Shi (2000).
     pub fn attraction(self) -> f64 {
         match self {
@@ -65,32 +65,32 @@ impl PsoForm {
 /// Treatment of a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walls {
-    /// It stops at the wall, with zero velocity.
+    /// Stop at the wall, with zero velocity.
     Absorbing,
-    /// It is redrawn in the box and keeps its velocity, as in mealpy's PSO.
+    /// Redraw in the box, with unchanged velocity, as in mealpy's PSO.
     Random,
 }
 
 words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
-/// Whether a particle keeps its new position.
+/// Acceptance of a particle's new position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleAcceptance {
-    /// Always, as published.
+    /// Acceptance in any case, as published.
     Always,
-    /// Only if that is its best position so far; otherwise it returns to the best one. Faster on smooth functions; as
-    /// in mealpy's PSO.
+    /// Acceptance only of the particle's best position so far; otherwise it returns to the best one. Faster on smooth
+    /// functions; as in mealpy's PSO.
     Improving,
 }
 
 words!("accept": ParticleAcceptance { Always => "always", Improving => "improving" });
 
-/// Particle swarm optimisation.
+/// Options of particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pso {
-    /// Particles and generations.
+    /// Number of particles and generations.
     pub schedule: Schedule,
-    /// The rule that keeps velocities from growing.
+    /// Rule that keeps velocities bounded.
     pub form: PsoForm,
     /// Attraction to the best position of the particle.
     pub c1: f64,
@@ -98,7 +98,7 @@ pub struct Pso {
     pub c2: f64,
     /// Largest velocity per generation, relative to the width of the box.
     pub velocity_limit: f64,
-    /// Whether a particle keeps its new position.
+    /// Acceptance of a particle's new position.
     pub accept: ParticleAcceptance,
     /// Treatment of a coordinate that would leave the box.
     pub walls: Walls,
@@ -111,7 +111,7 @@ impl Default for Pso {
 }
 
 impl Pso {
-    /// A form with its published attractions. The velocity limit of half the width is the dynamic range X_max of
+    /// Options of a form with its published attractions. The velocity limit of half the width is the dynamic range X_max of
     /// Eberhart and Shi (2000).
     pub fn of(form: PsoForm) -> Self {
         let attraction = form.attraction();
@@ -148,12 +148,12 @@ impl Pso {
         }
     }
 
-    /// The weights (w, c1, c2) of v = w v + c1 r1 (p - x) + c2 r2 (g - x).
+    /// Weights (w, c1, c2) of v = w v + c1 r1 (p - x) + c2 r2 (g - x).
     fn weights(&self) -> [f64; 3] {
         match self.form {
             PsoForm::Inertia(weight) => [weight, self.c1, self.c2],
             PsoForm::Constriction => {
-                // chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000)
+                // Constriction factor chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000).
                 let phi = self.c1 + self.c2;
                 let chi = 2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs();
                 [chi, chi * self.c1, chi * self.c2]
@@ -162,7 +162,7 @@ impl Pso {
     }
 }
 
-/// The swarm between generations.
+/// State of the swarm between generations.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
@@ -206,7 +206,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
     }
 }
 
-/// The bounds of every coordinate of every particle.
+/// Bounds of every coordinate of every particle.
 #[derive(Debug, Clone, Default)]
 struct TiledBounds {
     lower: Vec<f64>,
@@ -223,7 +223,7 @@ impl TiledBounds {
         Self { lower: tiled(bounds.lower()), upper: tiled(bounds.upper()) }
     }
 
-    /// x = x + v; a coordinate that would leave the box stops at its bound.
+    /// Moves x = x + v; a coordinate that would leave the box stops at its bound.
     fn stop(&self, points: &mut [f64], velocities: &mut [f64]) {
         let walls = self.lower.iter().zip(&self.upper);
         for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
@@ -231,7 +231,7 @@ impl TiledBounds {
         }
     }
 
-    /// x = x + v; a coordinate that would leave the box is redrawn.
+    /// Moves x = x + v; a coordinate that would leave the box is redrawn.
     fn draw_anew(&self, points: &mut [f64], velocities: &[f64], rng: &mut LazyRng) {
         let walls = self.lower.iter().zip(&self.upper);
         for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {

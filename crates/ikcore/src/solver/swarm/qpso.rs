@@ -1,5 +1,5 @@
-//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity. They are drawn
-//! around an attractor, with a spread proportional to their distance from the mean best position.
+//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004). Particles have no velocity: they are drawn around an
+//! attractor, with a spread proportional to their distance from the mean best position.
 
 use super::best_places::BestPlaces;
 use super::population::{Generation, Members, Population, tile};
@@ -12,17 +12,17 @@ use crate::solver::Status;
 use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 
-/// Quantum-behaved particle swarm optimisation.
+/// Options of quantum-behaved particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Qpso {
-    /// Particles and generations.
+    /// Number of particles and generations.
     pub schedule: Schedule,
     /// Contraction-expansion coefficient alpha; the swarm contracts below 1.78.
     pub expansion: f64,
 }
 
 impl Default for Qpso {
-    /// alpha = 0.75, the fixed value that Sun et al. (2012) recommend.
+    /// Default of alpha = 0.75, the fixed value that Sun et al. (2012) recommend.
     fn default() -> Self {
         Self { schedule: Schedule::of(40), expansion: 0.75 }
     }
@@ -38,7 +38,7 @@ impl Qpso {
     }
 }
 
-/// The swarm between generations.
+/// State of the swarm between generations.
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
@@ -68,8 +68,8 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     }
 }
 
-/// Data of an update, repeated for every particle, so that an update is one long loop over all coordinates, which the
-/// compiler vectorises for any dimension.
+/// Scratch of an update, with shared data repeated for every particle, so that an update is one long loop over all coordinates,
+/// which the compiler vectorises for any dimension.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
     /// Mean of the best positions.
@@ -88,10 +88,10 @@ impl Scratch {
     }
 }
 
-/// Resolution of the second half of a draw, which has 27 bits.
+/// Resolution of the second half of a draw: 27 bits.
 const LAST_PLACE: f64 = 1.0 / (1_u64 << 27) as f64;
 
-/// m = (sum over particles of p) / M.
+/// Computes the mean best position m = (sum over particles of p) / M.
 fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
     mean.fill(0.0);
     for p in memory.members.points() {
@@ -102,7 +102,7 @@ fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
 }
 
 impl Qpso {
-    /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), with phi, u and the sign drawn for each coordinate.
+    /// Draws x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), with phi, u and the sign drawn for each coordinate.
     fn draw_particles(&self, points: &mut [f64], memory: &BestPlaces, scratch: &mut Scratch, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut scratch.leader);
         tile(&scratch.mean, &mut scratch.means);
@@ -112,8 +112,7 @@ impl Qpso {
         let (g, mean, draws) = (&scratch.leader[..count], &scratch.means[..count], &scratch.draws[..count]);
         for k in 0..count {
             let [phi, rest] = split(draws[k]);
-            // Sign and magnitude from one draw, uniform in (-1, 1). The ends, where the logarithm is infinite, cannot
-            // occur.
+            // Sign and magnitude from one draw, uniform in (-1, 1). The ends, where the logarithm is infinite, cannot occur.
             let signed = 2.0 * rest - (1.0 - LAST_PLACE);
             let spread = self.expansion * (mean[k] - x[k]).abs() * -ln(1.0 - signed.abs());
             x[k] = g[k] + phi * (p[k] - g[k]) + spread.copysign(signed);

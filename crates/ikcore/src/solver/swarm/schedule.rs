@@ -1,29 +1,29 @@
-//! The size of a population, and when it gives up.
+//! Schedule of a population: its size and its stopping rule.
 
 use crate::error::{Error, Result};
 
-/// The size of a population, and when it gives up.
+/// Size of a population, and its stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     /// Members of a generation.
     pub population: usize,
     /// Maximum number of generations, including the first.
     pub max_generations: usize,
-    /// The swarm gives up after this many consecutive generations without a gain of a millionth of the best value.
+    /// Consecutive generations without a gain of a millionth of the best value after which the swarm gives up.
     pub stall_generations: usize,
 }
 
-/// Largest population; it must fit into memory.
+/// Largest population, limited by memory.
 const LARGEST_POPULATION: usize = 1_000_000;
 
 impl Schedule {
-    /// `population` members and as many generations as the budget allows, at most 50 without a gain (the default of the
-    /// MATLAB genetic algorithm).
+    /// Schedule of `population` members, with as many generations as the budget allows and at most 50 without a gain (the
+    /// default of the MATLAB genetic algorithm).
     pub const fn of(population: usize) -> Self {
         Self { population, max_generations: usize::MAX, stall_generations: 50 }
     }
 
-    /// Checks the counts; the algorithm needs at least `fewest` members.
+    /// Checks the counts, for an algorithm that needs at least `fewest` members.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the option and its range.

@@ -7,10 +7,10 @@ use super::best_places::BestPlaces;
 use super::population::{Population, tile};
 use crate::rng::{LazyRng, split};
 
-/// The velocities of all particles.
+/// Velocities of all particles.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Velocities {
-    /// All coordinates, particle by particle.
+    /// Coordinates, particle by particle.
     pub all: Vec<f64>,
     /// Velocity limits, for every coordinate of every particle.
     limits: Vec<f64>,
@@ -20,8 +20,8 @@ pub(super) struct Velocities {
 }
 
 impl Velocities {
-    /// Particles at rest. `limit` is the largest velocity per generation relative to the width of the box; infinite
-    /// means no limit.
+    /// Particles at rest. `limit` is the largest velocity per generation relative to the width of the box; infinite means no
+    /// limit.
     pub fn new(population: &Population, limit: f64) -> Self {
         let none = vec![0.0; population.members.points.len()];
         let mut limits = none.clone();
@@ -40,7 +40,7 @@ impl Velocities {
         }
     }
 
-    /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), with r1 and r2 drawn for each coordinate; clamped to the limits.
+    /// Updates v = w v + c1 r1 (p - x) + c2 r2 (g - x), with r1 and r2 drawn for each coordinate, and clamps it to the limits.
     pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPlaces, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut self.leader);
         rng.fill(&mut self.draws);

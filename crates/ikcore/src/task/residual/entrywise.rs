@@ -1,5 +1,5 @@
-//! The smooth error E of Yuan et al. 2016, eq. (11), and its negative gradient as a wrench on the tip. E is half the sum of
-//! squared differences between the entries of the target's matrix and the tip's.
+//! Smooth error E of Yuan et al. 2016, eq. (11), and its negative gradient as a wrench on the tip. E is half the sum of squared
+//! differences between the entries of the target's matrix and the tip's.
 //!
 //! A motion of the tip by v and a rotation by w change E by -(f . v + m . w). Here f = p_d - p; and since a rotation
 //! moves the axis r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of the tip's rotation and d_c of the
@@ -12,26 +12,26 @@ use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::task::target::Target;
 
-/// E over the parts of a pose that the target includes.
+/// Error E over the parts of a pose that the target includes.
 #[inline]
 pub(crate) fn error(target: &Target, tip: &Frame) -> f64 {
     let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
     0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
 }
 
-/// The wrench (f, m), minus the derivative of E.
+/// Wrench (f, m), minus the derivative of E.
 #[inline]
 pub(crate) fn wrench(target: &Target, tip: &Frame) -> Wrench {
     let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
     for (r, d) in axes(target, tip) {
-        let fraction = cross(&r, &d);
-        (0..3).for_each(|k| moment[k] += fraction[k]);
+        let part = cross(&r, &d);
+        (0..3).for_each(|k| moment[k] += part[k]);
     }
     [fx, fy, fz, moment[0], moment[1], moment[2]]
 }
 
-/// The axes of the tip that the target constrains, with their target directions.
+/// Axes of the tip that the target constrains, with their target directions.
 #[inline]
 fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
     let (pairs, count) = match target {

@@ -1,4 +1,4 @@
-//! TaskResiduals and their derivatives, one kind of target per file; `entrywise` is the smooth error of APPS.
+//! Residuals and their derivatives, one kind of target per file; `entrywise` is the smooth error of APPS.
 
 pub mod entrywise;
 pub mod orientation;

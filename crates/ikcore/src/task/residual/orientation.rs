@@ -1,4 +1,4 @@
-//! The tip's orientation: r = phi = log(R R_d'), in base coordinates.
+//! Orientation residual of the tip: r = phi = log(R R_d'), in base coordinates.
 //!
 //! A small rotation w of the tip changes phi by J_l^-1(phi) w, with J_l the left Jacobian of SO(3). The derivative is
 //! exact at any distance from the target.
@@ -9,7 +9,7 @@ use crate::math::real::Real;
 use crate::math::so3::{Axes, rotation_and_jacobian, rotation_between};
 use crate::math::vec3::Vec3;
 
-/// The squared geodesic angle.
+/// Squared geodesic angle.
 #[inline(always)]
 pub(crate) fn error(target: &Frame, tip: &Frame) -> f64 {
     let [x, y, z] = rotation_between(target, tip);

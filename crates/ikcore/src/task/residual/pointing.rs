@@ -1,4 +1,4 @@
-//! The tip at a point, with one of its axes in a given direction: r = (p - p_d, a - d), in base coordinates; the
+//! Pointing residual of the tip, for a position and the direction of one axis: r = (p - p_d, a - d), in base coordinates. The
 //! rotation about the axis is free.
 //!
 //! a is the axis of the tip and d the target direction. Unlike the angle between them, their difference is smooth
@@ -17,7 +17,7 @@ pub(crate) fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredErr
     errors(target, tip, &difference(target, axis, tip))
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, given in `out`.
+/// Writes residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
 pub(crate) fn linearize(
     target: &Frame,
@@ -37,7 +37,7 @@ pub(crate) fn linearize(
     errors(target, tip, &difference)
 }
 
-/// a - d.
+/// Difference a - d of the axes.
 #[inline(always)]
 fn difference(target: &Frame, axis: &[f64; 3], tip: &Frame) -> [f64; 3] {
     position::residual(&target.turn::<NoFma>(axis), &tip.turn::<NoFma>(axis))

@@ -1,4 +1,4 @@
-//! The tip at a pose: r = (p - p_d, log(R R_d')), in base coordinates.
+//! Pose residual of the tip: r = (p - p_d, log(R R_d')), in base coordinates.
 
 use super::{orientation, position};
 use crate::math::Frame;
@@ -16,7 +16,7 @@ pub(crate) fn error(target: &Frame, tip: &Frame) -> SquaredError {
     }
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, given in `out`.
+/// Writes residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
 pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut TaskBlock) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));

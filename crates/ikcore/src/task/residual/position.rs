@@ -1,21 +1,21 @@
-//! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
+//! Position residual of the tip: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
 
 use crate::objective::TaskBlock;
 
-/// p - p_d (m).
+/// Residual p - p_d (m).
 #[inline(always)]
 pub(crate) fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| tip[k] - target[k])
 }
 
-/// The squared distance.
+/// Squared distance.
 #[inline(always)]
 pub(crate) fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
     let [x, y, z] = residual(target, tip);
     x * x + y * y + z * z
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, given in `out`; sets the angular rows to zero.
+/// Writes residual and derivative from the tip's geometric Jacobian, given in `out`; sets the angular rows to zero.
 #[inline]
 pub(crate) fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut TaskBlock) {
     let [x, y, z] = residual(target, tip);

@@ -1,15 +1,14 @@
 //! [`BroydenBas`] as a controller: the Jacobian estimate is carried along the path.
 //!
-//! A sensor is noisy, and some measurements are outliers. So a measurement that differs strongly from the prediction is
-//! repeated before it is used. If the second measurement agrees with the first, the Jacobian is wrong: it is updated
-//! and, if that does not help, antennae are put out again. If the second measurement agrees with the prediction, the
-//! first was an outlier. If it agrees with neither, the difference is noise and gives its level: steps below that level
-//! do not update the Jacobian, and the tick ends there. Larger steps update the Jacobian only by the change above the
-//! noise level, and an error below that level does not put out antennae. The initial noise level comes from three
-//! measurements of the start.
+//! A sensor is noisy, and some measurements are outliers, so a measurement that differs strongly from the prediction is
+//! repeated before it is used. If the second measurement agrees with the first, the Jacobian is wrong: it is updated and, if
+//! that does not help, estimated again from antennae. If the second measurement agrees with the prediction, the first was an
+//! outlier. If it agrees with neither, the difference is noise and gives its level: steps below that level do not update the
+//! Jacobian, and the tick ends there. Larger steps update the Jacobian only by the change above the noise level, and an error
+//! below that level does not put out antennae. The initial noise level comes from three measurements at the start.
 //!
-//! With a late sensor every further step costs the whole delay. So the first step of a tick also corrects what the first
-//! step of the last tick missed its prediction by, which changes little along a smooth path.
+//! With a delayed sensor every further step costs the whole delay. The first step of a tick therefore also corrects the
+//! prediction error of the last tick's first step, which changes little along a smooth path.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::noise::Noise;
@@ -22,14 +21,13 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 use crate::task::Tolerance;
 use crate::tracking::tip_pose::TipPose;
 
-/// A measurement is repeated if it misses the prediction by more than this fraction of the predicted motion.
+/// Relative prediction error beyond which a measurement is repeated.
 const SURPRISING: f64 = 1.0;
 
-/// An error below this multiple of the noise level is indistinguishable from noise: another step would follow the
-/// noise.
+/// Multiple of the noise level below which an error is indistinguishable from noise: another step would follow the noise.
 const NEAR_ENOUGH: f64 = 1.25;
 
-/// Consecutive steps without improvement before antennae are put out again; antennae shake the tool.
+/// Consecutive steps without improvement before antennae are put out again. Antennae shake the tool.
 const FAILED_STEPS: usize = 2;
 
 /// State of the controller between measurements.
@@ -38,27 +36,27 @@ pub(super) struct BroydenBasState {
     options: BroydenBas,
     tolerance: Tolerance,
     jacobian: Secant,
-    /// Accepted configuration, and the tip measured there.
+    /// Accepted configuration and the tip measured there.
     q: Point,
     tip: TipPose,
     /// Earlier measurements of a repeated command.
     earlier: [TipPose; 2],
-    /// Last command, and its purpose.
+    /// Last command and its purpose.
     sent: Point,
     purpose: Purpose,
     /// Purpose of the next command.
     next: Purpose,
     damping: f64,
-    /// Consecutive steps that left more than half of the error, and consecutive steps without improvement.
+    /// Consecutive steps that left more than half of the error, and that did not reduce it.
     slow: usize,
     failed: usize,
-    /// No step was accepted since the antennae were last put out.
+    /// Whether no step was accepted since the antennae were last put out.
     fresh: bool,
     noise: Noise,
-    /// How many more times the last command is sent, for a sensor with delay.
+    /// Remaining repetitions of the last command, for a sensor with delay.
     due: usize,
-    /// With such a sensor: what the first step of the last tick missed its prediction by (m, rad), and whether the next step
-    /// is the first of its tick.
+    /// Prediction error of the last tick's first step (m, rad), and whether the next step is the first of its tick; for a
+    /// sensor with delay.
     lead: [f64; ROWS],
     first_step: bool,
     /// Measurements in this tick.
@@ -68,15 +66,15 @@ pub(super) struct BroydenBasState {
 /// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    /// Measure at the start again, which was `measured` once or twice.
+    /// Repeated measurement at the start, `measured` once or twice before.
     Repeat { measured: usize },
-    /// Measure at the accepted configuration, before antennae are put out.
+    /// Measurement at the accepted configuration, before antennae are put out.
     Stand,
-    /// Put out the antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
+    /// Antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
     /// Step towards the target.
     Step,
-    /// Repeat the step, because its measurement missed the prediction.
+    /// Repetition of the step, because its measurement missed the prediction.
     Again,
 }
 
@@ -140,7 +138,7 @@ impl BroydenBasState {
         };
     }
 
-    /// A limit may have closed in on the accepted configuration: clips it to the box, and has it measured again.
+    /// Clips the accepted configuration to the box, where a limit may have closed in on it, and has it measured again.
     fn return_to_box(&mut self, tick: ControlTick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
@@ -148,7 +146,7 @@ impl BroydenBasState {
         }
     }
 
-    /// Puts out the first antenna, from `joint` on, that has room; takes the first step if none has.
+    /// Puts out the first antenna with room, from `joint` on; takes the first step if none has room.
     fn put_out_antenna(&mut self, joint: usize, tick: ControlTick<'_>) -> Purpose {
         let (lower, upper) = (tick.bounds.lower(), tick.bounds.upper());
         for j in joint..self.q.len() {
@@ -242,7 +240,7 @@ impl BroydenBasState {
         }
     }
 
-    /// Processes the measurement of a step, which may be a repeated one. The residual has `R` rows, three for positions.
+    /// Processes the measurement of a step, possibly a repeated one. The residual has `R` rows, three for positions.
     fn process_step<const R: usize>(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let repeated = self.purpose == Purpose::Again;
         let Self { q, sent, jacobian, .. } = self;
@@ -301,7 +299,7 @@ impl BroydenBasState {
         }
         self.failed += 1;
         if !self.fresh {
-            // The first failure has updated the Jacobian, and may have been noise.
+            // The first failure has updated the Jacobian and may have been noise.
             if self.failed >= FAILED_STEPS {
                 self.next = Purpose::Stand;
             }
@@ -311,7 +309,7 @@ impl BroydenBasState {
         if self.damping <= LARGEST_DAMPING {
             return TickProgress::GoOn;
         }
-        // No more improvement in this tick; the next one starts with the same damping as this one.
+        // Further steps do not improve this tick; the next one starts with the same damping.
         self.damping = FIRST_DAMPING;
         TickProgress::TickOver
     }

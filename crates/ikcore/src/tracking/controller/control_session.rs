@@ -1,5 +1,5 @@
-//! A controller in use on an arm that the caller moves: clock, limits, and whether a command or a measurement comes
-//! next.
+//! Control session of a model-free controller, for an arm that the caller moves: clock, limits, and the alternation of commands
+//! and measurements.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::controller_choice::{Controller, RunningController};
@@ -14,10 +14,10 @@ use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
 use crate::tracking::tip_pose::TipPose;
 
-/// A controller in use. [`command`](Self::command) returns the next command for the arm, [`observe`](Self::observe)
-/// takes the position measured there. A tick ends when the controller needs no further measurement.
+/// Control session of a model-free controller. [`command`](Self::command) returns the next command for the arm,
+/// [`observe`](Self::observe) takes the position measured there. A tick ends when the controller needs no further measurement.
 ///
-/// The first command is the start itself: it only measures the tip position there, and time does not advance.
+/// The first command is the start itself: it only measures the tip there, and time does not advance.
 #[derive(Debug)]
 pub struct ControlSession {
     running: RunningController,
@@ -25,14 +25,14 @@ pub struct ControlSession {
     tolerance: Tolerance,
     dt: f64,
     ticks: usize,
-    /// The configuration accepted at the start of the tick: the centre of its box.
+    /// Configuration accepted at the start of the tick: the centre of its box.
     q: Point,
-    /// The configuration accepted at the start of the previous tick.
+    /// Configuration accepted at the start of the previous tick.
     before: Point,
     tick_box: TickBox,
     inside_limits: bool,
     stage: Stage,
-    /// Target of the last command. The first one decides whether all are positions or poses.
+    /// Target of the last command. The first target decides whether all are positions or poses.
     target: TipPose,
     /// Error at the end of the previous tick: the length of the residual (m, rad).
     last_error: f64,
@@ -41,16 +41,16 @@ pub struct ControlSession {
     rng: LazyRng,
 }
 
-/// Whether a command or a measurement comes next.
+/// Stage of a tick: whether a command or a measurement comes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// No measurement yet.
+    /// Before the first measurement.
     Start,
     /// At the start of a tick.
     Ready,
     /// Within a tick.
     Within,
-    /// A command was sent; its measurement comes next.
+    /// Between a command and its measurement.
     Sent { first: bool },
 }
 
@@ -98,12 +98,12 @@ impl ControlSession {
         })
     }
 
-    /// The configuration accepted last (n,).
+    /// Accepted configuration (n,).
     pub fn q(&self) -> &[f64] {
         &self.q
     }
 
-    /// The velocity of the last tick (n,) (rad/s, m/s).
+    /// Velocity of the last tick (n,) (rad/s, m/s).
     pub fn qd(&self) -> Point {
         self.q.iter().zip(&self.before).map(|(q, before)| (q - before) / self.dt).collect()
     }
@@ -113,29 +113,29 @@ impl ControlSession {
         self.ticks as f64 * self.dt
     }
 
-    /// The time step (s).
+    /// Time step (s).
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// The limits in force.
+    /// Limits in force.
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
-    /// The velocity limits of the last tick (n,) (rad/s, m/s).
+    /// Velocity limits of the last tick (n,) (rad/s, m/s).
     pub fn velocity_limit(&self) -> &[f64] {
         &self.tick_box.velocity
     }
 
-    /// The command (n,) at which the position of the last tick was measured.
+    /// Command (n,) at which the position of the last tick was measured.
     pub fn measured_command(&self) -> &[f64] {
         self.running.measured().0
     }
 
-    /// Returns the next command (n,), which is to bring the tip to `target`, a position (m) or a pose, by the end of the
-    /// tick. It is within the limits, and within the range that the velocity limits allow from the configuration accepted
-    /// at the start of the tick.
+    /// Returns the next command (n,) towards `target`, a position (m) or a pose, at the end of the tick. The command is within
+    /// the limits, and within the range that the velocity limits allow from the configuration accepted at the start of the
+    /// tick.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for the target, [`Error::Contradiction`] for a pose after positions or a position after poses,
@@ -227,8 +227,8 @@ impl ControlSession {
         Accepted { q: &self.q, tick_box: &self.tick_box, clearance: f64::NAN }
     }
 
-    /// Returns the largest excess (rad, m) of the last command over a limit, its joint and the joint's command; `None`
-    /// if there is no excess. The box of the tick is within the limits, unless the limits cannot be kept.
+    /// Returns the largest excess (rad, m) of the last command over a limit, its joint and the joint's command; `None` without
+    /// excess. The box of the tick is within the limits, unless the limits cannot be kept.
     pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
         let TickBox { bounds, velocity, floor, ceiling, .. } = &self.tick_box;
         let sent = self.running.sent();

@@ -1,9 +1,9 @@
-//! The tick of a controller: input, and whether it continues.
+//! Input of a controller for one tick, and whether the tick continues.
 
 use crate::objective::Bounds;
 use crate::tracking::tip_pose::TipPose;
 
-/// The input of a controller for a tick.
+/// Input of a controller for one tick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
     /// Target of the tip at the end of the tick.
@@ -12,7 +12,7 @@ pub(super) struct ControlTick<'a> {
     pub bounds: &'a Bounds,
 }
 
-/// Whether a tick continues after a measurement.
+/// Whether the tick continues after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TickProgress {
     /// The controller has another command for this tick.

@@ -1,4 +1,4 @@
-//! The choice of controller, and the controller in use.
+//! Choice of controller, and the running controller.
 
 use super::broyden_bas::BroydenBasState;
 use super::control_tick::{ControlTick, TickProgress};
@@ -10,12 +10,12 @@ use crate::solver::BroydenBas;
 use crate::task::Tolerance;
 use crate::tracking::tip_pose::TipPose;
 
-/// A controller and its options.
+/// Model-free controller and its options.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Controller {
-    /// Carries a Jacobian estimate along the path.
+    /// Broyden updates of a Jacobian estimate carried along the path.
     BroydenBas(BroydenBas),
-    /// Moves by the sign of each measured change.
+    /// Steps by the sign of each measured change.
     Znnbas(Znnbas),
 }
 
@@ -37,7 +37,7 @@ impl Controller {
         }
     }
 
-    /// The delay of the sensor that it assumes (measurements).
+    /// Assumed delay of the sensor (measurements).
     pub(in crate::tracking) fn sensor_delay(&self) -> usize {
         match self {
             Self::BroydenBas(broyden) => broyden.sensor_delay,
@@ -55,7 +55,7 @@ impl Controller {
     }
 }
 
-/// A controller in use, with its state.
+/// Running controller with its state.
 #[derive(Debug)]
 pub(super) enum RunningController {
     BroydenBas(Box<BroydenBasState>),
@@ -71,7 +71,7 @@ impl RunningController {
         }
     }
 
-    /// The last command; the start if there was none yet.
+    /// Last command; the start before the first.
     pub(super) fn sent(&self) -> &[f64] {
         match self {
             Self::BroydenBas(memory) => memory.sent(),
@@ -95,7 +95,7 @@ impl RunningController {
         }
     }
 
-    /// The configuration that the next tick starts from.
+    /// Configuration that the next tick starts from.
     pub(super) fn accepted(&self) -> &[f64] {
         match self {
             Self::BroydenBas(memory) => memory.accepted(),
@@ -103,7 +103,7 @@ impl RunningController {
         }
     }
 
-    /// The command at which the tip of the tick was measured, and that measurement.
+    /// Command at which the tip of the tick was measured, and that measurement.
     pub(super) fn measured(&self) -> (&[f64], &TipPose) {
         match self {
             Self::BroydenBas(memory) => memory.measured(),

@@ -3,14 +3,14 @@
 use crate::math::vector::median;
 use crate::tracking::tip_pose::TipPose;
 
-/// Distances up to this multiple of the noise level may be noise alone.
+/// Multiple of the noise level up to which distances may be noise alone.
 const EXPLAINED: f64 = 3.0;
 
-/// Ratio, for Gaussian noise, of the root mean square distance of two measurements to the mean distance of the nearest
-/// two of three.
+/// Ratio, for Gaussian noise, of the root mean square distance of two measurements to the mean distance of the closest two of
+/// three.
 const TWO_OVER_NEAREST_OF_THREE: f64 = 1.62;
 
-/// Distance between two measurements of the same command (m): the median of the last three pairs, so that one outlier
+/// Noise level of a sensor (m): the median of the last three distances between measurements of one command, so that one outlier
 /// has no effect.
 #[derive(Debug, Default)]
 pub(super) struct Noise {
@@ -20,7 +20,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Takes the distance between two measurements of one command (m).
+    /// Adds the distance between two measurements of one command (m).
     pub(super) fn note(&mut self, repeat: f64) {
         self.repeats[self.noted % 3] = repeat;
         self.noted += 1;
@@ -28,13 +28,13 @@ impl Noise {
         self.level = median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2;
     }
 
-    /// Takes three measurements of one command. One of them may be an outlier, so the nearest two count.
+    /// Adds three measurements of one command. One of them may be an outlier, so the closest two count.
     pub(super) fn note_three(&mut self, [a, b, c]: &[TipPose; 3]) {
         let nearest = a.distance(b).min(b.distance(c)).min(a.distance(c));
         (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
     }
 
-    /// The noise of one measurement (m), root mean square; zero until it was measured.
+    /// Root mean square noise of one measurement (m); zero before the first estimate.
     pub(super) fn level(&self) -> f64 {
         self.level
     }

@@ -1,12 +1,11 @@
 //! Zeroing neural network with beetle antennae search (Khan et al. 2022), in discrete time.
 //!
-//! In every tick the arm is sent to theta' = beta(theta + lambda b) (eq. 10) with a new random b, the error h is
-//! measured there (eq. 12) and compared with the error a delay before (eq. 13), and theta moves by the sign of the
-//! change (eq. 14, 15). Equations 13 to 15 write h(theta'(t) - alpha) for h(theta'(t - alpha)). The gain of -10 in the
-//! listing already includes the minus sign of eq. 14; inserted into eq. 14 as printed, it diverges. The delay of 10 is
-//! in ticks: 10 seconds do not converge.
+//! Every tick sends the arm to theta' = beta(theta + lambda b) (eq. 10) with a new random b, measures the error h there (eq.
+//! 12), compares it with the error one delay earlier (eq. 13), and moves theta by the sign of the change (eq. 14, 15).
+//! Equations 13 to 15 write h(theta'(t) - alpha) for h(theta'(t - alpha)). The gain of -10 in the listing already includes the
+//! minus sign of eq. 14; inserted into eq. 14 as printed, it diverges. The delay of 10 is in ticks: 10 seconds do not converge.
 //!
-//! theta is the state of an integrator. The arm never is at theta, but at theta', a random antenna away.
+//! theta is the state of an integrator. The arm is never at theta, but at theta', a random antenna away.
 //!
 //! The proof of Theorem 1 describes another algorithm, which moves to theta' if h fell there, and otherwise returns to
 //! theta and waits. It is implemented as [`UpdateRule::Improving`]; the theorem holds for it while the target does not
@@ -15,63 +14,63 @@
 use crate::error::{Error, Result, require_positive};
 use crate::wording::words;
 
-/// A longer memory is a mistake, and might not fit.
+/// Longest delay (ticks): a longer one is a mistake, and might not fit in memory.
 const MOST_TICKS: usize = 100_000;
 
-/// Length of the antennae, lambda of eq. (10).
+/// Antenna length, lambda of eq. (10).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Antenna {
-    /// The same at all times (rad): one number, or one per joint.
+    /// Constant length (rad): one number, or one per joint.
     Constant(Vec<f64>),
-    /// c1 sqrt(h), eq. (16), at most half a radian.
+    /// Adaptive length c1 sqrt(h), eq. (16), at most half a radian.
     Adaptive {
         /// c1 of eq. (16) (rad per m).
         c1: f64,
     },
 }
 
-/// The measurement that a new one is compared with.
+/// Reference measurement for the comparison of eq. (13).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delay {
-    /// The measurement `delay_steps` ticks before: eq. (13).
+    /// Measurement `delay_steps` ticks earlier: eq. (13).
     Sliding,
-    /// A measurement renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
+    /// Measurement renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
     Held,
 }
 
 words!("delay": Delay { Sliding => "sliding", Held => "held" });
 
-/// When theta moves.
+/// Update rule of theta.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UpdateRule {
-    /// In every tick: eq. (15).
+    /// Update in every tick: eq. (15).
     Always,
-    /// To theta' if it is nearer to the current target than theta; otherwise theta stays: the proof of Theorem 1. Gain
-    /// and delay are not used.
+    /// Update to theta' only if it is nearer to the current target than theta: the proof of Theorem 1. Gain and delay are not
+    /// used.
     Improving,
 }
 
 words!("accept": UpdateRule { Always => "always", Improving => "improving" });
 
-/// ZNNBAS.
+/// Options of ZNNBAS.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Znnbas {
-    /// k of eq. (14) (1/s), positive to converge. Above gain dt = 0.3 it overshoots.
+    /// Gain k of eq. (14) (1/s), positive to converge. Above gain dt = 0.3 it overshoots.
     pub gain: f64,
-    /// Delay of the sensor in ticks: a measurement belongs to the command and target of that many ticks before.
+    /// Delay of the sensor in ticks: a measurement belongs to the command and target of that many ticks earlier.
     pub sensor_delay: usize,
-    /// lambda of eq. (10).
+    /// Antenna length lambda of eq. (10).
     pub antenna: Antenna,
-    /// alpha of eq. (13), in ticks; gain times delay should stay below 1.
+    /// Delay alpha of eq. (13), in ticks; gain times delay should stay below 1.
     pub delay_steps: usize,
-    /// The measurement that a new one is compared with.
+    /// Reference measurement for the comparison of eq. (13).
     pub delay: Delay,
-    /// When theta moves.
+    /// Update rule of theta.
     pub accept: UpdateRule,
 }
 
 impl Default for Znnbas {
-    /// The adaptive antenna of eq. (16), which converges ten times as fast as the published constants.
+    /// Default options, with the adaptive antenna of eq. (16), which converges ten times as fast as the published constants.
     fn default() -> Self {
         Self {
             gain: 100.0,
@@ -85,7 +84,7 @@ impl Default for Znnbas {
 }
 
 impl Znnbas {
-    /// The constants of Algorithm 1 of the paper.
+    /// Constants of Algorithm 1 of the paper.
     pub fn published() -> Self {
         Self { gain: 10.0, antenna: Antenna::Constant(vec![0.1]), delay_steps: 10, ..Self::default() }
     }

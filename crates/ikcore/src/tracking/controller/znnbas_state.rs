@@ -1,4 +1,4 @@
-//! ZNNBAS in use: Algorithm 1, tick by tick.
+//! ZNNBAS tick by tick: Algorithm 1.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
@@ -7,24 +7,24 @@ use crate::objective::Point;
 use crate::rng::LazyRng;
 use crate::tracking::tip_pose::TipPose;
 
-/// The longest adaptive antenna (rad).
+/// Longest adaptive antenna (rad).
 const LONGEST: f64 = 0.5;
 
 /// State of the controller between ticks.
 #[derive(Debug)]
 pub(super) struct ZnnbasState {
-    /// k dt.
+    /// Gain per tick, k dt.
     gain: f64,
     antenna: Antenna,
     delay: Delay,
     accept: UpdateRule,
-    /// theta, the state of the integrator.
+    /// Integrator state theta.
     theta: Point,
-    /// The tip at the last measured theta.
+    /// Tip at the last measured theta.
     standing: TipPose,
-    /// theta', the last command.
+    /// Last command theta'.
     sent: Point,
-    /// The last measurement, its command, and h.
+    /// Last measurement, its command, and its error h.
     tip: TipPose,
     answered: Point,
     value: f64,
@@ -32,12 +32,12 @@ pub(super) struct ZnnbasState {
     past: Past,
 }
 
-/// Ring buffer of the commands, with their targets, that a sensor with delay has not measured yet.
+/// Ring buffer of commands and targets that a delayed sensor has not measured yet.
 #[derive(Debug)]
 struct OnTheWay {
     sent: Vec<f64>,
     targets: Vec<TipPose>,
-    /// The target of the command measured now.
+    /// Target of the command being measured.
     due: TipPose,
     ticks: usize,
 }
@@ -147,7 +147,7 @@ impl ZnnbasState {
 }
 
 impl OnTheWay {
-    /// Stores the newest command with its target, and returns those that the sensor measures now.
+    /// Stores the newest command with its target, and returns the command and target that the sensor measures now.
     fn swap<'a>(&'a mut self, command: &mut [f64], target: &'a TipPose) -> &'a TipPose {
         if self.targets.is_empty() {
             return target;
@@ -162,7 +162,7 @@ impl OnTheWay {
 }
 
 impl Past {
-    /// The slot of `delay` ticks before, which the current tick overwrites.
+    /// Slot of the measurement `delay` ticks earlier, which the current tick overwrites.
     fn slot(&self) -> usize {
         self.ticks % self.values.len()
     }

@@ -1,4 +1,4 @@
-//! Any solver as a tick rule: started at the accepted configuration, in the box of the tick.
+//! Tick rule that runs any solver from the accepted configuration in the box of the tick.
 
 use super::tick::{Tick, TickResult};
 use crate::objective::Differentiable;
@@ -27,8 +27,7 @@ pub(super) fn advance(solver: &AnySolver, tick: Tick<'_>) -> TickResult {
     }
 }
 
-/// When the search of a tick ends without reaching the band. Some solvers end by their own rule, the others by their
-/// budget.
+/// Stop criteria of the search in a tick. Solvers that end by themselves have no evaluation budget.
 fn stop(solver: &AnySolver, last_value: Option<f64>) -> Stop {
     let standard = Stop::default();
     Stop {

@@ -1,10 +1,9 @@
-//! The approach to a target that is farther away than one tick can reach: all joints move in proportion to their
-//! displacements.
+//! Approach to a target farther away than one tick can reach: all joints move in proportion to their displacements.
 //!
-//! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next
-//! tick if that lowers the error more. So the displacement to the target is computed within the position limits only,
-//! without the box, and a tick covers the largest fraction of it that the limits of all joints allow. A moving target is
-//! followed by its own motion plus a fraction of the remaining displacement.
+//! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next tick if
+//! that lowers the error more. The displacement to the target is therefore computed within the position limits only, without
+//! the box, and a tick covers the largest fraction of it that the limits of all joints allow. A moving target is followed by
+//! its own motion plus a fraction of the remaining displacement.
 
 use super::tick::Tick;
 use crate::math::Columns;
@@ -15,28 +14,27 @@ use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 use crate::tracking::step_context::StepContext;
 
-/// A target is slow if following it takes no more than this fraction of any velocity limit.
+/// Largest fraction of a velocity limit that following a slow target takes.
 const SLOW: f64 = 0.5;
 
-/// A target that is not slow counts as near if a tick covers this fraction of the displacement to it. The step that
-/// brings the tip nearest in this tick is then better than an approach that never ends.
+/// Fraction of the displacement within one tick from which a fast target counts as near. The step that brings the tip nearest
+/// in this tick is then better than an approach that never ends.
 const NEAR: f64 = 0.5;
 
-/// The displacement of the joints to a target that the arm lags behind (n,) (rad, m).
+/// Joint displacement (n,) (rad, m) to a target that the arm lags behind.
 pub(super) struct Approach {
     /// Remaining displacement to the target at the start of the tick.
     catch_up: Point,
     /// Displacement that follows the target's own motion.
     keep_up: Point,
-    /// The target is far if the tick covers less than this fraction of the displacement.
+    /// Threshold of `within_reach` below which the target is far.
     far_below: f64,
-    /// The largest fraction of `catch_up` that the box of the tick allows.
+    /// Largest fraction of `catch_up` that the box of the tick allows.
     within_reach: f64,
 }
 
 impl Approach {
-    /// The approach from `q`. `tip` and `columns` are those at `near`, the configuration nearest to `q` in the box of
-    /// the tick.
+    /// Approach from `q`. `tip` and `columns` belong to `near`, the configuration nearest to `q` in the box of the tick.
     pub(super) fn new(near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
         let StepContext { q, tick_box, dt, .. } = tick.context;
         let to = |target: &Target| -> Point {
@@ -65,7 +63,7 @@ impl Approach {
         for (j, (catch_up, keep_up)) in self.catch_up.iter().zip(&self.keep_up).enumerate() {
             let end = if *catch_up > 0.0 { upper[j] } else { lower[j] };
             let reach = (end - q[j] - keep_up) / catch_up;
-            // A joint that still moves the other way reverses as fast as it may, and does not hold up the others.
+            // A joint that still moves the other way reverses as fast as it may, without slowing the other joints down.
             if reach > 0.0 {
                 self.within_reach = self.within_reach.min(reach);
             }
@@ -86,7 +84,7 @@ impl Approach {
     }
 }
 
-/// Returns the configuration within the position limits that meets the `target`, linearised at `q`. Damped like a
+/// Returns the configuration within the position limits that meets the `target`, linearised at `q`. The step is damped as in a
 /// descent from `q`, since far from the target the linearisation gives little more than a direction.
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();

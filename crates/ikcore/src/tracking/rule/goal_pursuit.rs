@@ -1,9 +1,9 @@
-//! The model-based rule under acceleration and jerk limits: it keeps a goal, the moving configuration that meets the target,
-//! and pursues it inside the reachable set of the tick.
+//! Model-based rule under acceleration and jerk limits: pursues a goal, the moving configuration that meets the target, inside
+//! the reachable set of the tick.
 //!
-//! Each target gives a sample of the goal: Gauss-Newton steps from where the goal was expected, within the position limits
-//! alone. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the changes of the joints. Without noise the arm
-//! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
+//! Each target gives a sample of the goal by Gauss-Newton steps from its predicted configuration, within the position limits
+//! only. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the joint accelerations. Without noise the arm
+//! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
 use super::tick::{Tick, TickResult};
 use crate::math::vector::{distance, largest_difference};
@@ -12,41 +12,42 @@ use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
 use crate::tracking::step_context::StepContext;
 
-/// Steps that Gauss-Newton may take in a tick; they converge quadratically.
+/// Largest number of Gauss-Newton steps in a tick; they converge quadratically.
 const MOST_STEPS: usize = 6;
 
-/// A step this short (rad, m) leaves an error of its square, which is below every tolerance.
+/// Step length (rad, m) that ends the iteration: its error is its square, below every tolerance.
 const SHORT: f64 = 1e-5;
 
-/// Evaluations of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
+/// Evaluation budget of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
 const MOST_EVALUATIONS: usize = 60;
 
-/// A motion of the goal that lowers the squared error by less than this fraction is none towards the target.
+/// Relative decrease of the squared error below which a motion of the goal does not approach the target.
 const NO_GAIN: f64 = 1e-3;
 
-/// A descent that lowers the error by less than this for each unit of its way (m/rad) goes along a flat valley, which need not end.
+/// Least decrease of the error per unit of motion (m/rad); a slower descent follows a flat valley, which need not end.
 const FLAT: f64 = 1e-5;
 
-/// Restarts the goal this many samples after obstacles changed one: its memory holds motions along obstacles, not noise.
+/// Number of samples after a change by obstacles at which the goal restarts: its memory holds motions along obstacles, not
+/// noise.
 const RELEASED: usize = 5;
 
-/// A goal farther from the arm than this (rad, m) does not show the way along an obstacle.
+/// Distance of a goal (rad, m) beyond which it does not show the way along an obstacle.
 const FAR: f64 = 0.1;
 
-/// Ticks without progress of an arm that holds pairs, after which there is no way to a far goal.
+/// Ticks without progress after which an arm that holds pairs gives up a far goal.
 const NO_WAY: usize = 10;
 
 /// State of the rule between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct GoalPursuit {
     goal: Option<MovingGoal>,
-    /// Ticks since the start.
+    /// Ticks elapsed since the start.
     now: f64,
     expected: Point,
     sample: Point,
-    /// Samples since obstacles changed one.
+    /// Samples since obstacles last changed one.
     since_held: Option<usize>,
-    /// The least distance (rad, m) of the goal from an arm that holds pairs, and samples since then.
+    /// Smallest distance (rad, m) of the goal from an arm that holds pairs, and samples since then.
     nearest: Option<(f64, usize)>,
     linearization: Box<Linearization>,
 }
@@ -57,7 +58,7 @@ impl GoalPursuit {
         self.goal = None;
     }
 
-    /// Finds a sample of the goal if new targets have arrived, which have the age `tick.sampled_ago` at the end of the tick, in ticks.
+    /// Finds a sample of the goal if new targets have arrived, of age `tick.sampled_ago` (ticks) at the end of the tick.
     pub(super) fn find_sample(&mut self, tick: &mut Tick<'_>) -> TickResult {
         let StepContext { q, aims, limited, .. } = tick.context;
         let mut found = TickResult::at(q);
@@ -81,19 +82,19 @@ impl GoalPursuit {
         found
     }
 
-    /// How far the expected goal is from an arm at `q` (rad, m).
+    /// Largest joint distance of the predicted goal from `q` (rad, m).
     fn away(&self, q: &[f64]) -> f64 {
         largest_difference(&self.expected, q)
     }
 
-    /// Where to look for a clear sample of an arm at `q`, and the sample to replace.
+    /// Start of the search for a clear sample by an arm at `q`, and the sample to replace.
     pub(super) fn sample_to_clear<'s>(&'s mut self, q: &'s [f64]) -> (&'s [f64], &'s mut Point) {
-        // A goal that obstacles have kept far away may be on the wrong side of one.
+        // Obstacles may have kept a distant goal on the wrong side of one of them.
         let is_near = self.away(q) < FAR;
         (if is_near { &self.expected } else { q }, &mut self.sample)
     }
 
-    /// Notes whether obstacles changed the sample.
+    /// Records whether obstacles changed the sample.
     pub(super) fn note_held(&mut self, held: bool) {
         self.since_held = if held { Some(0) } else { self.since_held.map(|samples| samples + 1) };
     }
@@ -120,7 +121,7 @@ impl GoalPursuit {
         found
     }
 
-    /// Whether an arm that holds pairs has got no nearer to its goal, which is `away` (rad, m), for long.
+    /// Whether an arm that holds pairs has made no progress towards its goal for too long; `away` is their distance (rad, m).
     fn has_no_way(&mut self, away: f64) -> bool {
         self.nearest = match self.nearest {
             _ if away <= FAR => None,
@@ -134,8 +135,8 @@ impl GoalPursuit {
         waited
     }
 
-    /// Sets `sample` to the configuration nearest to the expected one, or to that to begin `anew` at, that meets the target of `time`
-    /// (in ticks).
+    /// Solves for the `sample` of the target at `time` (in ticks): the configuration that meets it nearest to the predicted one
+    /// or, if given, nearest to the start `anew`.
     fn solve(
         &mut self,
         anew: Option<&[f64]>,
@@ -174,8 +175,8 @@ impl GoalPursuit {
         self.descend(positions, found, tick);
     }
 
-    /// Moves `sample` to where the goal was, unless its motion has lowered the error below `lowest`: out of reach, the goal would go on
-    /// along the self-motion for ever.
+    /// Moves `sample` back to the goal before its remembered motion, unless that motion has lowered the error below `lowest`:
+    /// out of reach, the goal would otherwise drift along the self-motion for ever.
     fn begin_at_rest(
         &mut self,
         (time, lowest): (f64, f64),
@@ -192,7 +193,7 @@ impl GoalPursuit {
         }
     }
 
-    /// Residual and Jacobian at `sample`; returns the squared error.
+    /// Computes residual and Jacobian at `sample`; returns the squared error.
     fn linearize(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> f64 {
         found.evaluations += 1;
         found.iterations += 1;
@@ -200,9 +201,9 @@ impl GoalPursuit {
         aims.linearize(robot, &self.sample, &mut self.linearization, |_| ()).score.value
     }
 
-    /// Where the joints should be at `time` as far as the target leaves them free: where the goal was before the samples that it
-    /// remembers, moved as the goals in the null space ask. The motion of the goal is not extrapolated there, since no target
-    /// would ever stop it; nor would a filter that remembers many samples, were it told where the goal was one sample before.
+    /// Preferred configuration at `time` where the target leaves the joints free: the goal before the samples that it
+    /// remembers, moved along the negative gradient of the null-space goals. Motion in the null space is not extrapolated,
+    /// since no target would ever stop it; a filter with a long memory would sustain it even from one sample ago.
     fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
         let mut preferred = self.sample.clone();
         if let Some(goal) = &self.goal {

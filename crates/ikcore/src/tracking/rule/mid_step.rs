@@ -1,10 +1,9 @@
-//! The model-based rule: Gauss-Newton in the box, with the Jacobian at the middle of the tick.
+//! Model-based rule: Gauss-Newton in the box, with the Jacobian at the middle of the tick.
 //!
-//! A step with the Jacobian at the start of the tick leaves an error of second order. The Jacobian at the middle,
-//! extrapolated from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single
-//! evaluation a tick reaches micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain
-//! null-space motion. If a step does not lower the error, because of the box or a singularity, Levenberg-Marquardt
-//! solves the tick; it never raises the error.
+//! A step with the Jacobian at the start of the tick leaves an error of second order. The Jacobian at the middle, extrapolated
+//! from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single evaluation per tick reaches
+//! micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain null-space motion. If the box or a
+//! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error.
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
@@ -18,16 +17,16 @@ use crate::robot::Robot;
 use crate::solver::Stop;
 use crate::task::Assessment;
 
-/// Maximum number of model steps in a tick; they converge quadratically, so more would not help.
+/// Largest number of model steps in a tick; they converge quadratically, so more would not help.
 const MOST_STEPS: usize = 10;
 
 /// State of the rule between ticks. Boxed, so that passing a Jacobian on copies a pointer.
 #[derive(Debug, Default)]
 pub(crate) struct MidStepState {
-    /// At the accepted configuration; known after the first tick.
+    /// Kinematics at the accepted configuration; known after the first tick.
     begin: Box<Kinematics>,
     begin_known: bool,
-    /// At the configuration before, if the arm has moved since.
+    /// Kinematics at the configuration before, if the arm has moved since.
     before: Box<Kinematics>,
     before_known: bool,
     here: Box<Kinematics>,
@@ -35,18 +34,18 @@ pub(crate) struct MidStepState {
     linearization: Box<TaskBlock>,
 }
 
-/// The linear model of a step: where its tip and Jacobian are taken.
+/// Linear model of a step: the configurations of its tip and its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Model {
-    /// Both at the start of the tick.
+    /// Tip and Jacobian at the start of the tick.
     Begin,
-    /// The tip at the start, the Jacobian extrapolated to the middle of the tick.
+    /// Tip at the start, Jacobian extrapolated to the middle of the tick.
     MidTick,
-    /// Both at the result of the last step.
+    /// Tip and Jacobian at the result of the last step.
     Here,
 }
 
-/// Tip and geometric Jacobian at a configuration.
+/// Tip and geometric Jacobian of a configuration.
 #[derive(Debug)]
 struct Kinematics {
     q: Point,
@@ -77,7 +76,7 @@ pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResu
     let mut found = TickResult::at(q);
     tick.bounds().clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
-        // The first tick, or one that starts elsewhere because q is outside its limits.
+        // The first tick, or a start outside the limits.
         memory.begin.place(&found.q);
         memory.begin.update(tick.context.robot);
         memory.before_known = false;
@@ -102,8 +101,8 @@ impl MidStepState {
         (self.begin_known, self.before_known) = (false, false);
     }
 
-    /// Takes one step along the negative gradient of the goals, as far as the target leaves the joints free, then model
-    /// steps until the tip is in the band. Returns whether it got there; if not, `found` keeps its configuration.
+    /// Takes one step along the negative gradient of the goals, as far as the target leaves the joints free, then model steps
+    /// until the tip is in the band. Returns whether it arrives; if not, `found` keeps its configuration.
     fn towards_goals(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
         let Some(preferred) = tick.preferred(&found.q) else { return false };
         let mut trial = found.clone();
@@ -118,7 +117,7 @@ impl MidStepState {
         found.is_solved() && found.iterations > 0
     }
 
-    /// Takes model steps while they lower the error; returns whether one did.
+    /// Takes model steps while they lower the error. Returns whether the arm moved.
     fn gauss_newton(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let mut moved = false;
         let mut model = self.first_model();
@@ -134,12 +133,12 @@ impl MidStepState {
         moved
     }
 
-    /// The best model available at the start of a tick.
+    /// Best model available at the start of a tick.
     fn first_model(&self) -> Model {
         if self.before_known { Model::MidTick } else { Model::Begin }
     }
 
-    /// Takes one step from `found`, and keeps it if it lowers the error; returns whether it does.
+    /// Takes one step from `found` and keeps it if it lowers the error. Returns whether it does.
     fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model) -> bool {
         self.step(found, tick, model, None);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
@@ -187,7 +186,7 @@ impl MidStepState {
         found.iterations += 1;
     }
 
-    /// Approaches a target that is far. Returns false if it is not, or if the tick would not bring the arm nearer.
+    /// Moves towards a far target. Returns false if the target is near, or if the tick would not bring the arm nearer.
     fn follow_approach(&mut self, value_at_rest: f64, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let q = tick.context.q;
         let mut near = Point::from_slice(q);
@@ -209,7 +208,7 @@ impl MidStepState {
         nearer
     }
 
-    /// Lowers the error as far as possible when model steps cannot.
+    /// Lowers the error as far as possible where model steps fail.
     fn levenberg_marquardt(&mut self, found: &mut TickResult, mut tick: Tick<'_>) {
         let context = tick.context;
         tick.descend(found, &context.tick_box.bounds, Stop::default());
@@ -219,7 +218,7 @@ impl MidStepState {
         found.evaluations += 1;
     }
 
-    /// Passes the kinematics at the end of this tick to the start of the next.
+    /// Hands the kinematics at the end of this tick to the start of the next.
     fn hand_on(&mut self, moved: bool) {
         if moved {
             std::mem::swap(&mut self.before, &mut self.begin);
@@ -229,7 +228,7 @@ impl MidStepState {
     }
 }
 
-/// (3 J_k - J_{k-1}) / 2.
+/// Extrapolates the Jacobian to the middle of the tick: (3 J_k - J_{k-1}) / 2.
 fn at_middle(now: &Columns, before: &Columns, middle: &mut [[f64; 6]]) {
     for (middle, (now, before)) in middle.iter_mut().zip(now.iter().zip(&**before)) {
         (0..6).for_each(|k| middle[k] = now[k] + 0.5 * (now[k] - before[k]));

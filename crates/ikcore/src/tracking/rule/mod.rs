@@ -1,12 +1,12 @@
-//! Tick rules move a modelled arm by one tick inside a given box.
+//! Tick rules, which move a modelled arm by one tick inside a given box.
 //!
 //! | file | what |
 //! |---|---|
-//! | `tick_rule` | [`TickRule`]: the choice of rule, and the rule in use |
+//! | `tick_rule` | [`TickRule`]: choice of rule, and the running rule |
 //! | `tick` | input and result of a rule |
 //! | `mid_step` | the model-based rule, the default |
 //! | `goal_pursuit` | the model-based rule under acceleration and jerk limits |
-//! | `approach` | how that rule approaches a target that one tick cannot reach |
+//! | `approach` | proportional approach to a target that one tick cannot reach |
 //! | `tip_step` | the model-based rule for several tips |
 //! | `weighted_pseudo_inverse` | resolved-rate control |
 //! | `any_solver` | any solver, started at the accepted configuration |

@@ -10,24 +10,24 @@ use crate::task::{Aims, Assessment, Criterion, Goals, SquaredError, Target, Targ
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
 
-/// The input of a rule for one tick.
+/// Input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
     pub context: StepContext<'a>,
-    /// The target of the only tip, and its criterion; of several tips the first.
+    /// Target and criterion of the only tip; of several tips, those of the first.
     pub target: &'a Target,
     pub criterion: &'a Criterion,
     /// Goals in the null space of the targets.
     pub goals: &'a mut Goals,
-    /// The targets so far.
+    /// Targets received so far.
     pub targets: &'a TargetStream,
-    /// Age of the targets at the end of the tick, in ticks; `None` for those of an earlier tick.
+    /// Age of the new targets at the end of the tick, in ticks; `None` if none arrived in this tick.
     pub sampled_ago: Option<f64>,
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,
 }
 
 impl Tick<'_> {
-    /// The box of joint positions at the end of the tick.
+    /// Box of joint positions at the end of the tick.
     pub(super) fn bounds(&self) -> &Bounds {
         &self.context.tick_box.bounds
     }
@@ -37,7 +37,7 @@ impl Tick<'_> {
         self.targets.motion(*self.target, self.context.dt)
     }
 
-    /// The configuration in `bounds` that the goals in the null space ask for after `q`, if there are goals.
+    /// Configuration in `bounds` one gradient step of the null-space goals from `q`; `None` without goals.
     pub(super) fn preferred(&mut self, q: &Point) -> Option<Point> {
         if self.goals.is_empty() {
             return None;
@@ -63,7 +63,7 @@ impl Tick<'_> {
     }
 }
 
-/// The configuration at the end of a tick, and the work spent on it.
+/// Configuration at the end of a tick, and the work spent on it.
 #[derive(Debug, Clone)]
 pub(in crate::tracking) struct TickResult {
     pub q: Point,
@@ -72,12 +72,12 @@ pub(in crate::tracking) struct TickResult {
     pub position: [f64; 3],
     pub evaluations: usize,
     pub iterations: usize,
-    /// The monitor asked to stop.
+    /// Whether the monitor asked to stop.
     pub interrupted: bool,
 }
 
 impl TickResult {
-    /// A result at `q`, not assessed yet.
+    /// Result at `q`, not yet assessed.
     pub(crate) fn at(q: &[f64]) -> Self {
         let score = Score { value: f64::INFINITY, solved: false };
         let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };

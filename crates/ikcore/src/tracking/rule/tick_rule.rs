@@ -1,4 +1,4 @@
-//! The choice of rule, and the rule in use.
+//! Choice of tick rule, and the running rule.
 
 use super::any_solver;
 use super::goal_pursuit::GoalPursuit;
@@ -11,25 +11,25 @@ use crate::robot::Robot;
 use crate::solver::AnySolver;
 use crate::tracking::safety_filter::SafetyFilter;
 
-/// The rule that runs in every tick.
+/// Rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TickRule {
-    /// Model steps: one evaluation of kinematics and Jacobian is enough for most ticks.
+    /// Model steps: one evaluation of kinematics and Jacobian suffices for most ticks.
     #[default]
     MidStep,
-    /// A solver, started at the accepted configuration in every tick.
+    /// Solver started at the accepted configuration in every tick.
     Solver(AnySolver),
-    /// Velocities by the weighted pseudo-inverse of the Jacobian.
+    /// Joint velocities by the weighted pseudo-inverse of the Jacobian.
     WeightedPseudoInverse(WeightedPseudoInverse),
 }
 
-/// A rule in use, with its state between ticks.
+/// Running rule with its state between ticks.
 #[derive(Debug)]
 pub(in crate::tracking) enum RunningRule {
     MidStep(MidStepState),
-    /// Takes the place of `MidStep` under acceleration or jerk limits.
+    /// Variant of `MidStep` under acceleration or jerk limits.
     GoalPursuit(Box<GoalPursuit>),
-    /// Takes the place of `MidStep` for several tips.
+    /// Variant of `MidStep` for several tips.
     TipStep(TipStep),
     Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
@@ -66,7 +66,7 @@ impl TickRule {
         matches!(self, Self::WeightedPseudoInverse(_))
     }
 
-    /// Checks that the rule serves this robot's number of tips.
+    /// Checks that the rule supports the robot's number of tips.
     ///
     /// # Errors
     /// [`Error::SeveralTips`].
@@ -78,12 +78,13 @@ impl TickRule {
         }
     }
 
-    /// Whether the rule extrapolates targets, and so can use their stamps, `under_acceleration` or jerk limits or without.
+    /// Whether the rule extrapolates targets, and so uses their stamps; `under_acceleration` is true with acceleration or jerk
+    /// limits.
     pub(in crate::tracking) fn extrapolates(&self, under_acceleration: bool) -> bool {
         *self == Self::MidStep && under_acceleration
     }
 
-    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without, with several tips or one.
+    /// Starts the rule; `under_acceleration` is true with acceleration or jerk limits.
     pub(in crate::tracking) fn start(&self, under_acceleration: bool, several_tips: bool) -> RunningRule {
         match self {
             Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
@@ -98,7 +99,7 @@ impl TickRule {
 }
 
 impl RunningRule {
-    /// Drops the state of the last tick, because the arm is not where the rule left it.
+    /// Drops the state of the last tick, because the arm has left the rule's configuration.
     pub(crate) fn forget(&mut self) {
         match self {
             Self::MidStep(memory) => memory.forget(),

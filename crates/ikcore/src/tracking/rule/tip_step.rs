@@ -1,25 +1,25 @@
-//! The model-based rule for several tips: Gauss-Newton in the box of the tick.
+//! Model-based rule for several tips: Gauss-Newton in the box of the tick.
 //!
-//! A target that one tick cannot reach is approached by all joints in proportion, as in `approach`, unless it moves; where that does not lower the
-//! error, as out of reach, Levenberg-Marquardt lowers it as far as the tick allows.
+//! A static target that one tick cannot reach is approached by all joints in proportion, as in `approach`. If that does not
+//! lower the error, for instance out of reach, Levenberg-Marquardt lowers it as far as the tick allows.
 
 use super::tick::{Tick, TickResult};
 use crate::objective::{Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
 use crate::tracking::step_context::StepContext;
 
-/// Most steps of Gauss-Newton in a tick; they converge quadratically.
+/// Largest number of Gauss-Newton steps in a tick; they converge quadratically.
 const MOST_STEPS: usize = 6;
 
-/// Evaluations of a tick in which Gauss-Newton fails. The next tick continues.
+/// Evaluation budget of a tick in which Gauss-Newton fails. The next tick continues.
 const MOST_EVALUATIONS: usize = 60;
 
-/// Scratch of a tick; nothing is kept from one to the next.
+/// Scratch of a tick, without state between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct TipStep {
-    /// At the start of the tick.
+    /// Linearization at the start of the tick.
     begin: Box<Linearization>,
-    /// At the last step that was accepted.
+    /// Linearization at the last accepted step.
     here: Box<Linearization>,
     trial: Box<Linearization>,
 }
@@ -50,8 +50,8 @@ impl TipStep {
         found
     }
 
-    /// Steps from `found`, which is at the start of the tick, while they lower the error; the first one, towards what is `preferred`
-    /// where the targets leave the joints free, may raise it.
+    /// Steps from `found`, at the start of the tick, while the error falls. The first step, towards the `preferred`
+    /// configuration where the targets leave the joints free, may raise it.
     fn gauss_newton(&mut self, found: &mut TickResult, preferred: Option<&Point>, tick: &Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
         let ends = tick.context.ends();
@@ -78,8 +78,8 @@ impl TipStep {
         }
     }
 
-    /// Approaches targets that are far: all joints move in proportion to the way that is left to them within the position limits or, after
-    /// targets that move, each as far as it may. Returns false if the targets are not far, or if that brings the arm no nearer.
+    /// Approaches far targets: all joints move in proportion to their remaining displacement within the position limits or, for
+    /// moving targets, each as far as it may. Returns false if the targets are near, or if the arm would come no nearer.
     fn approach(&mut self, begin: &TickResult, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let n = begin.q.len();
         let StepContext { robot, aims, tick_box, .. } = tick.context;

@@ -1,13 +1,13 @@
-//! Resolved motion rate: joint velocities from the velocity of the target by the weighted pseudo-inverse of the
+//! Resolved motion rate control: joint velocities from the velocity of the target by the weighted pseudo-inverse of the
 //! Jacobian, as in "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (8) to (14),
 //! corrected:
 //!
 //! q' = Jw+ (x' + K (x - f(q))) + (I - Jw+ J) q0',  Jw+ = W^-1 J' (J W^-1 J')^-1,  W_i = 1 / (vU_i - vL_i)^2,
 //!
-//! with q0' along the negative gradient of the goals (eq. 13 lacks the minus sign), or towards a posture trajectory.
-//! The paper has no K; without it errors accumulate. Of the points in the box of the tick that move the tip as
-//! required, we take the one nearest to q0' in the norm of W: other joints take over the motion of a joint at a limit,
-//! which the plain formula does not.
+//! with q0' along the negative gradient of the goals (eq. 13 lacks the minus sign), or towards a posture trajectory. The paper
+//! has no K; without it errors accumulate. Among the points in the box of the tick that move the tip as required, we take the
+//! one nearest to q0' in the norm of W: other joints then take over the motion of a joint at a limit, which the plain formula
+//! does not provide.
 
 use std::sync::Arc;
 
@@ -22,31 +22,31 @@ use crate::tracking::step_context::StepContext;
 use crate::trajectory::Trajectory;
 use crate::wording::words;
 
-/// Integration of joint velocities over a tick.
+/// Integration scheme of joint velocities over a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Integrator {
-    /// The velocity at the start of the tick: an error of second order a tick.
+    /// Explicit Euler: an error of second order per tick.
     #[default]
     Euler,
-    /// The classical Runge-Kutta method: four evaluations, an error of fifth order a tick.
+    /// Classical Runge-Kutta: four evaluations, an error of fifth order per tick.
     RungeKutta4,
 }
 
 words!("integrator": Integrator { Euler => "euler", RungeKutta4 => "rk4" });
 
-/// The options of the rule.
+/// Options of resolved motion rate control.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightedPseudoInverse {
-    /// K (1/s): the fraction of the error that is corrected per second. `None` means half of it in every tick.
+    /// Gain K (1/s): the fraction of the error corrected per second. `None` means half of the error in every tick.
     pub gain: Option<f64>,
-    /// Integration of joint velocities over a tick.
+    /// Integration scheme of joint velocities over a tick.
     pub integrator: Integrator,
-    /// W (n,), positive: the cost of each joint's squared velocity. `None` means eq. (11), from the velocity limits of
+    /// Weights W (n,), positive: the cost of each joint's squared velocity. `None` means eq. (11), from the velocity limits of
     /// the tick; joints without a limit count like the fastest joint that has one.
     pub weights: Option<Vec<f64>>,
     /// Preferred configuration over time, followed in the null space of the target.
     pub posture: Option<Arc<Trajectory>>,
-    /// The fraction of the distance from that posture that is corrected per second (1/s).
+    /// Gain of the posture (1/s): the fraction of the distance from it corrected per second.
     pub posture_gain: f64,
     /// Damping relative to the squared norm of the weighted Jacobian. 0 gives the plain pseudo-inverse, which near a
     /// singularity demands the highest speeds that the limits allow.
@@ -66,8 +66,8 @@ impl Default for WeightedPseudoInverse {
     }
 }
 
-/// Fraction of the error that is corrected in a tick if no gain is given.
-const SHARE_A_TICK: f64 = 0.5;
+/// Fraction of the error corrected in a tick if no gain is given.
+const FRACTION_PER_TICK: f64 = 0.5;
 
 impl WeightedPseudoInverse {
     /// Checks the options that do not depend on the robot.
@@ -108,7 +108,7 @@ impl WeightedPseudoInverse {
     }
 }
 
-/// Scratch of a tick; holds no state between ticks.
+/// Scratch of a tick, without state between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     linearization: Box<TaskBlock>,
@@ -145,8 +145,8 @@ pub(super) fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, mut t
     found
 }
 
-/// Returns dt q' at the configuration `from`, at the fraction `fraction` of the tick that starts at `q`, such that q + dt
-/// q' is in the box.
+/// Returns dt q' at the configuration `from` and the fraction `fraction` of the tick that starts at `q`, such that q + dt q' is
+/// in the box.
 fn displacement(
     rule: &WeightedPseudoInverse,
     scratch: &mut Scratch,
@@ -155,19 +155,19 @@ fn displacement(
     tick: &mut Tick<'_>,
 ) -> Point {
     let StepContext { q, tick_box, dt, .. } = tick.context;
-    let gain = rule.gain.unwrap_or(SHARE_A_TICK / dt);
+    let gain = rule.gain.unwrap_or(FRACTION_PER_TICK / dt);
     let drift = linearize(scratch, from, fraction, tick);
     let null_space_step = null_space_step(rule, from, fraction, tick);
     let TaskBlock { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
-    // Scaled so that the norm of W becomes the Euclidean norm: y = W^(1/2) q.
+    // Scaling by y = W^(1/2) q turns the norm of W into the Euclidean norm.
     let units = units(rule, &tick_box.velocity);
     for (column, unit) in columns.iter_mut().zip(&units) {
         column.iter_mut().for_each(|entry| *entry *= unit);
     }
     let scaled = |values: &[f64]| -> Point { values.iter().zip(&units).map(|(value, unit)| value / unit).collect() };
     let equations = ScaledEquations {
-        // J q' = -K r - dr/dt, times dt.
+        // Task equation, times dt: J q' = -K r - dr/dt.
         residual: std::array::from_fn(|i| dt * (gain * residual[i] + drift[i])),
         lambda: rule.damping * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>(),
         columns,
@@ -179,7 +179,7 @@ fn displacement(
     y.iter().zip(&units).zip(q).map(|((y, unit), q)| y * unit - q).collect()
 }
 
-/// The equations of a tick in scaled joint positions: J (y' - y) = -residual, y' in the box.
+/// Equations of a tick in scaled joint positions: J (y' - y) = -residual, y' in the box.
 struct ScaledEquations<'a> {
     columns: &'a [[f64; 6]],
     residual: [f64; 6],
@@ -189,20 +189,20 @@ struct ScaledEquations<'a> {
     upper: Point,
 }
 
-/// Fractions of the null-space step that are tried in turn until the equations are met.
-const NULL_SPACE_SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
+/// Fractions of the null-space step, tried in turn until the equations are met.
+const NULL_SPACE_FRACTIONS: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
 
-/// The equations count as met if at most this fraction of the residual remains.
+/// Largest fraction of the residual that may remain.
 const MET: f64 = 1e-9;
 
 impl ScaledEquations<'_> {
-    /// Returns the y' nearest to y + `step` that meets the equations. If the step would drive joints that the tip needs
-    /// to their bounds, a smaller fraction of it is taken; if no fraction meets the equations, the one with the
-    /// smallest residual.
+    /// Returns the y' nearest to y + `step` that meets the equations. If the step would drive joints that the tip needs to
+    /// their bounds, takes a smaller fraction of it; if no fraction meets the equations, takes the one with the smallest
+    /// residual.
     fn solve(&self, step: &[f64]) -> Point {
         let enough = MET * norm(&self.residual);
         let mut best = (f64::INFINITY, Point::new());
-        for fraction in NULL_SPACE_SHARES {
+        for fraction in NULL_SPACE_FRACTIONS {
             let (missed, there) = self.nearest_to(step, fraction);
             if missed <= enough {
                 return there;
@@ -214,7 +214,7 @@ impl ScaledEquations<'_> {
         best.1
     }
 
-    /// Returns the y' nearest to y + share * `step`, and its residual.
+    /// Returns the y' nearest to y + fraction * `step`, and its residual.
     fn nearest_to(&self, step: &[f64], fraction: f64) -> (f64, Point) {
         let bounds = self.lower.iter().zip(&self.upper);
         let moved = self.y.iter().zip(step).zip(bounds);
@@ -227,7 +227,7 @@ impl ScaledEquations<'_> {
         (norm(&self.residual_at(&there)), there)
     }
 
-    /// residual + J (there - y).
+    /// Residual at `there`: residual + J (there - y).
     fn residual_at(&self, there: &[f64]) -> [f64; 6] {
         let mut left = self.residual;
         for ((column, there), y) in self.columns.iter().zip(there).zip(&self.y) {
@@ -237,8 +237,8 @@ impl ScaledEquations<'_> {
     }
 }
 
-/// Writes residual and Jacobian at `from` to the scratch; returns the rate of change of the residual by the target's
-/// own motion (1/s).
+/// Writes residual and Jacobian at `from` to the scratch. Returns the rate of change of the residual due to the target's own
+/// motion (1/s).
 fn linearize(scratch: &mut Scratch, from: &[f64], fraction: f64, tick: &Tick<'_>) -> [f64; 6] {
     let StepContext { robot, dt, .. } = tick.context;
     let (target, twist) = tick.motion().at(fraction);
@@ -254,7 +254,7 @@ fn linearize(scratch: &mut Scratch, from: &[f64], fraction: f64, tick: &Tick<'_>
     std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * dt))
 }
 
-/// Returns dt q0', the motion of the joints if the tip were free.
+/// Null-space step dt q0': the motion of the joints if the tip were free.
 fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], fraction: f64, tick: &mut Tick<'_>) -> Point {
     let StepContext { robot, time, dt, .. } = tick.context;
     let n = from.len();
@@ -265,7 +265,7 @@ fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], fraction: f64, ti
     }
     if let Some(posture) = &rule.posture {
         let (mut q, mut qd, mut qdd) = ([0.0; MAX_DOF], [0.0; MAX_DOF], [0.0; MAX_DOF]);
-        // Lengths were checked; after its end the posture trajectory stands still.
+        // Lengths were checked before; after its end the posture trajectory stands still.
         let time = time + fraction * dt;
         let known = posture.at(time, &mut q[..n], &mut qd[..n], &mut qdd[..n]);
         if known.is_ok() && time <= posture.duration() {
@@ -278,18 +278,18 @@ fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], fraction: f64, ti
     step
 }
 
-/// W^(-1/2): eq. (11) up to a common factor, or as given.
+/// Scale of each joint, W^(-1/2): eq. (11) up to a common factor, or from the given weights.
 fn units(rule: &WeightedPseudoInverse, velocity_limit: &[f64]) -> Point {
     if let Some(weights) = &rule.weights {
         return weights.iter().map(|weight| weight.sqrt().recip()).collect();
     }
     let fastest = velocity_limit.iter().copied().filter(|limit| limit.is_finite()).fold(0.0, f64::max);
     let unit = |limit: &f64| if *limit > 0.0 && limit.is_finite() { limit / fastest } else { 1.0 };
-    // A joint that may not move at all is held by the box, whatever its scale.
+    // The box holds a joint that may not move at all, whatever its scale.
     velocity_limit.iter().map(unit).collect()
 }
 
-/// q + share * step.
+/// Returns q + fraction * step.
 fn moved(q: &[f64], step: &[f64], fraction: f64) -> Point {
     q.iter().zip(step).map(|(q, step)| q + fraction * step).collect()
 }
