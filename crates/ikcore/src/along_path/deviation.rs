@@ -155,7 +155,7 @@ fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
     }
 }
 
-/// The largest `value` of (share, from, to) over all intervals \[from, to\] between `knots`.
+/// The largest `value` of (fraction, from, to) over all intervals \[from, to\] between `knots`.
 fn largest_over(knots: &[f64], value: impl Fn(f64, f64, f64) -> f64) -> Largest {
     let none = Largest { value: -1.0, fraction: 0.0 };
     knots.windows(2).fold(none, |largest, ends| {

@@ -11,7 +11,7 @@ use crate::trajectory::Trajectory;
 const NARROWINGS: usize = 12;
 
 /// Smallest fraction to which blends are cut before they are certified.
-const LEAST_SHARE: f64 = 0.02;
+const LEAST_FRACTION: f64 = 0.02;
 
 /// A path, with blends as wide as seems clear.
 pub(super) struct TimedPath {
@@ -48,7 +48,7 @@ impl TimedPath {
 /// between its ends is clear.
 pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLimits, check: &mut SampledLine) -> f64 {
     let mut fraction = 1.0;
-    while fraction > LEAST_SHARE {
+    while fraction > LEAST_FRACTION {
         let [from, to] = path.blend_ends(limits, i, fraction);
         if check.is_clear(&from, &to) {
             break;

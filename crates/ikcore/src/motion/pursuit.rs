@@ -27,14 +27,14 @@ const SHARPER: f64 = 0.35;
 const NEAR: f64 = 3.0;
 
 /// Fraction of the jerk limit by which noise of the goal may change the change of the linear law.
-const JERK_SHARE: f64 = 0.125;
+const JERK_FRACTION: f64 = 0.125;
 
 /// Distance of a goal, in changes plus standard deviations of its noise, from which on joints approach it in
 /// proportion.
 const FAR: f64 = 16.0;
 
-/// Smallest share of its limits that a joint keeps.
-const LEAST_SHARE: f64 = 0.1;
+/// Smallest fraction of its limits that a joint keeps.
+const LEAST_FRACTION: f64 = 0.1;
 
 /// A pursuit in one tick.
 #[derive(Debug)]
@@ -77,7 +77,8 @@ impl Pursuit<'_> {
                 changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
             };
             let Braking { acceleration, jerk } = self.braking[j];
-            let acceleration = (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
+            let acceleration =
+                (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_FRACTION * acceleration);
             let braking = Braking { acceleration, jerk: fractions.jerk[j] * jerk };
             let scale = self.scales.change[j];
             let noise = if scale.is_finite() { self.goal.uncertainty_of(j) * scale } else { 0.0 };
@@ -96,25 +97,26 @@ impl Pursuit<'_> {
     /// Longest and shortest time of the linear law, in ticks.
     fn law_times(&self) -> (f64, f64) {
         let memory = self.goal.memory();
-        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_fraction)).sqrt().min(memory).max(1.0);
+        let quickest = (self.goal.jitter() / (JERK_FRACTION * self.scales.jerk_fraction)).sqrt().min(memory).max(1.0);
         ((SHARPER * memory).max(quickest), quickest)
     }
 
     /// The fraction of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
-    fn fractions(&self, q: &[f64]) -> Shares {
+    fn fractions(&self, q: &[f64]) -> Fractions {
         let way = |j: usize| (self.goal.q()[j] - self.goal.step()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
         if farthest <= FAR * (1.0 + self.goal.noise()) {
             let all = Point::from_elem(1.0, n);
-            return Shares { far: false, step: all.clone(), change: all.clone(), jerk: all };
+            return Fractions { far: false, step: all.clone(), change: all.clone(), jerk: all };
         }
         let of = |limit: &dyn Fn(usize) -> f64| -> Point {
             let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
-            let fraction = |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_SHARE) } else { 1.0 };
+            let fraction =
+                |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_FRACTION) } else { 1.0 };
             (0..n).map(fraction).collect()
         };
-        Shares {
+        Fractions {
             far: true,
             step: of(&|j| self.scales.step[j]),
             change: of(&|j| self.braking[j].acceleration),
@@ -123,8 +125,8 @@ impl Pursuit<'_> {
     }
 }
 
-/// Shares of the limits of each joint.
-struct Shares {
+/// Fractions of the limits of each joint.
+struct Fractions {
     /// Whether the goal is far.
     far: bool,
     step: Point,

@@ -82,7 +82,7 @@ impl JointPolyline {
         within_limits(motion, limits)
     }
 
-    /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
+    /// Moves at constant velocity along the lines, with smooth blends at the points. `fractions[i]` in (0, 1] is the
     /// fraction of the shorter adjacent line that the blend of point i may take. `None` if a joint has no velocity
     /// limit.
     ///

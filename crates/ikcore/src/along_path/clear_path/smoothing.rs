@@ -13,7 +13,7 @@ const PASSES: usize = 8;
 /// A stretch is replaced if that lowers its cost by more than this fraction.
 const GAIN: f64 = 1e-5;
 
-/// A sequence of postures at these shares of the path.
+/// A sequence of postures at these path parameters.
 pub(super) struct Smoothing<'s, 'a> {
     pub fractions: &'s [f64],
     pub price: &'s Price,
