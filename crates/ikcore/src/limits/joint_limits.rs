@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Field, Profile};
+use super::field::Field;
+use super::profile::Profile;
 use crate::error::{Error, Result};
 use crate::objective::Bounds;
 use crate::robot::{Joint, Robot};

@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Field, Limits, Profile};
+use super::field::Field;
+use super::joint_limits::Limits;
+use super::profile::Profile;
 use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;

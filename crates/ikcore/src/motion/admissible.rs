@@ -5,9 +5,8 @@
 //! set of the next tick contains at least the continued stop: it is never empty, as long as limits do not close in. The
 //! highest position and the highest speed of the stop increase with the change, so the set is an interval.
 
-use super::Braking;
 use super::bracket::largest_not_positive;
-use super::braking::longest_first;
+use super::braking::{Braking, longest_first};
 
 /// Limits of a joint that could not stop in time otherwise, relative to its planned limits; still below the given ones.
 const HARDER: f64 = 1.0 + 0.8e-6;

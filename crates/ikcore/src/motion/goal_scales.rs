@@ -1,6 +1,6 @@
 //! Scales of the motion of a goal.
 
-use super::Braking;
+use super::braking::Braking;
 use crate::objective::Point;
 
 /// Step of a joint without a velocity limit (rad, m).

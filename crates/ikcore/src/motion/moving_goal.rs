@@ -7,8 +7,9 @@
 
 use super::goal_gains::GoalGains;
 use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
+use super::goal_scales::Scales;
+use super::joint_state::JointState;
 use super::noise_level::{NoiseLevel, root_mean_square};
-use super::{JointState, Scales};
 use crate::objective::Point;
 
 /// Distance of a sample from the expected goal, in standard deviations, beyond which it is no noise.

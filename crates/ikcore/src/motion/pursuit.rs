@@ -9,9 +9,10 @@
 //! A goal far away is approached by all joints in proportion: the limits of each are scaled by its fraction of the way.
 
 use super::bracket::largest_not_positive;
-use super::braking::longest_first;
+use super::braking::{Braking, longest_first};
+use super::goal_scales::Scales;
+use super::joint_state::JointState;
 use super::moving_goal::MovingGoal;
-use super::{Braking, JointState, Scales};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.

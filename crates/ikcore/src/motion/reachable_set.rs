@@ -6,7 +6,8 @@
 //! limit would overtake is moved out of its way.
 
 use super::admissible::Room;
-use super::{Braking, JointState};
+use super::braking::Braking;
+use super::joint_state::JointState;
 use crate::limits::{Field, Limits, Profile, TickBox};
 use crate::math::MAX_DOF;
 

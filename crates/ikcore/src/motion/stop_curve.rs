@@ -1,7 +1,6 @@
 //! The fastest stop of a joint, tick by tick in closed form.
 
-use super::Braking;
-use super::braking::{StopPhases, fade_out};
+use super::braking::{Braking, StopPhases, fade_out};
 
 /// Position of a joint during its fastest stop.
 #[derive(Debug, Clone, Copy)]
