@@ -184,7 +184,7 @@ MISTAKES: list[Case] = [
     (
         lambda: bik.solve_batch(PANDA, WRONG[2:]),
         Invalid,
-        "row 0: target is not a rigid transform: R'R differs from the identity by 2.100e-1",
+        "row 0: target is not a rigid transform: R'R differs from the identity by 2.100e-1; the nearest rotation is U V' of its singular value decomposition U S V'",
     ),
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH),

@@ -15,7 +15,7 @@ use crate::math::MAX_DOF;
 const PLANNED: f64 = 1.0 - 1e-6;
 
 /// Rounding of bounds that cross (rad, m; relative beyond 1).
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const CROSSING: f64 = 16.0 * f64::EPSILON;
 
 /// The reachable set of an arm.
 #[derive(Debug)]
@@ -106,7 +106,7 @@ impl ReachableSet {
                 let ahead = self.dt * ticks_ahead(&braking, tick.velocity[j] * self.dt);
                 [floor, ceiling] = limits.position_range(j, time, time + ahead);
             }
-            let rounding = ROUNDING * q[j].abs().max(1.0);
+            let rounding = CROSSING * q[j].abs().max(1.0);
             let [below, above] = [q[j] - floor, ceiling - q[j]].map(|room| (room - rounding).max(room.min(0.0)));
             let [below, above] = [below, above].map(|room| if room > self.farthest[j] { f64::INFINITY } else { room });
             let longest = tick.velocity[j].max(0.0) * self.dt;
@@ -135,7 +135,7 @@ impl ReachableSet {
             let stop = braking.stop(step, change);
             let time = self.dt * stop.ticks;
             let [floor, ceiling] = limits.position_range(*j, 0.0, time);
-            let rounding = ROUNDING * q[*j].abs().max(1.0);
+            let rounding = CROSSING * q[*j].abs().max(1.0);
             let room =
                 Room { below: q[*j] - floor, above: ceiling - q[*j], step: self.dt * velocity.smallest(0.0, time).1 };
             let fastest = braking.fastest(step, change).max(braking.fastest(-step, -change));
