@@ -23,14 +23,15 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("shape", &[]),
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
-    ("robot", &["kinematics", "starts", "closed_form", "shape"]),
+    ("bodies", &["kinematics", "shape"]),
+    ("robot", &["kinematics", "starts", "closed_form", "shape", "bodies"]),
     ("load", &["kinematics", "shape", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
     ("motion", &["limits", "trajectory", "objective"]),
-    ("obstacle", &["kinematics", "robot", "objective", "shape"]),
+    ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
     ("solver", &["objective"]),
@@ -173,7 +174,17 @@ fn files_import_one_another_in_no_circle() {
 }
 
 #[test]
-fn no_two_types_fraction_a_name() {
+fn tests_stand_in_the_rooms_of_the_core() {
+    let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
+    for file in tests.files() {
+        let room = room_of(file);
+        let known = ["main", "common", "layers"].contains(&&*room) || LAYERS.iter().any(|(name, _)| *name == room);
+        assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
+    }
+}
+
+#[test]
+fn no_two_types_share_a_name() {
     let core = core();
     let mut places: BTreeMap<&str, BTreeSet<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -186,7 +197,7 @@ fn no_two_types_fraction_a_name() {
 }
 
 #[test]
-fn no_three_files_fraction_a_name() {
+fn no_three_files_share_a_name() {
     let core = core();
     let mut places: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -244,7 +255,7 @@ fn circles_are_found_through_re_exports() {
 /// Lines of `file` that violate its rule, each as `file:line: rule`.
 fn faults_of(file: &SourceFile) -> Vec<String> {
     let place = file.path.display();
-    let module = file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "");
+    let module = room_of(file);
     if module == "lib" {
         return Vec::new(); // its contents and re-exports
     }
@@ -260,6 +271,11 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))
         .collect()
+}
+
+/// The folder or file of the crate's root that `file` belongs to.
+fn room_of(file: &SourceFile) -> String {
+    file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "")
 }
 
 /// Top-level modules named after `crate::`, with their lines. Names in capitals are re-exports of the root, not modules.

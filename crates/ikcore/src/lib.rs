@@ -48,7 +48,7 @@
 //! |---|---|
 //! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`starts`], `closed_form` |
+//! | 2 | [`starts`], `closed_form`, `bodies` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`motion`], [`task`], [`solver`] |
@@ -69,6 +69,7 @@ compile_error!("ikcore needs a little-endian processor: stored bytes and the lan
 mod along_path;
 mod approach_retreat;
 pub mod batch;
+mod bodies;
 mod closed_form;
 pub mod error;
 mod free_path;

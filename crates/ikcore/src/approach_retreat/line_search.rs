@@ -1,12 +1,11 @@
 //! Configurations of an end of a motion from which the tip moves along a straight line.
 
-use super::piece_space::PieceSpace;
 use super::straight_tip::{Hindrance, StraightTip};
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
-use crate::obstacle::{ClearSpace, ClearanceSweep, Contact, NearestContact};
-use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, TimedMotion, configuration_at};
+use crate::obstacle::{ClearSpace, ClearanceSweep, NearestContact};
+use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, certify, configuration_at};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -50,11 +49,11 @@ pub(super) struct LineSearch<'a> {
     pub side: Side,
     pub tip: StraightTip<'a>,
     pub position_limits: Limits,
-    /// Space of the line, and its clear configurations; `None` if nothing can collide.
-    pub along_line: Option<(&'a PieceSpace, ClearSpace<'a>)>,
-    /// Clear configurations where the line meets the rest of the motion: there no contact is allowed.
-    pub beyond: Option<ClearSpace<'a>>,
-    /// Configuration (n,) near which configurations of the targets come first.
+    /// What the line keeps clear of; `None` if nothing can collide.
+    pub along_line: Option<&'a ClearSpace<'a>>,
+    /// Where the line meets the rest of the motion no contact is allowed.
+    pub beyond: Option<&'a ClearSpace<'a>>,
+    /// Configurations of the targets near this one come first (n,).
     pub near: Option<Vec<f64>>,
     /// Evaluations so far.
     pub evaluations: usize,
@@ -104,17 +103,17 @@ impl LineSearch<'_> {
             }
             Endpoint::Targets { targets, .. } => &targets[0],
         };
-        let space = self.along_line.as_ref().map(|(space, _)| *space);
+        let space = self.along_line;
         let each = SolveOptions {
             task: self.options.task,
             start: self.near.clone(),
             limits: Some(self.position_limits.clone()),
-            surroundings: space.map(|space| space.surroundings.clone()).unwrap_or_default(),
+            surroundings: space.map(|space| space.surroundings()).unwrap_or_default(),
             seed: self.options.seed,
             ..SolveOptions::default()
         };
         let all = AllOptions { each, limit: Some(TRIED), redundancy: REDUNDANCY, ..AllOptions::default() };
-        let robot = space.map_or(self.tip.bare_robot(), |space| &space.robot);
+        let robot = space.map_or(self.tip.bare_robot(), |space| space.robot());
         let set = solve_all(robot, target, &all, monitor)?;
         self.evaluations += set.evaluations;
         if set.solutions.is_empty() {
@@ -135,23 +134,20 @@ impl LineSearch<'_> {
             Ok(motion) => motion,
             Err(why) => return Ok(Err((0.0, why))),
         };
-        let space = self.along_line.as_ref().map(|(_, space)| space);
-        let margin = space.map_or(0.0, |space| space.margin() - END_RESERVE);
-        let whole = [0.0, outward.duration()];
-        let checked =
-            space.map(|space| ClearanceSweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
+        let margin = self.along_line.map_or(0.0, |space| space.margin() - END_RESERVE);
+        let checked = self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
-            let contact = in_words(&near.contact, margin);
+            let contact = near.contact.in_words(margin);
             let why = if reached > 0.0 { format!("{} m {place} {contact}", number(reached)) } else { contact };
             return Ok(Err((reached, why)));
         }
         let meets = configuration_at(&outward, outward.duration())?;
-        if let Some(beyond) = &self.beyond
-            && let Some(NearestContact { contact, .. }) = beyond.nearest(&meets)
+        if let Some(beyond) = self.beyond
+            && let Some(NearestContact { contact, .. }) = beyond.clearance(&meets).nearest
             && contact.distance < beyond.margin()
         {
-            let (reached, contact) = (self.line.distance, in_words(&contact, beyond.margin()));
+            let (reached, contact) = (self.line.distance, contact.in_words(beyond.margin()));
             let why = format!("at its other end {contact}: give a longer line");
             return Ok(Err((reached, why)));
         }
@@ -159,11 +155,7 @@ impl LineSearch<'_> {
     }
 }
 
-fn in_words(contact: &Contact, margin: f64) -> String {
-    format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other)
-}
-
-/// Explains why a target has no clear configuration.
+/// Why a target has no clear configuration.
 fn why_none(set: &SolutionSet) -> String {
     match (&set.obstruction, &set.miss) {
         (Some(obstruction), _) => obstruction.to_string(),

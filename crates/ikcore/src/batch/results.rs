@@ -41,7 +41,7 @@ impl From<Solution> for BatchItem {
 impl BatchItem {
     /// Smallest distance (m), as in [`Solution::clearance`].
     pub fn clearance(&self) -> f64 {
-        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
+        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance.distance)
     }
 
     /// Item that was not solved.

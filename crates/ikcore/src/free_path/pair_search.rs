@@ -258,6 +258,18 @@ impl<'a> PairSearch<'a> {
         let moved = self.pair(moved.start, moved.end, pair.chosen);
         if moved.duration < pair.duration { moved } else { pair }
     }
+
+    /// Solved plan of a motion, with the limits that it violates.
+    pub(super) fn plan(&self, trajectory: Trajectory, objective: Cost) -> Plan {
+        let cost = objective.of(self.robot, &trajectory);
+        Plan {
+            history: vec![Improvement { evaluations: self.evaluations, cost }],
+            violations: self.limits.violations(&trajectory),
+            evaluations: self.evaluations,
+            elapsed: self.deadline.elapsed(),
+            ..Plan::of(trajectory, objective, cost)
+        }
+    }
 }
 
 /// The error of a search for a configuration, and the end that it concerns.

@@ -6,11 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
+use crate::obstacle::{ClearSpace, Clearance, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
-use crate::wording::number;
 
 /// Best configuration found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,11 +35,11 @@ pub struct Solution {
     pub elapsed: Duration,
 }
 
-/// Nearest two bodies at a configuration, if collisions were checked.
+/// Clearance of a solution, if collisions were checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nearest {
-    /// Bodies and their distance; `None` if no two can touch.
-    pub bodies: Option<NearestContact>,
+    /// Smallest distance, and the nearest two bodies.
+    pub clearance: Clearance,
     /// First obstacle with an open mesh, whose inside is unknown.
     pub open_mesh: Option<usize>,
 }
@@ -48,12 +47,7 @@ pub struct Nearest {
 impl Nearest {
     /// Nearest two bodies at `q` in `space`.
     pub(super) fn at(space: &ClearSpace<'_>, q: &[f64]) -> Self {
-        Self { bodies: space.nearest(q), open_mesh: space.first_open_mesh() }
-    }
-
-    /// Smallest distance (m); infinite if nothing can touch.
-    pub fn clearance(&self) -> f64 {
-        self.bodies.as_ref().map_or(f64::INFINITY, |bodies| bodies.contact.distance)
+        Self { clearance: space.clearance(q), open_mesh: space.first_open_mesh() }
     }
 }
 
@@ -74,7 +68,7 @@ impl Solution {
     /// Smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
     /// checked.
     pub fn clearance(&self) -> f64 {
-        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
+        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance.distance)
     }
 
     /// Returns a sentence on the outcome, with advice.
@@ -102,14 +96,7 @@ impl Solution {
 
     /// Clearance as the end of a sentence; empty if nothing was checked.
     fn kept_clear(&self) -> String {
-        let Some(nearest) = &self.nearest else { return String::new() };
-        let clear = match nearest.bodies {
-            None => ", with nothing to touch".into(),
-            Some(_) => format!(", {} m clear of everything", number(nearest.clearance())),
-        };
-        match nearest.open_mesh {
-            None => clear,
-            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
-        }
+        let in_words = |nearest: &Nearest| clear_in_words(Some(&nearest.clearance), nearest.open_mesh);
+        self.nearest.as_deref().map_or_else(String::new, in_words)
     }
 }

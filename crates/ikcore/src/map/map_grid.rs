@@ -99,9 +99,9 @@ impl MapGrid {
         self.orientations.len().div_ceil(8)
     }
 
-    /// Pose of orientation `i` at `place` (m), rotated to `azimuth` (rad) about z.
-    pub fn pose(&self, place: [f64; 3], azimuth: f64, i: usize) -> Frame {
-        Frame { axes: turned(&self.orientations.axes(i), azimuth), origin: place }
+    /// Pose of orientation `i` at `point` (m), rotated to `azimuth` (rad) about z.
+    pub fn pose(&self, point: [f64; 3], azimuth: f64, i: usize) -> Frame {
+        Frame { axes: turned(&self.orientations.axes(i), azimuth), origin: point }
     }
 
     /// Returns the voxel that contains a pose, and the nearest orientation there; `None` outside the map.

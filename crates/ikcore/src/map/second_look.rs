@@ -87,7 +87,7 @@ impl Look<'_, '_> {
     /// Descends to the orientation from nearby solutions, and returns its updated results.
     fn at(&self, all: &[Seen], result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
         let Self { test, ring, i, .. } = *self;
-        let pose = test.grid.pose(ring.place, test.azimuth(ring), i);
+        let pose = test.grid.pose(ring.point, test.azimuth(ring), i);
         let mut found = test.found(ring, all[i].clone(), result);
         if found.seen.reached == 0 {
             let context = self.second.turning.as_ref().unwrap_or(&self.second.own);
@@ -104,16 +104,16 @@ impl Look<'_, '_> {
         if found.seen.reached == 0 || found.is_everywhere() {
             return found.seen;
         }
-        for (place, azimuth) in ring.azimuths.iter().enumerate() {
+        for (index, azimuth) in ring.azimuths.iter().enumerate() {
             let range = test.ranges[axis.joint];
             let holds = |start: &&Vec<f64>| range.holds(start[axis.joint] + azimuth * axis.per_turn);
             for start in self.starts(all).filter(holds).take(DESCENTS) {
-                if found.seen.reached >> place & 1 == 1 {
+                if found.seen.reached >> index & 1 == 1 {
                     break;
                 }
                 let turned = axis.turned(&pose, *azimuth);
                 if let Some(q) = descended(&self.second.own, &turned, &self.inside(start, Some(*azimuth)), monitor) {
-                    found.take_at(place, &q);
+                    found.take_at(index, &q);
                 }
             }
         }

@@ -1,10 +1,10 @@
 //! Other limits for a finished plan: the same path, passed at other times.
 
-use super::collision_checks::{TimedMotion, too_near};
+use super::collision_checks::{certify, too_near};
 use super::plan::{Freed, Plan};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::ClearanceSweep;
+use crate::obstacle::{Clearance, ClearanceSweep};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::timing::{ConstantLimits, scaled, time_all};
@@ -52,10 +52,8 @@ impl Plan {
     fn certify(&mut self, robot: &Robot, smoothed: bool) -> Result<()> {
         let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
         let Some(space) = space else { return Ok(()) };
-        let (scene, margin) = (space.scene(), space.margin());
-        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let mut sweep = ClearanceSweep::new(scene);
-        if let Err(near) = sweep.check(&motion, whole, margin) {
+        let margin = space.margin();
+        if let Err(near) = certify(&mut ClearanceSweep::new(space.scene()), &self.trajectory, margin) {
             let violation = too_near(&near.contact, margin);
             let problem =
                 format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
@@ -63,7 +61,7 @@ impl Plan {
         }
         if smoothed {
             // Found when it is asked for.
-            (self.clearance, self.nearest) = (Some(margin), None);
+            self.clearance = Some(Clearance::at_least(margin));
         }
         Ok(())
     }

@@ -3,8 +3,8 @@
 use super::several_tips::tip_ends;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
-use crate::obstacle::kept_margin;
-use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions};
+use crate::obstacle::ClearSpace;
+use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions, motion_space};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
@@ -28,13 +28,15 @@ pub fn plan_point_to_point(
 ) -> Result<Plan> {
     check_point_to_point(robot, start, ends, options)?;
     require_joint_space(robot, options)?;
+    let space = motion_space(&options.surroundings, robot)?;
+    let space = space.as_ref();
     let names_tips = |end: &Endpoint| matches!(end, Endpoint::Targets { tips, .. } if !tips.is_empty());
     if !std::iter::once(start).chain(ends).any(names_tips) {
-        return plan_joined(robot, start, ends, options, monitor);
+        return plan_joined(robot, start, ends, space, options, monitor);
     }
     let stopwatch = Stopwatch::start();
-    let tips = tip_ends(robot, start, ends, options, monitor)?;
-    let mut plan = plan_joined(robot, &tips.start, &tips.ends, options, monitor)?;
+    let tips = tip_ends(robot, start, ends, space, options, monitor)?;
+    let mut plan = plan_joined(robot, &tips.start, &tips.ends, space, options, monitor)?;
     plan.chosen_end = plan.chosen_end.and_then(|chosen| tips.origins.get(chosen).copied());
     plan.evaluations += tips.evaluations;
     plan.elapsed = stopwatch.elapsed();
@@ -46,15 +48,16 @@ fn plan_joined(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let mut plan = match &options.method {
-        PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, options, monitor),
-        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, options, monitor),
+        PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, space, options, monitor),
+        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, space, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
             let end = only_end(ends, options)?;
-            tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)
+            tpbso::point_to_point(robot, [start, end], space, (tpbso, options), monitor)
         }
     }
     .map_err(|error| with_way_out(error, options))?;
@@ -95,7 +98,7 @@ pub(crate) fn check_point_to_point(
     for (line, what) in [(&options.approach, "approach"), (&options.retreat, "retreat")] {
         if let Some(line) = line {
             line.validate(what)?;
-            line.check_obstacles(what, options.obstacles.len())?;
+            line.check_obstacles(what, options.surroundings.obstacles().len())?;
         }
     }
     if options.start_velocity.is_some() && (options.retreat.is_some() || options.free_start) {
@@ -105,7 +108,7 @@ pub(crate) fn check_point_to_point(
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
     }
-    kept_margin(options.margin).map(|_| ())
+    options.surroundings.kept_margin().map(|_| ())
 }
 
 /// Names the remedy for a start in contact, or says that it did not help.

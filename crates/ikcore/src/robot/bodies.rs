@@ -3,6 +3,7 @@
 use super::body::{Bodies, Body, BodySource};
 use super::link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 use super::model::Robot;
+use crate::bodies::CarriedBody;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
@@ -38,7 +39,7 @@ impl Robot {
         self.parts().bodies.meshes()
     }
 
-    /// The same robot with these capsules and no others.
+    /// Copy of the robot with these capsules and no others.
     ///
     /// # Errors
     /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
@@ -54,7 +55,7 @@ impl Robot {
         self.with_capsules_as_bodies(capsules)
     }
 
-    /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
+    /// Copy of the robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
     /// frames of its links, to the axis of the next joint; the last capsule ends at the tip. The gap that a prismatic
     /// joint opens between two links is not covered.
     ///
@@ -78,11 +79,22 @@ impl Robot {
             for ends in places.windows(2).filter(|ends| distance(&ends[0], &ends[1]) > SHORTEST) {
                 let Some((carrier, name)) = links.first() else { return Err(self.nameless(body)) };
                 let from_link = carrier.offset.inverse();
-                let [a, b] = [ends[0], ends[1]].map(|end| from_link.place::<NoFma>(&end));
+                let [a, b] = [ends[0], ends[1]].map(|end| from_link.transform::<NoFma>(&end));
                 capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
             }
         }
         self.with_capsules_as_bodies(capsules)
+    }
+
+    /// The bodies, each in the frame of the moving element that carries it.
+    pub(super) fn carried_bodies(&self) -> Vec<CarriedBody> {
+        let numbers = self.link_numbers();
+        let bodies = self.capsules().iter().zip(self.bodies()).filter_map(|(capsule, body)| {
+            let carrier = self.carrier_of_link_number(*numbers.get(capsule.link.as_str())?);
+            let solid = (!body.is_capsule()).then_some(&body.shape);
+            Some(CarriedBody::new(&capsule.link, carrier, [capsule.a, capsule.b], capsule.radius, solid))
+        });
+        bodies.collect()
     }
 
     fn with_capsules_as_bodies(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {

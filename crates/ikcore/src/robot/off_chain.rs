@@ -1,4 +1,4 @@
-//! What a robot has beside its chain: links that branch off it, and joints that are held.
+//! Links that branch off the chain, and held joints.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::description::{Description, Element, moved};
 use super::joint::Joint;
 use crate::error::{Error, Result, require_finite};
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::link_tree::{LinkTree, LinkTreeFolder};
 
 /// A link that is not on the chain.
@@ -49,7 +49,7 @@ impl OffChain {
                     // A rotation vector stands at the start of the chain alone.
                     Element::Link(_) | Element::RotationVector { .. } => {}
                     Element::Moving { axis, turns, joint, scale, offset } => {
-                        let motion = if turns { StageMotion::turn } else { StageMotion::slide };
+                        let motion = if turns { Transmission::turn } else { Transmission::slide };
                         tree.moving(&axis, motion(joint, scale, offset));
                     }
                 }

@@ -14,7 +14,7 @@ impl Robot {
         std::iter::once(first_tip(self.parts())).chain(self.parts().tips.iter().map(String::as_str))
     }
 
-    /// How many tips it has.
+    /// Number of tips.
     #[inline]
     pub fn tip_count(&self) -> usize {
         1 + self.parts().tips.len()
@@ -139,7 +139,7 @@ impl Robot {
 
     /// Number of the frame that carries tip number `tip`.
     pub(crate) fn frame_of_tip(&self, tip: usize) -> usize {
-        self.tip_chain(tip).map_or(self.chain().moving, |TipChain { link, .. }| self.place_of_link_number(*link).0)
+        self.tip_chain(tip).map_or(self.chain().moving, |TipChain { link, .. }| self.carrier_of_link_number(*link).0)
     }
 
     /// The chain to tip number `tip`; None for a robot with one.

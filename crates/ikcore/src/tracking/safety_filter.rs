@@ -45,6 +45,15 @@ pub(super) struct SafetyFilter {
     progress: ArmProgress,
 }
 
+/// Work of the safety filter, counted: for loops that must know their worst case.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FilterWork {
+    /// Intervals examined to certify motions.
+    pub intervals: usize,
+    /// Exchanges of constraints by steps beside rows.
+    pub exchanges: usize,
+}
+
 /// Outcome of the filter for a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Kept {
@@ -100,6 +109,12 @@ impl SafetyFilter {
             (None, around) => (*around, self.goal_is_held) = (None, false),
         }
         Ok(())
+    }
+
+    /// Work so far.
+    pub fn work(&self) -> FilterWork {
+        let intervals = self.around.as_ref().map_or(0, Around::intervals);
+        FilterWork { intervals, exchanges: self.rows.exchanges() }
     }
 
     /// Forgets the stop, because the arm has moved elsewhere.

@@ -1,7 +1,6 @@
 //! `track` and `TrackResult`.
 
 use ikcore::math::Pose;
-use ikcore::obstacle::Surroundings;
 use ikcore::path::Reference;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Target, TipError};
@@ -17,7 +16,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::GivenObstacles;
+use crate::obstacle::read_surroundings;
 use crate::outcome::outcome;
 use crate::path::{PyPath, path_argument};
 use crate::pickling::{self, Reduced};
@@ -268,8 +267,7 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
-    let surroundings = Surroundings { obstacles, margin, self_collision };
+    let surroundings = read_surroundings(obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());

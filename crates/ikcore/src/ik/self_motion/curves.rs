@@ -2,9 +2,9 @@
 
 use super::curve::SelfMotion;
 use super::cut::parts;
-use super::place::{EXACT, placed};
 use super::seeds::{Seeds, by_closed_form};
 use super::trace::{TracedCurve, traced};
+use super::unwrapping::{EXACT, unwrapped};
 use super::wrapped_limits::WrappedLimits;
 use crate::error::{Error, Result};
 use crate::ik::attempt::Attempt;
@@ -93,7 +93,7 @@ pub fn self_motion(
     for curve in &mut curves {
         make_exact(curve, &mut attempt);
         for part in parts(curve, &limits) {
-            found.extend(placed(part, *spacing, &mut attempt, &limits, start.as_deref()));
+            found.extend(unwrapped(part, *spacing, &mut attempt, &limits, start.as_deref()));
         }
     }
     found.iter_mut().for_each(|curve| curve.complete = complete);

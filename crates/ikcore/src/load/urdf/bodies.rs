@@ -39,9 +39,7 @@ pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, pa
     for link in robot.all_link_names().filter_map(|name| document.capsules.get(name)) {
         for Primitive { capsule, exact } in &link.primitives {
             bodies.push(match wanted {
-                CollisionShapes::Hulls => {
-                    Body { link: capsule.link.clone(), shape: exact.clone(), source: BodySource::Primitive }
-                }
+                CollisionShapes::Hulls => Body::new(capsule.link.clone(), exact.clone(), BodySource::Primitive),
                 _ => Body::from_capsule(capsule.clone(), BodySource::Primitive)?,
             });
         }
@@ -89,7 +87,7 @@ fn hull(mesh: &UrdfMesh, path: &Path) -> Result<Option<Body>> {
     let UrdfMesh { link, file, scale, origin } = mesh;
     let shape = read_mesh(path, *scale)?;
     let Geometry::Mesh(triangles) = shape.geometry() else { return Ok(None) };
-    let body = |shape| Body { link: link.clone(), shape, source: BodySource::Mesh(file.clone()) };
+    let body = |shape| Body::new(link.clone(), shape, BodySource::Mesh(file.clone()));
     Ok(triangles.convex_hull(origin).map(body))
 }
 
