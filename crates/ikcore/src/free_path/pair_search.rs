@@ -172,18 +172,6 @@ impl<'a> PairSearch<'a> {
         EndPair { start, end, chosen, duration }
     }
 
-    /// The plan of a motion found at the present cost of the search.
-    pub(super) fn plan(&self, trajectory: Trajectory, objective: Cost) -> Plan {
-        let (evaluations, cost) = (self.evaluations, objective.of(self.robot, &trajectory));
-        Plan {
-            history: vec![Improvement { evaluations, cost }],
-            violations: self.limits.violations(&trajectory),
-            evaluations,
-            elapsed: self.deadline.elapsed(),
-            ..Plan::of(trajectory, objective, cost)
-        }
-    }
-
     /// Options of a solve for an end.
     pub(super) fn solve_options(&self) -> SolveOptions {
         let limits = Some(self.position_limits.clone());
