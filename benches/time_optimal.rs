@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::planning::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
 use ikcore::rng;
 
 const JOINTS: usize = 7;
@@ -20,7 +20,7 @@ fn path() -> JointPath {
     JointPath::spline(names(), &waypoints, None, SplineEnds::Natural).expect("a spline")
 }
 
-fn limits(jerk: Option<f64>) -> TimingLimits {
+fn limits(jerk: Option<f64>) -> ConstantLimits {
     let constant = |value: f64| vec![Profile::Constant(value)];
     let limits = Limits::none(names())
         .replace(Field::Velocity, constant(2.0))
@@ -30,7 +30,7 @@ fn limits(jerk: Option<f64>) -> TimingLimits {
             Some(jerk) => limits.replace(Field::Jerk, constant(jerk)),
         })
         .expect("limits");
-    TimingLimits::new(&limits, "time_optimal").expect("constant limits")
+    ConstantLimits::new(&limits, "time_optimal").expect("constant limits")
 }
 
 /// Time from path to trajectory; proportional to the number of grid points.

@@ -187,14 +187,14 @@ fn courses_know_their_corners_and_places() {
     let tip_path = TipPath::through(&Waypoints::new(square.clone(), None).unwrap()).unwrap();
     let corners: Vec<f64> = tip_path.corners().collect();
     assert!(corners.len() == 2 && (corners[0] - 1.0 / 3.0).abs() < 1e-15 && (corners[1] - 2.0 / 3.0).abs() < 1e-15);
-    assert_eq!(tip_path.place(corners[0]), "point 1 of the path");
-    assert_eq!(tip_path.place(0.5), "the path between points 1 and 2");
-    assert_eq!(tip_path.place(1.0), "point 3 of the path");
+    assert_eq!(tip_path.point_in_words(corners[0]), "point 1 of the path");
+    assert_eq!(tip_path.point_in_words(0.5), "the path between points 1 and 2");
+    assert_eq!(tip_path.point_in_words(1.0), "point 3 of the path");
     assert_eq!(tip_path.coarseness(), 0.0);
     assert!((tip_path.distance([0.5, 0.2, 0.0], 0.0, 0.3) - 0.2).abs() < 1e-15);
     let timed = TipPath::along(&Path::new(Polyline::new(&square, 6.0).unwrap())).unwrap();
     assert_eq!(timed.corners().count(), 2);
-    assert_eq!(timed.place(0.5), "the path at t = 3.000 s");
+    assert_eq!(timed.point_in_words(0.5), "the path at t = 3.000 s");
     assert_eq!(timed.points().len(), 51);
     // A circle has none; its chords stand for arcs.
     let circle = course_of_circle(51);

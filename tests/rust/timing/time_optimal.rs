@@ -1,7 +1,7 @@
 //! Fastest timing of joint paths: known optima, limits at every instant, error messages.
 
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::planning::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
 use ikcore::trajectory::Trajectory;
 use ikcore::{Error, Result};
 use proptest::prelude::*;
@@ -11,14 +11,14 @@ fn names(count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("q{i}")).collect()
 }
 
-fn limits(fields: &[(Field, Vec<f64>)], joints: usize) -> Result<TimingLimits> {
+fn limits(fields: &[(Field, Vec<f64>)], joints: usize) -> Result<ConstantLimits> {
     let constants = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
     let start = Limits::none(names(joints));
     let all = fields.iter().try_fold(start, |limits, (field, values)| limits.replace(*field, constants(values)))?;
-    TimingLimits::new(&all, "time_optimal")
+    ConstantLimits::new(&all, "time_optimal")
 }
 
-fn velocity_and_acceleration(velocity: &[f64], acceleration: &[f64]) -> TimingLimits {
+fn velocity_and_acceleration(velocity: &[f64], acceleration: &[f64]) -> ConstantLimits {
     let fields = [(Field::Velocity, velocity.to_vec()), (Field::Acceleration, acceleration.to_vec())];
     limits(&fields, acceleration.len()).unwrap()
 }

@@ -5,7 +5,7 @@ use crate::math::so3::{norm, rotation_between};
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
 use crate::task::{Target, Tolerance};
-use crate::timing::Violation;
+use crate::timing::{JointPath, Violation};
 
 /// Samples between two knots; the maximum is then refined between the neighbours of the best sample.
 const SAMPLES: usize = 10;
@@ -23,8 +23,17 @@ pub(crate) struct TipDeviation<'a, C> {
     pub robot: &'a Robot,
     /// The path of its tip.
     pub tip_path: &'a TipPath,
-    /// Its joint positions.
+    /// Joint positions over the path parameter.
     pub configurations: C,
+}
+
+/// The deviation of the tip of `robot` on a joint path over the parameter of `tip_path`.
+pub(crate) fn deviation_on<'a>(
+    robot: &'a Robot,
+    tip_path: &'a TipPath,
+    path: &'a JointPath,
+) -> TipDeviation<'a, impl Configurations> {
+    TipDeviation { robot, tip_path, configurations: |fraction: f64, q: &mut [f64]| path.position(fraction, q) }
 }
 
 /// A largest value, and the path parameter at which it occurs.
@@ -42,7 +51,7 @@ impl Largest {
     }
 }
 
-/// The largest deviations of the tip from its path, beyond the tolerance_band that it has.
+/// The largest deviations of the tip from its path, beyond its tolerance band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LargestDeviation {
     /// Distance from the path (m).
@@ -55,8 +64,9 @@ impl LargestDeviation {
     /// Returns the violations for a tip that must stay within `accuracy` (m, rad).
     pub(crate) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
         let of = |quantity: &str, largest: Largest, unit: &'static str| {
-            let tolerance_band = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
-            let what = format!("{quantity} of the tip{tolerance_band} from {}", tip_path.place(largest.fraction));
+            let tolerance_band = if tip_path.has_tolerance() { ", beyond its tolerance," } else { "" };
+            let what =
+                format!("{quantity} of the tip{tolerance_band} from {}", tip_path.point_in_words(largest.fraction));
             let broken = largest.value > accuracy;
             broken.then(|| Violation { what, value: largest.value, bound: accuracy, unit: unit.into() })
         };
@@ -106,7 +116,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
     }
 
     /// The distance from the part of the path around `fraction` that extends one interval before `from` and after `to`:
-    /// only the position of the tip matters, not its time. With tolerance_band, that from the point at `fraction`.
+    /// only the position of the tip matters, not its time. With a tolerance band, that from the point at `fraction`.
     fn distance(&self, fraction: f64, from: f64, to: f64) -> f64 {
         if let Some([distance, _]) = self.tip_path.path_target(fraction).excess(|| self.tip(fraction)) {
             return distance;
@@ -145,7 +155,7 @@ fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
     }
 }
 
-/// The largest `value` of (share, from, to) over all intervals \[from, to\] between `knots`.
+/// The largest `value` of (fraction, from, to) over all intervals \[from, to\] between `knots`.
 fn largest_over(knots: &[f64], value: impl Fn(f64, f64, f64) -> f64) -> Largest {
     let none = Largest { value: -1.0, fraction: 0.0 };
     knots.windows(2).fold(none, |largest, ends| {
@@ -174,6 +184,7 @@ fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::write_between;
     use crate::path::Waypoints;
 
     #[test]
@@ -182,8 +193,7 @@ mod tests {
         let (from, to) = ([0.2, 1.1], [0.9, 0.3]);
         let points = Waypoints::new(vec![robot.tip_position(&from), robot.tip_position(&to)], None).unwrap();
         let tip_path = TipPath::through(&points).unwrap();
-        let configurations =
-            |fraction: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + fraction * (to[j] - from[j]));
+        let configurations = |fraction: f64, q: &mut [f64]| write_between(&from, &to, fraction, q);
         let deviation = TipDeviation { robot: &robot, tip_path: &tip_path, configurations };
         let mut dense: f64 = 0.0;
         for i in 0..=4000 {

@@ -1,4 +1,4 @@
-//! The points of a path for which no configuration is found, for the error that names them.
+//! Points of a path without a configuration, for the error that names them.
 
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result};
@@ -8,16 +8,16 @@ use crate::robot::Robot;
 use crate::solver::{Status, Stop, Unattended};
 use crate::task::TipError;
 
-/// Points that are tried at the most; of a longer path every second, third, ... point.
+/// Maximum number of points tried; of a longer path every second, third, ... point.
 const MOST_POINTS: usize = 400;
 
-/// Points of a path in time.
+/// Number of points taken of a path in time.
 const POINTS_IN_TIME: usize = 100;
 
-/// Searches that may end without a result before the others are left out: each takes some 10 ms.
+/// Maximum number of searches without a result; then the others are left out, for each takes some 10 ms.
 const MOST_SEARCHES: usize = 16;
 
-/// Points, and how near configurations come to them.
+/// Points, and the least error of a configuration there.
 #[derive(Debug, Default)]
 struct Missed {
     ranges: Vec<[usize; 2]>,
@@ -67,7 +67,7 @@ pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
         }
     }
     let name = |missed: &Missed| match numbered.is_empty() {
-        true => tip_path.place(fractions[missed.ranges[0][0]]),
+        true => tip_path.point_in_words(fractions[missed.ranges[0][0]]),
         false => format!("{} of the path", words(&missed.ranges)),
     };
     Ok(match (&proven.farthest, &open.farthest) {
@@ -77,13 +77,13 @@ pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
     })
 }
 
-/// The same for one place on the path.
+/// Solves one point of the path alone.
 ///
 /// # Errors
 /// As [`missed_points`].
 pub(crate) fn missed_at(robot: &Robot, tip_path: &TipPath, fraction: f64, seed: u64) -> Result<Option<Error>> {
     let solution = solve(robot, &tip_path.pose(fraction), &options(tip_path, seed), &mut Unattended)?;
-    let (what, error) = (tip_path.place(fraction), solution.error);
+    let (what, error) = (tip_path.point_in_words(fraction), solution.error);
     Ok(match solution.status {
         Status::Solved => None,
         Status::OutOfReach => Some(unreachable(what, &error)),

@@ -3,28 +3,28 @@
 
 use std::time::Duration;
 
-use super::line_candidates::{LineSearch, Side};
-use super::out_of_contact::{LEEWAY, way_out};
+use super::line_search::{LineSearch, Side};
+use super::out_of_contact::{ALLOWED_LOSS, way_out};
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
 use crate::free_path;
 use crate::message::Setting;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
-    EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, configuration_at, joined,
+    END_RESERVE, EndName, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, configuration_at, joined,
     least_clearance, no_usable_end, refuse_collision,
 };
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stop, Stopwatch};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
-/// Straight lines to the ends that are planned to, shared between all ends.
+/// Number of straight lines to the ends, shared between all ends.
 const LINES: usize = 24;
-/// At least so many for each end.
+/// Fewest lines for each end.
 const LINES_OF_EACH: usize = 2;
 
-/// Lines that take longer than the quickest by this factor are left out.
+/// Largest duration of a line, relative to the fastest one.
 const SLOWEST: f64 = 2.0;
 
 const METHOD: Setting = Setting::Method("minmax");
@@ -39,15 +39,15 @@ pub(crate) fn composed(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     free_path::require_pace(robot, &limits)?;
-    let narrowed = space.map(|space| space.narrowed(RESERVE));
+    let narrowed = space.map(|space| space.narrowed(END_RESERVE));
     let mut pieces = Pieces { robot, options, limits: &limits, space, narrowed: narrowed.as_ref(), evaluations: 0 };
     let way_out = if options.free_start { pieces.way_out(start)? } else { None };
-    let freed = way_out.as_ref().map(|(out, _)| end_of(out)).transpose()?;
+    let freed = way_out.as_ref().map(|(out, _)| Endpoint::at_end_of(out)).transpose()?;
     let start = freed.as_ref().unwrap_or(start);
     let retreat = options.retreat.as_ref().map(|line| pieces.retreat(line, start, monitor)).transpose()?;
-    let retreated = retreat.as_ref().map(end_of).transpose()?;
+    let retreated = retreat.as_ref().map(Endpoint::at_end_of).transpose()?;
     let start = retreated.as_ref().unwrap_or(start);
     let approaches = match &options.approach {
         None => None,
@@ -70,16 +70,11 @@ pub(crate) fn composed(
     Ok(Plan { freed: way_out.map(|(_, freed)| freed), elapsed: stopwatch.elapsed(), ..plan })
 }
 
-/// Where a motion ends.
-fn end_of(motion: &Trajectory) -> Result<Endpoint> {
-    configuration_at(motion, motion.duration()).map(Endpoint::Configuration)
-}
-
-/// What all pieces share.
+/// Robot, options and space that all pieces share.
 struct Pieces<'a> {
     robot: &'a Robot,
     options: &'a PointToPointOptions,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     /// What the motion keeps clear of, if anything, and what its pieces do: with the reserve of ends.
     space: Option<&'a ClearSpace<'a>>,
     narrowed: Option<&'a ClearSpace<'a>>,
@@ -97,7 +92,7 @@ impl<'a> Pieces<'a> {
         let clearance = space.clearance(q).distance;
         let Some(out) = way_out(&space, self.limits, q)? else {
             // Names the two bodies.
-            refuse_collision("start", &space.narrowed(-RESERVE), q)?;
+            refuse_collision("start", &space.narrowed(-END_RESERVE), q)?;
             return Ok(None);
         };
         let freed = Freed { clearance, until: out.duration() };
@@ -126,8 +121,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Notes the smallest distance of a plan and its pieces. All keep the margin, but for contacts that are allowed on one of them
-    /// alone: then it is found at once, because the surroundings of the whole motion do not tell it.
+    /// Notes the smallest distance of a plan and its pieces. All keep the margin, except where contacts are allowed on
+    /// one piece alone: then it is computed at once, because the surroundings of the whole motion do not contain it.
     fn note_clearance(
         &self,
         plan: &mut Plan,
@@ -162,7 +157,7 @@ impl<'a> Pieces<'a> {
         }
         if let Some((out, freed)) = way_out {
             let lines = out.knots().len() - 1;
-            offer(out, self.around_start()?, freed.clearance - lines as f64 * LEEWAY)?;
+            offer(out, self.around_start()?, freed.clearance - lines as f64 * ALLOWED_LOSS)?;
         }
         plan.clearance = least;
         plan.surroundings = None;
@@ -197,7 +192,7 @@ impl<'a> Pieces<'a> {
         })
     }
 
-    /// A straight line from the start, and where it ends.
+    /// Returns a straight line from the start.
     fn retreat(&mut self, line: &StraightLine, start: &Endpoint, monitor: &mut dyn Monitor) -> Result<Trajectory> {
         let along_line = self.along_line(line)?;
         let mut search = self.search(line, Side::Retreat, along_line.as_ref(), None)?;
@@ -207,7 +202,7 @@ impl<'a> Pieces<'a> {
         found.into_iter().next().ok_or(Error::Interrupted)
     }
 
-    /// Straight lines to the ends, each with the index of its end.
+    /// Returns straight lines to the ends, each with the index of its end.
     fn approaches(
         &mut self,
         line: &StraightLine,

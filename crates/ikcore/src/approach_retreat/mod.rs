@@ -4,11 +4,11 @@
 //! |---|---|
 //! | `composed` | the motion of all pieces |
 //! | `straight_tip` | joint motions with a straight line of the tip |
-//! | `line_candidates` | the configurations of an end from which there is a clear one |
+//! | `line_search` | the configurations of an end from which there is a clear one |
 //! | `out_of_contact` | the way out of a contact at the start |
 
 mod composed;
-mod line_candidates;
+mod line_search;
 mod out_of_contact;
 mod straight_tip;
 

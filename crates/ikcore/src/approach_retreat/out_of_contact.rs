@@ -1,32 +1,36 @@
 //! The way out of a contact: from a configuration that is nearer to something than the margin to one that keeps it.
 
 use crate::error::Result;
+use crate::math::vector::largest_difference;
 use crate::obstacle::{ClearSpace, Edge, MotionCertificate, NearRows, RequiredDistance};
-use crate::timing::{MotionLimits, scaled};
+use crate::timing::{ConstantLimits, scaled};
 use crate::trajectory::Trajectory;
 
-/// How far beyond the margin the arm moves (m).
+/// Distance beyond the margin that the way out reaches (m).
 const BEYOND: f64 = 2e-3;
 /// Longest step of a joint (rad, m).
 const LONGEST: f64 = 0.05;
-/// A descent that would need shorter steps than this (rad, m) is stuck.
+/// Shortest step of the descent (rad, m); where it would need a shorter one, it is stuck.
 const SHORTEST: f64 = 1e-6;
-/// Steps of the descent.
+/// Maximum number of steps of the descent.
 const STEPS: usize = 400;
-/// By how much two bodies may come nearer on the way out (m), since a motion outwards must be certified too.
-pub(super) const LEEWAY: f64 = 2e-5;
-/// Lines are certified in parts on which no joint moves farther than this (rad, m).
+/// Allowed loss of distance on the way out (m), since a motion outwards must be certified too.
+pub(super) const ALLOWED_LOSS: f64 = 2e-5;
+/// Largest motion of a joint (rad, m) on the parts of a line that are certified one by one.
 const PART: f64 = 0.01;
 
 /// The motion out of the contact at `from` (n,): straight lines, each from rest to rest, on which no two bodies come nearer to each
-/// other, by more than [`LEEWAY`], than they are at its beginning or than the margin; `None` if none was found. The shortest way:
+/// other, by more than [`ALLOWED_LOSS`], than they are at its beginning or than the margin; `None` if none was found. The shortest way:
 /// down the gradient of the distances.
-pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Result<Option<Trajectory>> {
+pub(super) fn way_out(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f64]) -> Result<Option<Trajectory>> {
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
     let mut near = NearRows::new(space.scene());
     near.find(space.scene(), from, space.margin());
-    let kept =
-        RequiredDistance { at_rest: near.rows(), tolerance_band: LEEWAY, ..RequiredDistance::constant(space.margin()) };
+    let kept = RequiredDistance {
+        at_rest: near.rows(),
+        tolerance_band: ALLOWED_LOSS,
+        ..RequiredDistance::constant(space.margin())
+    };
     let mut motion: Option<Trajectory> = None;
     let mut at = 0;
     // Each line as far along the descent as it is certified to come no nearer.
@@ -48,7 +52,7 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
 
 /// Whether all bodies keep these distances on the straight line.
 fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
-    let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+    let longest = largest_difference(from, to);
     let parts = (longest / PART).ceil().max(1.0) as usize;
     let mut check = MotionCertificate::new(space.scene());
     let at = |i: usize| -> Vec<f64> {
@@ -57,8 +61,8 @@ fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, t
     (0..parts).all(|i| check.is_clear(space.scene(), &Edge { from: &at(i), to: &at(i + 1) }, 1.0, kept))
 }
 
-/// Configurations down the gradient of the shortfall, the last one of which keeps the margin and a little more.
-fn descent(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Option<Vec<Vec<f64>>> {
+/// Descends the gradient of the shortfall; the last configuration keeps the margin and a little more.
+fn descent(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f64]) -> Option<Vec<Vec<f64>>> {
     let up_to = space.margin() + BEYOND;
     let n = from.len();
     let (mut way, mut q, mut step) = (vec![from.to_vec()], from.to_vec(), LONGEST);

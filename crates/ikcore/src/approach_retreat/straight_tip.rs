@@ -3,19 +3,18 @@
 use std::borrow::Cow;
 
 use crate::error::Result;
-use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
 use crate::math::so3::norm;
-use crate::math::vector::distance;
-use crate::objective::TaskBlock;
+use crate::math::vector::{distance, largest_difference};
+use crate::objective::Linearization;
 use crate::plan::configuration_at;
 use crate::robot::Robot;
 use crate::task::{Criterion, Target, Task, TaskKind, TipError};
-use crate::timing::{MotionLimits, scaled};
+use crate::timing::{ConstantLimits, scaled, unit_quintic};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// Intervals of the line at whose ends the configuration is solved for: the fewest, and the most if the tip gets off it in
+/// Number of intervals of the line between solved configurations: the fewest, and the most if the tip leaves it in
 /// between.
 const INTERVALS: [usize; 2] = [16, 128];
 /// Distance of the tip from the line (m) and angle from its orientation (rad) between them.
@@ -24,33 +23,33 @@ const OFF_LINE: f64 = 1e-4;
 const STEPS: usize = 12;
 /// Longest step of a joint (rad, m) between neighbouring configurations: a longer one is a jump to another branch.
 const LONGEST: f64 = 0.5;
-/// A joint that comes to a limit on the way swings a little beyond it between configurations. These then keep this multiple
-/// of the excess from the limits.
+/// Inset of configurations from the limits, as a multiple of the excess of a joint that swings beyond a limit between
+/// them.
 const OVERSHOOT: f64 = 2.0;
-/// Growth of that distance where it was too small.
+/// Growth of that inset where it was too small.
 const GROWTH: f64 = 4.0;
 /// Largest distance from the limits (rad, m).
 const LARGEST_INSET: f64 = 0.01;
-/// Instants of each interval at which the distance from the line is measured.
+/// Number of instants of each interval at which the distance from the line is measured.
 const MEASURED: usize = 3;
 
-/// The arm that moves along straight lines.
+/// Straight motions of the tip of an arm.
 pub(super) struct StraightTip<'a> {
     bare: &'a Robot,
-    /// With the tool of the task, if there is one.
+    /// The robot with the tool of the task, if there is one.
     robot: Cow<'a, Robot>,
-    limits: &'a MotionLimits,
-    /// Its orientation is kept as far as this asks for it.
+    limits: &'a ConstantLimits,
+    /// Task whose part of the orientation is kept.
     task: Option<Task>,
 }
 
-/// Why there is no motion along a line, in words.
+/// Reason, in words, why there is no motion along a line.
 pub(super) type Hindrance = String;
 
 impl<'a> StraightTip<'a> {
     /// # Errors
     /// As [`Task::robot`].
-    pub(super) fn new(robot: &'a Robot, limits: &'a MotionLimits, task: Option<Task>) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, limits: &'a ConstantLimits, task: Option<Task>) -> Result<Self> {
         let with_tool = task.map_or(Ok(None), |task| task.robot(robot))?;
         Ok(Self { bare: robot, robot: with_tool.map_or(Cow::Borrowed(robot), Cow::Owned), limits, task })
     }
@@ -65,8 +64,8 @@ impl<'a> StraightTip<'a> {
         &self.robot
     }
 
-    /// The motion that begins at `q` (n,) and displaces the tip by `along` (m). `place` says what the line belongs to, such as
-    /// "before it".
+    /// Returns the motion that begins at `q` (n,) and displaces the tip by `along` (m). `place` names the line in
+    /// messages, as in "before it".
     ///
     /// # Errors
     /// Of the trajectory, none in practice.
@@ -98,7 +97,7 @@ impl<'a> StraightTip<'a> {
         }
     }
 
-    /// How far a joint gets beyond its position limits between configurations inside them (rad, m).
+    /// Largest excess of a joint over its position limits between configurations inside them (rad, m).
     fn excess(&self, motion: &Trajectory) -> f64 {
         let ranges = motion.position_range().into_iter().enumerate();
         let of_joint =
@@ -132,24 +131,16 @@ impl<'a> StraightTip<'a> {
         let [lower, upper] = self.limits.inset_positions(inset);
         let mut rows = q.to_vec();
         let mut here = q.to_vec();
-        let mut linearization = TaskBlock::default();
+        let mut linearization = Linearization::default();
         for i in 1..=intervals {
             let fraction = i as f64 / intervals as f64;
             let target = self.target(q, along, fraction);
             let before = here.clone();
-            let mut solved = false;
-            for _ in 0..STEPS {
-                if target.linearize(&self.robot, &here, &Criterion::default(), &mut linearization).score.solved {
-                    solved = true;
-                    break;
-                }
-                let TaskBlock { columns, residual } = &linearization;
-                let lambda = least_damping(&columns[..here.len()]);
-                let from = here.clone();
-                BoxStep { columns, residual, lambda, x: &from, lower: &lower, upper: &upper }.write(&mut here);
-            }
-            let longest = before.iter().zip(&here).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if !solved || longest > LONGEST {
+            let solved = linearization.project(&mut here, [&lower, &upper], STEPS, |q, at| {
+                let there = target.linearize(&self.robot, q, &Criterion::default(), &mut at.first);
+                (!there.score.solved).then(|| at.least_damping(q.len()))
+            });
+            if !solved || largest_difference(&before, &here) > LONGEST {
                 let at = number(fraction * norm(&along));
                 return Err(format!(
                     "{at} m {place} the arm is singular, at its joint limits or at the edge of its reach"
@@ -172,7 +163,7 @@ impl<'a> StraightTip<'a> {
             values.iter_mut().zip(rows.chunks_exact(n)).for_each(|(value, row)| *value = row[j]);
             spline.curvatures(&values, &mut curvatures);
             for (i, t) in breaks.iter().enumerate() {
-                let [fraction, speed, acceleration] = quintic(*t);
+                let [fraction, speed, acceleration] = unit_quintic(*t);
                 let piece = ((fraction * intervals as f64) as usize).min(intervals - 1);
                 let [c0, c1, c2, c3] = spline.piece(piece, &values, &curvatures).coefficients();
                 let s = fraction - breaks[piece];
@@ -208,10 +199,4 @@ impl<'a> StraightTip<'a> {
         }
         Ok(true)
     }
-}
-
-/// Fraction of the way, speed and acceleration of a quintic from rest to rest at the fraction `t` of its time.
-fn quintic(t: f64) -> [f64; 3] {
-    let rest = 1.0 - t;
-    [t * t * t * (10.0 + t * (6.0 * t - 15.0)), 30.0 * (t * rest).powi(2), 60.0 * t * rest * (1.0 - 2.0 * t)]
 }

@@ -3,7 +3,7 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::structure::{EXACT, three_meet};
@@ -80,7 +80,7 @@ impl ElbowTurn {
 impl ArmAngle {
     /// Returns the arm if its first three axes meet in a point, and its last three; `None` otherwise.
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
-        if chain.joints.iter().any(|joint| joint.motion != AxisMotion::Turns) {
+        if chain.joints.iter().any(|joint| joint.motion != AxisKind::Turns) {
             return None;
         }
         let size = chain.size();

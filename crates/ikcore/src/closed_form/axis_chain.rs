@@ -7,7 +7,7 @@ use crate::math::arithmetic::Baseline;
 
 /// Type of joint motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AxisMotion {
+pub enum AxisKind {
     /// Rotation about the axis (rad).
     Turns,
     /// Translation along the axis (m).
@@ -22,18 +22,18 @@ pub struct JointAxis {
     /// Point on the axis (m).
     pub point: Vector,
     /// Revolute or prismatic.
-    pub motion: AxisMotion,
+    pub motion: AxisKind,
 }
 
 impl JointAxis {
     /// Returns a revolute joint about the line through `point` along `axis`.
     pub fn turning(axis: Vector, point: Vector) -> Self {
-        Self { axis, point, motion: AxisMotion::Turns }
+        Self { axis, point, motion: AxisKind::Turns }
     }
 
     /// Returns a prismatic joint along `axis`.
     pub fn sliding(axis: Vector) -> Self {
-        Self { axis, point: [0.0; 3], motion: AxisMotion::Slides }
+        Self { axis, point: [0.0; 3], motion: AxisKind::Slides }
     }
 
     /// Returns the joint axis moved by the rigid motion `frame`.
@@ -54,8 +54,8 @@ impl JointAxis {
     #[inline]
     pub fn turn(&self, value: f64) -> Angle {
         match self.motion {
-            AxisMotion::Turns => Angle::by(value),
-            AxisMotion::Slides => Angle { cos: 1.0, sin: value },
+            AxisKind::Turns => Angle::by(value),
+            AxisKind::Slides => Angle { cos: 1.0, sin: value },
         }
     }
 
@@ -63,8 +63,8 @@ impl JointAxis {
     #[inline]
     pub fn displacement_by(&self, turn: Angle) -> Frame {
         match self.motion {
-            AxisMotion::Turns => turn.about_line(&self.axis, &self.point),
-            AxisMotion::Slides => Frame { origin: scaled(&self.axis, turn.sin), ..Frame::IDENTITY },
+            AxisKind::Turns => turn.about_line(&self.axis, &self.point),
+            AxisKind::Slides => Frame { origin: scaled(&self.axis, turn.sin), ..Frame::IDENTITY },
         }
     }
 
@@ -96,7 +96,7 @@ impl<const N: usize> AxisChain<N> {
 
     /// Returns a characteristic length of the arm (m): the sum of the distances between neighbouring revolute axes.
     pub fn size(&self) -> f64 {
-        let mut turning = self.joints.iter().filter(|joint| joint.motion == AxisMotion::Turns);
+        let mut turning = self.joints.iter().filter(|joint| joint.motion == AxisKind::Turns);
         let Some(first) = turning.next() else { return 1.0 };
         let mut at = first.point;
         let mut sum = 0.0;

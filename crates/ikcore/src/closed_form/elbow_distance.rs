@@ -3,7 +3,7 @@
 //! If the first three axes meet, the wrist is a point on axes 5 and 6 that turns about axis 7; if the last three meet, the
 //! shoulder is a point on axes 2 and 3 that turns about axis 1.
 
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::{ParameterArcs, Wave};
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
@@ -46,7 +46,7 @@ impl ElbowDistance {
     }
 
     fn of(chain: &AxisChain<7>, [shoulder, wrist]: [Vector; 2], circle: Orbit, by_first: bool) -> Option<Self> {
-        let turns = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let turns = chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns);
         let elbow = &chain.joints[3];
         let square = |q: f64| squared_distance(&elbow.displacement(q).transform::<Baseline>(&wrist), &shoulder);
         turns.then(|| Self { shoulder, wrist, by_joint_4: Wave::of(square), circle, by_first })

@@ -1,10 +1,11 @@
 //! Enclosures of moving quantities: vectors in balls, numbers in intervals, angles on arcs.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::vector::{Vector, cross, dot};
+use crate::math::turns::without_turns;
 
 /// Ball that encloses a vector.
 #[derive(Debug, Clone, Copy)]
@@ -131,7 +132,7 @@ impl Arc {
             return Some(self);
         }
         let off = self.middle - limits.middle;
-        let off = off - TAU * (off / TAU).round();
+        let off = without_turns(off);
         let (first, last) = ((off - self.half).max(-limits.half), (off + self.half).min(limits.half));
         let Self { middle, half } = Self::between([first, last]);
         (first <= last).then_some(Self { middle: limits.middle + middle, half })
@@ -145,6 +146,8 @@ impl Arc {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::closed_form::vector::{norm, sub, unit};
     use crate::rng;

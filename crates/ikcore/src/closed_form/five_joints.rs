@@ -4,7 +4,7 @@
 //! that leave the virtual joint at zero are solutions; a pose without such a branch is out of reach.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
 use crate::closed_form::branches::{Branches, Doubt};
 use crate::closed_form::six::{ClosedForm, Structure, samples};
 use crate::closed_form::structure::{EXACT, Pair};
@@ -28,7 +28,7 @@ pub struct FiveJoints {
 impl FiveJoints {
     /// Adds the virtual joint that gives the best structure; `None` if a joint is prismatic.
     pub fn new(chain: &AxisChain<5>) -> Option<Self> {
-        if chain.joints.iter().any(|joint| joint.motion == AxisMotion::Slides) {
+        if chain.joints.iter().any(|joint| joint.motion == AxisKind::Slides) {
             return None;
         }
         let with = |joint: JointAxis, before: bool| {

@@ -2,7 +2,7 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
 use crate::closed_form::branches::{Branches, Candidates, Given};
 use crate::closed_form::six::{ClosedForm, Structure};
 use crate::math::Frame;
@@ -72,7 +72,7 @@ impl GivenJoint {
         let mut seven = Branches::none();
         (seven.doubt, seven.singular, seven.evaluations) = (six.doubt, six.singular, six.evaluations);
         seven.nearly = six.nearly;
-        let turns = self.joint.motion == AxisMotion::Turns;
+        let turns = self.joint.motion == AxisKind::Turns;
         let value = if turns { Angle::by(value).angle() } else { value };
         for ([a, b, c, d, e, f], error) in six.iter().copied().zip(six.errors()) {
             let set = if self.axis == 0 { [value, a, b, c, d, e, f] } else { [a, b, c, d, e, f, value] };

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::closed_form::subproblem::CLAMP;
+use crate::math::turns::without_turns;
 
 /// Gap between the end of an arc and a limit (rad) that still counts as touching: near a peak of the wave, a pose change
 /// within a caller's tolerances moves the end by as much.
@@ -57,7 +58,7 @@ impl Wave {
         let slack = CLAMP * (base.abs() + swing);
         let is_met = swing > 0.0 && (value - base).abs() <= swing + slack;
         let off = ((value - base) / swing).clamp(-1.0, 1.0).acos();
-        [peak - off, peak + off].into_iter().filter(move |_| is_met).map(|angle| angle - TAU * (angle / TAU).round())
+        [peak - off, peak + off].into_iter().filter(move |_| is_met).map(without_turns)
     }
 
     /// Returns the arcs on which the wave lies between two bounds. Bounds missed narrowly, or by `slack`, give an arc of zero

@@ -2,7 +2,7 @@
 //! (subproblems 1 and 3).
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::structure::{EXACT, Pair, three_parallel};
 use crate::closed_form::subproblem::{distance_to_point, onto_point};
@@ -36,11 +36,11 @@ impl<const N: usize> Planar<N> {
         let mut count = 0;
         for (k, joint) in chain.joints.iter().enumerate() {
             match joint.motion {
-                AxisMotion::Turns if count < 3 => {
+                AxisKind::Turns if count < 3 => {
                     turning[count] = k;
                     count += 1;
                 }
-                AxisMotion::Slides if sliding.is_none() => sliding = Some(k),
+                AxisKind::Slides if sliding.is_none() => sliding = Some(k),
                 _ => return None,
             }
         }

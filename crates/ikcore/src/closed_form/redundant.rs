@@ -8,7 +8,7 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::arm_angle_limits::{Decisive, Values};
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::elbow_distance::ElbowDistance;
 use crate::closed_form::given_joint::GivenJoint;
@@ -129,8 +129,8 @@ impl Redundant {
     /// Prepares limits of the axes (rad, m).
     pub fn limits(&self, axes: [[f64; 2]; 7]) -> AxisLimits {
         let ranges = std::array::from_fn(|k| match self.chain.joints[k].motion {
-            AxisMotion::Turns => AngleRange::of(axes[k]),
-            AxisMotion::Slides => AngleRange::ANY,
+            AxisKind::Turns => AngleRange::of(axes[k]),
+            AxisKind::Slides => AngleRange::ANY,
         });
         let distances = self.distance.map_or([0.0; 2], |distance| distance.range(axes[3]));
         AxisLimits { axes, ranges, distances }
@@ -214,7 +214,7 @@ impl Redundant {
         match (self.parameter(), &self.distance) {
             (Parameter::ArmAngle, Some(distance)) => distance.arm_angles(&pose.goal, *distances),
             (Parameter::ArmAngle, None) => ParameterArcs::CIRCLE,
-            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisMotion::Slides => {
+            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisKind::Slides => {
                 ParameterArcs::one(axes[axis])
             }
             (Parameter::Axis(axis), Some(distance)) => distance.angles(&pose.goal, *distances).within(axes[axis]),
@@ -246,6 +246,7 @@ mod tests {
         BAXTER, GEN3, IIWA14, PANDA, SAWYER, XARM7, iiwa14_of_urdf, random_angles,
     };
     use crate::closed_form::vector::{norm, sub};
+    use crate::math::vector::between;
 
     /// Returns the largest angle difference modulo 2 pi.
     fn apart(a: &[f64; 7], b: &[f64; 7]) -> f64 {
@@ -326,7 +327,7 @@ mod tests {
             narrowed += usize::from(arcs.length() < 5.0);
             for [a, b] in arcs.iter() {
                 for part in [0.02, 0.5, 0.98] {
-                    let found = method.solve(&method.pose(&target), a + part * (b - a));
+                    let found = method.solve(&method.pose(&target), between(*a, *b, part));
                     let within = |q: f64| limits[3][0] - 1e-4 <= q && q <= limits[3][1] + 1e-4;
                     assert!(found.is_empty() || found.iter().any(|set| within(set[3])), "{q:?}");
                 }

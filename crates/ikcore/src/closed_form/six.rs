@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
 use crate::closed_form::branches::{Branches, Candidates, Doubt};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 use crate::closed_form::general::General;
@@ -104,7 +104,7 @@ impl ClosedForm {
     /// Selects the method from the geometry of the chain.
     pub fn new(chain: &AxisChain<6>) -> Self {
         let mut form = Self::structured(chain);
-        if form.structure.is_nearly() && chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns) {
+        if form.structure.is_nearly() && chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns) {
             let ways = general_ways(&chain.joints, form.size);
             form.further = Some(form.ordered(ways));
         }
@@ -121,7 +121,7 @@ impl ClosedForm {
         let mut form = Self { chain: *chain, structure, method, verifier, back, size, further: None };
         if !matches!(structure, Structure::General | Structure::Unsolved) && !form.finds_samples() {
             // Degenerate chains, for example with coincident axes, defeat the method of a structure: test it first.
-            let turning = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
+            let turning = chain.joints.iter().all(|joint| joint.motion == AxisKind::Turns);
             (form.structure, form.method) =
                 if turning { general(&chain.joints, size) } else { (Structure::Unsolved, Method::None) };
         }
@@ -293,7 +293,7 @@ by_instructions! {
 }
 
 fn decide(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
-    if joints.iter().any(|joint| joint.motion == AxisMotion::Slides) {
+    if joints.iter().any(|joint| joint.motion == AxisKind::Slides) {
         return decide_sliding(joints, size);
     }
     for tolerance in [EXACT, NEARLY] {
@@ -340,7 +340,7 @@ pub fn samples() -> impl Iterator<Item = [f64; 6]> {
 /// Selects the method for arms with prismatic joints, which need a spherical wrist.
 fn decide_sliding(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
     let wrist = &joints[3..];
-    if wrist.iter().all(|joint| joint.motion == AxisMotion::Turns) {
+    if wrist.iter().all(|joint| joint.motion == AxisKind::Turns) {
         for tolerance in [EXACT, NEARLY] {
             let method = three_meet(wrist, size, tolerance)
                 .and_then(|centre| SphericalWrist::sliding(joints, &centre, size, tolerance));

@@ -1,7 +1,7 @@
 //! Spherical-wrist arms with one or three prismatic joints among the first three: Stanford arm, cylindrical arms, gantries.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::position::Arms;
 use crate::closed_form::structure::Pair;
@@ -35,7 +35,7 @@ impl SlidingArm {
         let floor = 1e-11 * size;
         let mut axes = joints.map(|joint| joint.axis);
         let mut points = joints.map(|joint| joint.point);
-        use AxisMotion::{Slides, Turns};
+        use AxisKind::{Slides, Turns};
         let mirrored = match joints.map(|joint| joint.motion) {
             [Turns, Turns, Slides] => false,
             [Slides, Turns, Turns] => true,

@@ -3,7 +3,7 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
-use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::position::{Three, ThreeAxes};
 use crate::closed_form::sliding_arm::SlidingArm;
@@ -41,7 +41,7 @@ impl SphericalWrist {
             arm: Arm::Turning(ThreeAxes::new(&[a, b, c], pair(&a, &b), pair(&b, &c), size)),
             wrist: Wrist::new(&[d.axis, e.axis, f.axis]),
             axes: [a.axis, b.axis, c.axis],
-            slides: [a, b, c].map(|joint| joint.motion == AxisMotion::Slides),
+            slides: [a, b, c].map(|joint| joint.motion == AxisKind::Slides),
             centre: *centre,
             reversed: false,
         }

@@ -1,6 +1,6 @@
 //! Relations between neighbouring axes of a chain, found once from its geometry: parallel, intersecting or skew.
 
-use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
 
 /// Tolerance for parallel (rad) and for intersecting axes (as a fraction of the arm's size).
@@ -61,7 +61,7 @@ pub fn are_sharp(joints: &[JointAxis], size: f64) -> bool {
     let pair_is_sharp = |pair: &[JointAxis]| {
         let [exact, sharp] = [EXACT, SHARP].map(|tolerance| Pair::of(&pair[0], &pair[1], size, tolerance));
         // Prismatic joints have no meaningful axis point.
-        let turning = pair.iter().all(|joint| joint.motion == AxisMotion::Turns);
+        let turning = pair.iter().all(|joint| joint.motion == AxisKind::Turns);
         let same = (exact == Pair::Parallel) == (sharp == Pair::Parallel);
         same && (!turning || (exact == Pair::Skew) == (sharp == Pair::Skew))
     };

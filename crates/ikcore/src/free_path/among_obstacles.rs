@@ -8,26 +8,26 @@ use super::rrt_connect::TreeSearch;
 use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
-use crate::math::vector::squared_distance;
+use crate::math::vector::{point_between, squared_distance};
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Scene};
 use crate::plan::{
-    Cost, EndName, Endpoint, Plan, PointToPointOptions, RESERVE, configuration_at, least_clearance, no_usable_end,
+    Cost, END_RESERVE, EndName, Endpoint, Plan, PointToPointOptions, configuration_at, least_clearance, no_usable_end,
     refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
 
 /// Total number of configurations that all trees may examine: about half a second.
 const BUDGET: usize = 1_000_000;
-/// With fewer collision-free pairs than this, more are sought ...
+/// Fewest collision-free pairs; below it more are sought ...
 const FEW_PAIRS: usize = 3;
 /// ... from this many random starts.
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
 /// Distances that paths may keep beyond the margin (m).
-const RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
-/// What rounding may take off a distance in the check of a line (m).
+const CERTIFIED_RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
+/// Rounding of distances in the check of a line, in single precision (m).
 const SINGLE: f64 = 3e-5;
 
 /// Plans for checked ends and options.
@@ -42,7 +42,7 @@ pub(super) fn plan(
     let is_lines = search.robot.capsules().is_empty();
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
-    let is_clear = |q: &[f64]| space.keeps(q, RESERVE);
+    let is_clear = |q: &[f64]| space.keeps(q, END_RESERVE);
     let refusal = |name: EndName, end: &Endpoint| match end {
         Endpoint::Configuration(q) => refuse_collision(&name.of_target(), space, q),
         Endpoint::Targets { .. } => Ok(()),
@@ -62,7 +62,8 @@ pub(super) fn plan(
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let most = most_kept(space, &open);
-    let mut trees = TreeSearch::new(scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
+    let mut trees =
+        TreeSearch::new(scene, limits, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
@@ -96,7 +97,7 @@ pub(super) fn plan(
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let plan = with_least_clearance(plan, &mut sweep, margin)?;
             let obstruction = if open.is_empty() {
-                no_way::blocked_ends(scene, &pairs, margin + RESERVE)
+                no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
             } else {
                 let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
                 let straight = nearest.map(|nearest| &nearest.contact);
@@ -116,10 +117,7 @@ pub(super) fn plan(
 /// Returns the pair whose straight line penetrates least, at samples.
 fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
     let distance = |pair: &EndPair| {
-        let at = |i: usize| -> Vec<f64> {
-            let fraction = i as f64 / INTERVALS as f64;
-            pair.start.iter().zip(&pair.end).map(|(start, end)| start + fraction * (end - start)).collect()
-        };
+        let at = |i: usize| point_between(&pair.start, &pair.end, i as f64 / INTERVALS as f64).collect::<Vec<_>>();
         let nearest = (0..=INTERVALS).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
         nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
     };
@@ -153,7 +151,7 @@ fn most_kept(space: &ClearSpace<'_>, open: &[EndPair]) -> f64 {
         ends.all(|q| space.keeps(q, more))
     };
     // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
-    RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
+    CERTIFIED_RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
 }
 
 /// The plan with its smallest distance, and the violation if that is less than the margin. A bound that it has is certified.

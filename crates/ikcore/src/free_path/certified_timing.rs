@@ -1,17 +1,17 @@
-//! Timings of a path that keep its margin for certain.
+//! Certified timings of a path: they keep its margin at every instant.
 
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{ClearanceSweep, SampledLine};
 use crate::plan::{Deadline, TimedMotion, configuration_at};
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 use crate::trajectory::Trajectory;
 
-/// How often blends are narrowed before the motion stops at every corner instead.
+/// Maximum number of narrowings of blends, before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
 
-/// Blends that are cut to less than this fraction stay as they are until they are certified.
-const LEAST_SHARE: f64 = 0.02;
+/// Smallest fraction to which blends are cut before they are certified.
+const LEAST_FRACTION: f64 = 0.02;
 
 /// A path, with blends as wide as seems clear.
 pub(super) struct TimedPath {
@@ -24,7 +24,7 @@ pub(super) struct TimedPath {
 
 /// The limits and the margin of a motion.
 pub(super) struct Timing<'s, 'a> {
-    pub limits: &'s MotionLimits,
+    pub limits: &'s ConstantLimits,
     pub sweep: &'s mut ClearanceSweep<'a>,
     /// Distance to keep (m).
     pub margin: f64,
@@ -38,21 +38,17 @@ impl TimedPath {
     }
 
     /// Times a path. `fractions[i]` is the fraction of the shorter adjacent line that the blend of point i takes.
-    pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &MotionLimits) -> Result<Self> {
-        let stopping = path.with_stops(limits)?;
-        let motion = match path.with_blends(limits, &fractions).transpose()? {
-            Some(blended) if blended.duration() < stopping.duration() => blended,
-            _ => stopping,
-        };
+    pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &ConstantLimits) -> Result<Self> {
+        let motion = path.fastest(limits, &fractions)?;
         Ok(Self { path, fractions, motion })
     }
 }
 
 /// The fraction of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
 /// between its ends is clear.
-pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &MotionLimits, check: &mut SampledLine) -> f64 {
+pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLimits, check: &mut SampledLine) -> f64 {
     let mut fraction = 1.0;
-    while fraction > LEAST_SHARE {
+    while fraction > LEAST_FRACTION {
         let [from, to] = path.blend_ends(limits, i, fraction);
         if check.is_clear(&from, &to) {
             break;
@@ -63,8 +59,8 @@ pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &MotionLimi
 }
 
 impl Timing<'_, '_> {
-    /// The motion along a path, certified: with blends, narrower where they come too near, or else with a stop at each corner.
-    /// `None` if a line of the path comes too near.
+    /// Returns the certified motion along a path: with blends, narrower where they come too near, or else with a stop
+    /// at each corner. `None` if a line of the path comes too near.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
         let TimedPath { path, mut fractions, motion } = timed;
         let Some(mut near) = self.too_near(&motion) else { return Ok(Some(motion)) };
@@ -88,7 +84,7 @@ impl Timing<'_, '_> {
         Ok(self.too_near(&stopping).is_none().then_some(stopping))
     }
 
-    /// When a motion comes too near to something (s), if it does.
+    /// The time at which a motion comes too near to something (s), if any.
     fn too_near(&mut self, motion: &Trajectory) -> Option<f64> {
         let checked = self.sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], self.margin);
         checked.err().map(|near| near.at)

@@ -1,7 +1,7 @@
 //! A tree of configurations, each joined to its parent by a clear straight line.
 
-/// Around a node that could not grow, samples within this distance alone let it try again (dynamic domain: Yershova et al., ICRA
-/// 2005), relative to the diagonal of the joint ranges.
+/// Domain of a node that could not grow, relative to the diagonal of the joint ranges: only samples within it let the
+/// node try again (dynamic domain: Yershova et al., ICRA 2005).
 const DOMAIN: f64 = 0.3;
 /// Factor of the domain after each success, and its inverse after each failure.
 const ADAPTION: f64 = 1.0 + 1e-4;
@@ -21,7 +21,7 @@ pub(super) struct ConfigurationTree {
 }
 
 impl ConfigurationTree {
-    /// A tree of these roots between joint limits.
+    /// Plants a tree with these roots between joint limits.
     pub fn rooted<'q>(ranges: &[(f64, f64)], roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let diagonal = ranges.iter().map(|(lower, upper)| (upper - lower) * (upper - lower)).sum::<f64>().sqrt();
         let first_domain = DOMAIN * diagonal;

@@ -1,7 +1,9 @@
 //! A pair of end configurations of a motion.
 
 use crate::error::{Error, Result};
+use crate::math::vector::largest_difference;
 use crate::objective::Point;
+use crate::timing::JointPolyline;
 use crate::wording::number;
 
 /// Configurations of both ends, and the duration of a quintic between them (s).
@@ -19,13 +21,18 @@ const SAME: f64 = 1e-3;
 
 impl EndPair {
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        let near = |a: &Point, b: &Point| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
+        let near = |a: &Point, b: &Point| largest_difference(a, b) < SAME;
         self.chosen == other.chosen && near(&self.start, &other.start) && near(&self.end, &other.end)
+    }
+
+    /// The straight line from one to the other.
+    pub(super) fn line(&self) -> JointPolyline {
+        JointPolyline(vec![self.start.to_vec(), self.end.to_vec()])
     }
 
     /// Checks that the ends differ.
     pub(super) fn require_motion(&self) -> Result<()> {
-        let largest = self.start.iter().zip(&self.end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let largest = largest_difference(&self.start, &self.end);
         if largest > 0.0 {
             return Ok(());
         }

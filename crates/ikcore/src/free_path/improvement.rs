@@ -1,4 +1,4 @@
-//! Improves a plan until the budget is spent.
+//! Improvement of a plan until the budget is spent.
 
 use super::end_pair::EndPair;
 use super::path_search::{Best, PathSearch};
@@ -10,9 +10,9 @@ use crate::solver::Monitor;
 
 /// Number of changes after which a path is judged again.
 const CHANGES: usize = 200;
-/// A new path is dropped as soon as it costs this much more than the best one, the more often it was refined the sooner.
+/// Cost relative to the best at which a new path is dropped, after each number of refinements.
 const WORTHWHILE: [f64; 5] = [1.2, 1.17, 1.14, 1.11, 1.08];
-/// Random numbers that no search for a path draws.
+/// First stream of random numbers that no path search draws from.
 const STREAM: u64 = 1 << 32;
 
 impl PathSearch<'_, '_> {

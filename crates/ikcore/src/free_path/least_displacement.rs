@@ -14,7 +14,7 @@ use crate::math::box_step::ROWS;
 use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
 use crate::task::{Criterion, Target, Task, Tolerance};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 const ROUNDS: usize = 20;
 /// Largest displacement of a joint in one round (rad, m).
@@ -25,11 +25,11 @@ const DAMPING: f64 = 0.0125;
 /// The smallest weight, relative to the sum.
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
-/// What the targets leave free.
+/// Freedom that the targets leave.
 pub(super) struct Freedom<'a> {
-    /// With the tool of the task, if there is one.
+    /// The robot with the tool of the task, if there is one.
     robot: Cow<'a, Robot>,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     task: Option<Task>,
     criterion: Criterion,
 }
@@ -37,7 +37,7 @@ pub(super) struct Freedom<'a> {
 impl<'a> Freedom<'a> {
     /// # Errors
     /// As [`Task::robot`].
-    pub(super) fn new(robot: &'a Robot, limits: &'a MotionLimits, task: Option<Task>) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, limits: &'a ConstantLimits, task: Option<Task>) -> Result<Self> {
         let with_tool = task.map_or(Ok(None), |task| task.robot(robot))?;
         // The region may be left on the way: the ends are solved for once more.
         let criterion = task.map(|task| Criterion { region: None, ..task.criterion(Tolerance::default()) });
@@ -138,7 +138,7 @@ fn weighted_step(
     step.iter().all(|x| x.is_finite()).then_some(step)
 }
 
-fn apply(step: &[f64], limits: &MotionLimits, q: &mut Point) {
+fn apply(step: &[f64], limits: &ConstantLimits, q: &mut Point) {
     let largest = step.iter().map(|x| x.abs()).fold(0.0, f64::max);
     let fraction = if largest > LONGEST_STEP { LONGEST_STEP / largest } else { 1.0 };
     for (j, (q, step)) in q.iter_mut().zip(step).enumerate() {

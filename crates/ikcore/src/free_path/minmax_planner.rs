@@ -10,7 +10,7 @@ use crate::obstacle::ClearSpace;
 use crate::plan::{Deadline, Endpoint, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 const METHOD: Setting = Setting::Method("minmax");
 
@@ -24,14 +24,14 @@ pub(crate) fn point_to_point(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let deadline = Deadline::start(options.stop.as_ref());
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
     let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
         match moving_start::begin(&mut search, velocity, space, options, monitor)? {
             Beginning::Whole(plan) => return Ok(*plan),
             Beginning::Stop(stop) => {
-                let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
+                let at_rest = Endpoint::at_end_of(&stop)?;
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };
                 let rest = point_to_point(robot, &at_rest, ends, space, &options, monitor)?;
                 return moving_start::followed_by(stop, rest, robot, space);
@@ -46,7 +46,7 @@ pub(crate) fn point_to_point(
 }
 
 /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
-pub(crate) fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
+pub(crate) fn require_pace(robot: &Robot, limits: &ConstantLimits) -> Result<()> {
     let unlimited =
         |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {

@@ -1,10 +1,11 @@
-//! Motions that begin at a velocity: directly to the end, or else to a stop from which a plan from rest continues.
+//! Motions with an initial velocity: directly to the end, or to a stop from which a plan from rest continues.
 
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
+use crate::limits::ROUNDING;
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
@@ -13,16 +14,13 @@ use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
 
-/// Relative excess over a velocity limit that counts as rounding.
-const ROUNDING: f64 = 1e-9;
-
-/// How a motion with an initial velocity goes on.
+/// Continuation of a motion with an initial velocity.
 pub(super) enum Beginning {
     /// Directly to the end.
     Whole(Box<Plan>),
-    /// To a stop, because no direct motion was found to be free.
+    /// A stop, because no direct motion was found to be free.
     Stop(Trajectory),
-    /// From rest: the velocity is zero, and no direct motion was found to be free.
+    /// A start from rest: the velocity is zero, and no direct motion was found to be free.
     Rest,
 }
 
@@ -114,15 +112,6 @@ fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
             Err(Error::out_of_range(what, format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
         }
     }
-}
-
-/// The configuration at the end of a motion.
-pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
-    let n = motion.joints().len();
-    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
-    // The lengths are those of the motion.
-    let _ = motion.at(motion.duration(), &mut q, &mut qd, &mut qdd);
-    q
 }
 
 /// A plan from rest, preceded by the stop that leads to it.

@@ -1,10 +1,10 @@
-//! Says why there is no clear motion: which end is blocked, or how far the search came.
+//! Reasons why there is no clear motion: a blocked end, or the gap left by the search.
 
 use super::end_pair::EndPair;
 use crate::obstacle::{Contact, Scene};
 use crate::wording::number;
 
-/// Why none of `pairs` has two clear ends: everything keeps `kept` (m) at those that do.
+/// Names the obstruction where none of `pairs` has two clear ends, which keep `kept` (m) from everything.
 pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> String {
     let is_clear = |q: &[f64]| scene.is_clear(q, kept);
     let start_is_blocked = !pairs.iter().any(|pair| is_clear(&pair.start));
@@ -18,8 +18,8 @@ pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> Strin
     format!("{name}: no configuration was found that is clear of everything{found}")
 }
 
-/// How far the search came: this much was left between what it reached from both ends, after examining so many configurations; and what
-/// is in the way of the straight motion.
+/// Describes the gap `left` between the trees from both ends after `examined` configurations, and the obstacle to the
+/// straight motion.
 pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: f64) -> String {
     let came = if left.is_finite() {
         format!("what was reached from both ends stays {} rad apart", number(left))

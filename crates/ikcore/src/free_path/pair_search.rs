@@ -12,15 +12,15 @@ use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Target, Task};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
 /// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
-    pub limits: &'a MotionLimits,
+    pub limits: &'a ConstantLimits,
     pub start: &'a Endpoint,
-    /// Any of them will do.
+    /// Alternative ends.
     pub ends: &'a [Endpoint],
     pub task: Option<Task>,
     pub rng: LazyRng,
@@ -39,7 +39,7 @@ impl<'a> PairSearch<'a> {
     /// [`Error::OutsideLimits`] for a start outside the limits.
     pub(super) fn new(
         robot: &'a Robot,
-        limits: &'a MotionLimits,
+        limits: &'a ConstantLimits,
         start: &'a Endpoint,
         ends: &'a [Endpoint],
         options: &PointToPointOptions,
@@ -97,7 +97,7 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    /// The pairs to one end.
+    /// Returns the pairs to one end.
     fn pairs_to(&mut self, chosen: usize, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>, Missing> {
         let (start, end) = (self.start, &self.ends[chosen]);
         self.require_inside(self.name(chosen), end).map_err(Missing::End)?;

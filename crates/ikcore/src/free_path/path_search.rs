@@ -12,10 +12,9 @@ use crate::obstacle::ClearanceSweep;
 use crate::plan::{Cost, Improvement, tip_travel_along};
 use crate::rng::{self, LazyRng};
 use crate::solver::{Monitor, Status};
-use crate::timing::JointPolyline;
 use crate::trajectory::Trajectory;
 
-/// How much is searched before the first motion is taken.
+/// Effort of the search before the first motion is taken.
 struct Effort {
     /// Number of paths of which the cheapest is taken, the same number from each start ...
     paths: usize,
@@ -23,24 +22,24 @@ struct Effort {
     more: usize,
 }
 
-/// Between two given configurations.
+/// Effort between two given configurations.
 const QUICK: Effort = Effort { paths: 2, more: 2000 };
-/// Where the ends leave a choice: to find them takes longer anyway.
+/// Effort where the ends leave a choice: finding them takes longer anyway.
 const THOROUGH: Effort = Effort { paths: 4, more: 20_000 };
 /// Number of shortcuts tried on each path, and of other changes on the first paths.
 const SHORTCUTS: usize = 20;
 const CHANGES: usize = 60;
-/// How often all paths are searched again, with more distance, because none could be certified.
+/// Maximum number of searches, each with more distance, where no path could be certified.
 const ROUNDS: u32 = 4;
 
 /// Distance that paths keep beyond the margin (m), since they are examined at closely spaced configurations alone, and corners are cut.
-pub(super) const RESERVE: f64 = 1e-3;
+pub(super) const SEARCH_RESERVE: f64 = 1e-3;
 
-/// The certified motion, or why there is none.
+/// The certified motion, or the status without one.
 pub(super) enum Certified {
     /// The best motion, and the improvements that led to it.
     Motion(Trajectory, Vec<Improvement>),
-    /// How the search ended.
+    /// Status of a search without a motion.
     Nothing(Status),
 }
 
@@ -52,7 +51,7 @@ pub(super) struct PathSearch<'s, 'a> {
     pub objective: Cost,
     /// Distance to keep (m).
     pub margin: f64,
-    /// The most that paths can keep beyond it (m), since the ends keep no more.
+    /// Largest distance beyond it that paths can keep (m): that of the ends.
     pub most: f64,
     /// Whether to go on until the budget is spent.
     pub improves: bool,
@@ -110,7 +109,7 @@ impl<'a> PathSearch<'_, 'a> {
                 }
                 return Ok(best.certified(status));
             }
-            let more = RESERVE * f64::from(2_u32.pow(round + 1));
+            let more = SEARCH_RESERVE * f64::from(2_u32.pow(round + 1));
             self.trees.check.be_stricter(self.margin + more.min(self.most));
         }
         Ok(best.certified(Status::Stalled))
@@ -123,9 +122,8 @@ impl<'a> PathSearch<'_, 'a> {
                 break;
             }
             if self.trees.check.is_clear(&pair.start, &pair.end) {
-                let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
                 let motion = straight(pair, self.search.limits)?;
-                if let Some(motion) = self.timing().certified(TimedPath::straight(line, motion))? {
+                if let Some(motion) = self.timing().certified(TimedPath::straight(pair.line(), motion))? {
                     self.keep(motion, best);
                     return Ok(Some(i));
                 }
@@ -134,7 +132,7 @@ impl<'a> PathSearch<'_, 'a> {
         Ok(None)
     }
 
-    /// Several timed paths, the cheapest first. `stream` counts the streams of random numbers.
+    /// Returns several timed paths, cheapest first. `stream` counts the streams of random numbers.
     fn candidates(
         &mut self,
         open: &[EndPair],
@@ -206,7 +204,7 @@ impl<'a> PathSearch<'_, 'a> {
         Ok(paths.into_iter().map(|path| BlendedPath::new(path, &measure, &mut self.trees.check)).collect())
     }
 
-    /// What makes one path better than another.
+    /// Measure by which paths are compared.
     pub(super) fn measure(&self) -> PathMeasure<'a> {
         let PairSearch { robot, limits, .. } = self.search;
         PathMeasure { robot, limits, objective: self.objective }

@@ -1,46 +1,48 @@
-//! Local search round a clear path: moves its corners, adds some and leaves some out, as long as that makes the motion better.
+//! Local search around a clear path: moves, adds and removes corners as long as the motion improves.
 
 use std::ops::Range;
 
 use super::certified_timing::clear_fraction;
 use super::rrt_connect::TreeSearch;
 use super::shortening::along;
-use crate::math::vector::distance;
+use crate::math::vector::{distance, point_between};
 use crate::obstacle::SampledLine;
 use crate::plan::{Cost, tip_travel_along};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 
-/// How far a corner is moved at first, at most and at least (rad, m). Below that the search begins again with the first distance.
+/// First, largest and smallest distance by which a corner is moved (rad, m). Below the smallest the search begins again
+/// with the first.
 const FIRST: f64 = 0.1;
 const FARTHEST: f64 = 0.5;
 const LEAST: f64 = 2e-3;
-/// What an improvement makes of that distance, and a failure: it stays the same if one change of twenty improves the path.
+/// Factors on that distance on success and on failure; balanced at 1 success in 20.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.98;
 
-/// How often a change moves a corner, adds one, and leaves one out; the rest are shortcuts.
+/// Probabilities that a change moves a corner, adds one, and leaves one out; the rest are shortcuts.
 const MOVES: f64 = 0.7;
 const ADDS: f64 = 0.15;
 const LEAVES_OUT: f64 = 0.05;
 
-/// What duration or length adds to a cost that is about something else. Between motions that cost almost the same, these decide.
+/// Weights of duration and length in a cost of another quantity: they decide between motions that cost almost the same.
 const OF_LENGTH: f64 = 0.01; // s/rad, in a duration
 const OF_DURATION: f64 = 0.1; // rad/s, in a joint travel
 const OF_TIP: f64 = 0.02; // m/s, in a tip travel
 
-/// What makes one path better than another.
+/// Measure by which paths are compared.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathMeasure<'a> {
     pub robot: &'a Robot,
-    pub limits: &'a MotionLimits,
+    pub limits: &'a ConstantLimits,
     pub objective: Cost,
 }
 
 impl PathMeasure<'_> {
-    /// The cost of a motion along a path with these blends, but for what they cut off; infinite if there is none.
+    /// The cost of a motion along a path with these blends, whose cut corners are not counted; infinite if there is
+    /// none.
     fn of(&self, path: &JointPolyline, fractions: &[f64]) -> f64 {
         let by_lines =
             |size: fn(&[f64], &[f64]) -> f64| path.0.windows(2).map(|line| size(&line[0], &line[1])).sum::<f64>();
@@ -52,7 +54,7 @@ impl PathMeasure<'_> {
         }
     }
 
-    /// What any motion between two configurations costs at least.
+    /// Lower bound of the cost of any motion between two configurations.
     pub(super) fn least(&self, from: &[f64], to: &[f64]) -> f64 {
         match self.objective {
             Cost::Time => (0..to.len()).map(|j| (to[j] - from[j]).abs() / self.limits.velocity[j]).fold(0.0, f64::max),
@@ -73,9 +75,9 @@ pub(super) struct BlendedPath {
     pub path: JointPolyline,
     /// The fraction of the shorter adjacent line that each blend takes.
     pub fractions: Vec<f64>,
-    /// By its measure.
+    /// Cost by the measure of the search.
     pub cost: f64,
-    /// How far its corners are moved at present (rad, m).
+    /// Present distance by which its corners are moved (rad, m).
     step: f64,
 }
 
@@ -90,8 +92,8 @@ impl BlendedPath {
         Self { path, fractions, cost, step: FIRST }
     }
 
-    /// The path with one change, not examined yet.
-    fn varied(&self, limits: &MotionLimits, rng: &mut LazyRng) -> Variation {
+    /// Returns the path with one random change, not yet examined.
+    fn varied(&self, limits: &ConstantLimits, rng: &mut LazyRng) -> Variation {
         let mut points = self.path.0.clone();
         let (lines, kind) = (points.len() - 1, rng.uniform());
         let new = if kind < MOVES && lines > 1 {
@@ -118,27 +120,27 @@ impl BlendedPath {
     }
 }
 
-/// A path that differs from another one at one point.
+/// A path that differs from another one by one change.
 struct Variation {
     path: JointPolyline,
-    /// Points that are not on the other one; none if it only leaves one out.
+    /// Points that the other path lacks; none if a point was removed.
     new: Range<usize>,
 }
 
 impl Variation {
-    /// The inner points whose blends have other lines: the new ones and those beside them.
+    /// Inner points whose blends change: the new points and their neighbours.
     fn touched(&self) -> Range<usize> {
         (self.new.start - 1).max(1)..(self.new.end + 1).min(self.path.0.len() - 1)
     }
 
-    /// Shares of the blends: those of the other path, and all of the shorter line at touched points.
+    /// Fractions of the blends: of the other path, but 1 at touched points.
     fn fractions(&self, others: &[f64]) -> Vec<f64> {
         let touched = self.touched();
         let (before, after) = (&others[..touched.start], &others[others.len() - (self.path.0.len() - touched.end)..]);
         [before, &vec![1.0; touched.len()], after].concat()
     }
 
-    /// The path with blends as wide as seems clear, if it is clear and better than `best`.
+    /// Returns the path with blends as wide as seems clear, if it is clear and better than `best`.
     fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut SampledLine) -> Option<BlendedPath> {
         let mut fractions = self.fractions(&best.fractions);
         // Narrower blends only cost more.
@@ -158,7 +160,7 @@ impl Variation {
 }
 
 impl TreeSearch<'_> {
-    /// Tries so many changes of a path, and keeps those that make it better.
+    /// Tries `changes` of a path, and keeps the better ones.
     pub(super) fn refine(
         &mut self,
         best: &mut BlendedPath,
@@ -181,17 +183,17 @@ impl TreeSearch<'_> {
     }
 }
 
-/// The corner, moved by a fraction of the way towards the line between the points beside it.
+/// Returns the corner, moved by a fraction of the way towards the line between its neighbours.
 fn pulled(beside: &[Vec<f64>], fraction: f64) -> Vec<f64> {
     let (before, corner, after) = (&beside[0], &beside[1], &beside[2]);
     let lengths = [distance(before, corner), distance(corner, after)];
-    let along = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
-    let on_line = |j: usize| before[j] + along * (after[j] - before[j]);
-    corner.iter().enumerate().map(|(j, q)| q + fraction * (on_line(j) - q)).collect()
+    let part = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
+    let on_line: Vec<f64> = point_between(before, after, part).collect();
+    point_between(corner, &on_line, fraction).collect()
 }
 
-/// A configuration at most `step` away (rad, m), within the limits.
-fn displaced(mut q: Vec<f64>, step: f64, limits: &MotionLimits, rng: &mut LazyRng) -> Vec<f64> {
+/// Returns a random configuration at most `step` away (rad, m), within the limits.
+fn displaced(mut q: Vec<f64>, step: f64, limits: &ConstantLimits, rng: &mut LazyRng) -> Vec<f64> {
     let mut direction = vec![0.0; q.len()];
     rng.direction(&mut direction);
     let distance = step * rng.uniform();
@@ -214,10 +216,10 @@ mod tests {
     const START: [f64; 2] = [-0.8, 0.0];
     const END: [f64; 2] = [0.8, 0.0];
 
-    fn limits(robot: &Robot) -> MotionLimits {
+    fn limits(robot: &Robot) -> ConstantLimits {
         let limits = Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(1.0)]).unwrap();
         let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
-        MotionLimits::new(robot, Some(&limits), "this test").unwrap()
+        ConstantLimits::for_robot(robot, Some(&limits), "this test").unwrap()
     }
 
     /// Refines a path that bends more than it has to, past a sphere; returns both.

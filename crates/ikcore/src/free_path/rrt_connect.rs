@@ -2,13 +2,14 @@
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
 
 use super::configuration_tree::ConfigurationTree;
+use crate::math::vector::write_between;
 use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::{ConstantLimits, JointPolyline};
 
-/// How the search for a path ended.
+/// Outcome of the search for a path.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Connection {
     /// A clear path.
@@ -22,18 +23,18 @@ pub(super) enum Connection {
 /// Length of an edge while a tree grows (rad, m).
 const STRIDE: f64 = 1.0;
 
-/// Comparisons of nodes for each configuration of the budget: about as much work again.
+/// Budget of node comparisons per configuration of the budget: about as much work again.
 const COMPARISONS: usize = 100;
-/// What drawing a sample costs, in comparisons.
+/// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
 
-/// Draws after which a sample is taken even if it is not promising.
+/// Number of draws after which a sample is taken even if it is not promising.
 const DRAWS: usize = 1000;
 
-/// What a path is wanted for.
+/// A search for a path: its ends and its number.
 pub(super) struct Route<'r> {
     pub start: &'r [f64],
-    /// Any of them will do.
+    /// Alternative ends.
     pub ends: &'r [Vec<f64>],
     /// Whether a path through a configuration can be good enough.
     pub is_promising: &'r dyn Fn(&[f64]) -> bool,
@@ -48,7 +49,7 @@ pub(super) struct TreeSearch<'a> {
     pub budget: usize,
     /// Time that the search may take.
     pub deadline: Deadline,
-    /// The least that ever lay between the trees (rad, m).
+    /// Smallest distance between the trees so far (rad, m).
     pub gap: f64,
     /// Nodes compared with a goal to find the nearest.
     compared: usize,
@@ -57,7 +58,7 @@ pub(super) struct TreeSearch<'a> {
 impl<'a> TreeSearch<'a> {
     pub(super) fn new(
         scene: &'a Scene<'a>,
-        limits: &MotionLimits,
+        limits: &ConstantLimits,
         margin: f64,
         budget: usize,
         deadline: Deadline,
@@ -73,7 +74,7 @@ impl<'a> TreeSearch<'a> {
         self.check.examined() >= self.budget || self.compared >= comparisons || self.deadline.is_over()
     }
 
-    /// A path between ends that are clear.
+    /// Searches for a path between clear ends.
     pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
         let n = route.start.len();
         let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);
@@ -151,16 +152,17 @@ impl<'a> TreeSearch<'a> {
 
 /// Writes the configuration at `fraction` of the way, or the goal if that is past it.
 fn step_towards(from: &[f64], goal: &[f64], fraction: f64, next: &mut [f64]) {
-    let fraction = fraction.min(1.0);
-    for (next, (from, goal)) in next.iter_mut().zip(from.iter().zip(goal)) {
-        *next = if fraction < 1.0 { from + fraction * (goal - from) } else { *goal };
+    if fraction < 1.0 {
+        write_between(from, goal, fraction, next);
+    } else {
+        next.copy_from_slice(goal);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vector::distance;
+    use crate::math::vector::{between, distance};
     use crate::rng;
     use crate::robot::Robot;
     use crate::shape::Shape;
@@ -172,7 +174,7 @@ mod tests {
     fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
         let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap();
         let obstacles = [obstacle];
-        let limits = MotionLimits::new(&robot, None, "this test").unwrap();
+        let limits = ConstantLimits::for_robot(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
         let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
         let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
@@ -188,7 +190,7 @@ mod tests {
                 assert_eq!((&path.0[0][..], &path.0[path.0.len() - 1][..]), (&start[..], &end[..]));
                 for line in path.0.windows(2) {
                     for i in 0..=200 {
-                        let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
+                        let at = |j: usize| between(line[0][j], line[1][j], f64::from(i) / 200.0);
                         let clearance = scene.clearance(&[at(0), at(1)]).unwrap();
                         // Between two configurations that were examined a body may come a little nearer.
                         assert!(clearance >= 0.5 * MARGIN, "{clearance} m");

@@ -1,6 +1,7 @@
-//! Shortens a clear path: leaves out points, and takes shortcuts.
+//! Shortening of a clear path by leaving out points and taking shortcuts.
 
 use super::rrt_connect::TreeSearch;
+use crate::math::vector::point_between;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
 use crate::timing::JointPolyline;
@@ -9,8 +10,8 @@ use crate::timing::JointPolyline;
 pub(super) type Shortens<'f> = &'f dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool;
 
 impl TreeSearch<'_> {
-    /// Shortens a path: leaves out unnecessary points, then tries so many random shortcuts. Takes only what `shortens` an old stretch of
-    /// points by a new one with the same ends.
+    /// Shortens a path: leaves out unnecessary points, then tries random `shortcuts`. Takes only what `shortens` an old
+    /// stretch of points by a new one with the same ends.
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
@@ -57,9 +58,9 @@ impl TreeSearch<'_> {
     }
 }
 
-/// The line on which `position` lies (counted in lines), and the point there.
+/// Returns the line on which `position` lies (counted in lines), and the point there.
 pub(super) fn along(points: &[Vec<f64>], position: f64) -> (usize, Vec<f64>) {
     let line = (position as usize).min(points.len() - 2);
     let fraction = position - line as f64;
-    (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + fraction * (b - a)).collect())
+    (line, point_between(&points[line], &points[line + 1], fraction).collect())
 }

@@ -5,7 +5,7 @@ use super::pair_search::PairSearch;
 use crate::error::{Error, Result};
 use crate::plan::{Cost, Improvement, Plan};
 use crate::solver::{Monitor, Status};
-use crate::timing::{JointPolyline, MotionLimits};
+use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
 /// Number of pairs from random starts; as many come from the quickest branches.
@@ -24,29 +24,16 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
             best = Some((cost, pair.chosen, trajectory));
         }
     }
-    let (cost, chosen, trajectory) = best.ok_or_else(no_pair)?;
-    let violations = search.limits.violations(&trajectory);
-    let status = if violations.is_empty() { Status::Solved } else { Status::Stalled };
-    Ok(Plan {
-        history,
-        chosen_end: Some(chosen),
-        violations,
-        status,
-        evaluations: search.evaluations,
-        elapsed: search.deadline.elapsed(),
-        ..Plan::of(trajectory, objective, cost)
-    })
+    let (_, chosen, trajectory) = best.ok_or_else(no_pair)?;
+    let plan = Plan { history, chosen_end: Some(chosen), ..search.plan(trajectory, objective) };
+    let status = if plan.violations.is_empty() { Status::Solved } else { Status::Stalled };
+    Ok(Plan { status, ..plan })
 }
 
 /// Returns the quicker of a quintic and a motion at constant velocity between blends.
-pub(super) fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
+pub(super) fn straight(pair: &EndPair, limits: &ConstantLimits) -> Result<Trajectory> {
     pair.require_motion()?;
-    let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
-    let quintic = line.with_stops(limits)?;
-    match line.with_blends(limits, &[1.0, 1.0]).transpose()? {
-        Some(blended) if blended.duration() < quintic.duration() => Ok(blended),
-        _ => Ok(quintic),
-    }
+    pair.line().fastest(limits, &[1.0, 1.0])
 }
 
 /// The error of a search that found no configuration for an end.

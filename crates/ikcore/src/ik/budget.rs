@@ -5,7 +5,7 @@ use crate::solver::{Evaluator, Stop, Stopwatch};
 
 /// Evaluations reserved for a final descent from the best miss: multi-start abandons attempts long before they
 /// converge.
-const RESERVE: usize = 200;
+const DESCENT_RESERVE: usize = 200;
 
 /// Budgets of one target, and the amounts spent.
 pub(super) struct Budget {
@@ -34,7 +34,7 @@ impl Budget {
 
     /// Evaluations that the first search must leave.
     pub fn reserve(&self) -> usize {
-        if self.left() > 10 * RESERVE { RESERVE } else { 0 }
+        if self.left() > 10 * DESCENT_RESERVE { DESCENT_RESERVE } else { 0 }
     }
 
     /// Whether a budget is used up.

@@ -28,7 +28,7 @@ const OPEN: usize = 2;
 const SEARCH_DIVISOR: usize = 400;
 
 /// Excess over the limits (rad, m) that rounding may explain.
-const ROUNDED: f64 = 1e-4;
+const UNDECIDED: f64 = 1e-4;
 
 /// Outcome of scattered parameter values without a solution.
 enum Scattered {
@@ -166,7 +166,7 @@ impl<'a> FamilySearch<'a> {
             if let Ok(solution) = attempt.preferred(&self.preference, &mut likely) {
                 return Ok(solution);
             }
-            if self.preference.misses(&mut likely, ROUNDED).next().is_some() {
+            if self.preference.misses(&mut likely, UNDECIDED).next().is_some() {
                 miss = Miss::Near;
             }
         }

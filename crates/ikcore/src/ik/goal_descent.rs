@@ -114,19 +114,13 @@ impl GoalDescent<'_, '_> {
     /// Corrects `q` back onto the task. Returns whether that succeeded. It takes one step more than the tolerance requires: a
     /// gain from using up the tolerance could not be repeated in the next step.
     fn correct(&mut self, q: &mut Point) -> bool {
-        let mut linearization = Linearization::default();
-        let mut was_solved = false;
-        for _ in 0..MOST_CORRECTIONS {
-            let is_solved = self.linearize(q, &mut linearization);
-            if is_solved && was_solved {
-                return true;
-            }
+        let (mut was_solved, bounds) = (false, self.bounds);
+        Linearization::default().project(q, bounds.ends(), MOST_CORRECTIONS, |q, at| {
+            let is_solved = self.linearize(q, at);
+            let ends = is_solved && was_solved;
             was_solved = is_solved;
-            let from = q.clone();
-            let lambda = linearization.least_damping(from.len());
-            linearization.write_step(lambda, &from, self.box_of(), q);
-        }
-        false
+            (!ends).then(|| at.least_damping(q.len()))
+        })
     }
 
     /// Gradient projected onto the task and the box.
@@ -143,13 +137,8 @@ impl GoalDescent<'_, '_> {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
         let mut out = preferred.clone();
-        at.write_step_near(&preferred, at.least_damping(here.q.len()), &here.q, self.box_of(), &mut out);
+        at.write_step_near(&preferred, at.least_damping(here.q.len()), &here.q, self.bounds.ends(), &mut out);
         out
-    }
-
-    /// Position limits.
-    fn box_of(&self) -> [&[f64]; 2] {
-        [self.bounds.lower(), self.bounds.upper()]
     }
 
     /// Computes residual and Jacobian at `q`. Returns whether `q` solves the task.

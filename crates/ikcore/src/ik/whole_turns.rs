@@ -113,8 +113,9 @@ fn other_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Vec<f64> 
 
 /// Period of joint `j`, and the fewest and most whole turns that keep it inside its limits, up to rounding.
 fn range_of_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Option<(f64, f64, f64)> {
-    const ROUNDING: f64 = 1e-12;
+    const PART_OF_A_TURN: f64 = 1e-12;
     let period = robot.turn_period(j)?;
     let (low, high) = ((bounds.lower()[j] - q[j]) / period, (bounds.upper()[j] - q[j]) / period);
-    (low.is_finite() && high.is_finite()).then(|| (period, (low - ROUNDING).ceil(), (high + ROUNDING).floor()))
+    (low.is_finite() && high.is_finite())
+        .then(|| (period, (low - PART_OF_A_TURN).ceil(), (high + PART_OF_A_TURN).floor()))
 }

@@ -2,11 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Field, Profile};
+use super::field::Field;
+use super::profile::Profile;
 use crate::error::{Error, Result};
 use crate::message::Message;
 use crate::objective::Bounds;
 use crate::robot::{Joint, Robot};
+
+/// Excess over a limit that counts as rounding: relative, for positions below 1 absolute (rad, m).
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The limits of all joints: a function of time for each joint and field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,7 +37,7 @@ impl Limits {
         }
     }
 
-    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    /// The robot's own limits, with its maker's limits on acceleration and jerk where these are known.
     pub fn rated(robot: &Robot) -> Self {
         let of = |value: fn(&Joint) -> f64| {
             let values: Vec<f64> = robot.joints().iter().map(value).collect();

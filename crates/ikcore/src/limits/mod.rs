@@ -15,6 +15,7 @@ mod tick_box;
 
 pub use field::Field;
 pub use joint_limits::Limits;
+pub(crate) use joint_limits::ROUNDING;
 pub use profile::{Profile, Sinusoid};
 pub use tick_box::LimitAt;
 pub(crate) use tick_box::TickBox;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::comparison::larger;
+use crate::math::vector::between;
 
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -73,7 +74,7 @@ impl Profile {
                 let last = values.len() - 1;
                 let place = (t / step).clamp(0.0, last as f64);
                 let (below, fraction) = (place as usize, place.fract());
-                if fraction == 0.0 { values[below] } else { between(values[below], values[below + 1], fraction) }
+                if fraction == 0.0 { values[below] } else { joined(values[below], values[below + 1], fraction) }
             }
         }
     }
@@ -158,9 +159,9 @@ impl Profile {
 
 /// The value at `fraction` of the way from one sample to the next. Next to a sample without a limit the finite one holds up
 /// to it, because no straight line leads to infinity.
-fn between(before: f64, after: f64, fraction: f64) -> f64 {
+fn joined(before: f64, after: f64, fraction: f64) -> f64 {
     match (before.is_finite(), after.is_finite()) {
-        (true, true) => before + fraction * (after - before),
+        (true, true) => between(before, after, fraction),
         (false, true) => after,
         (_, false) => before,
     }

@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Field, Limits, Profile};
+use super::field::Field;
+use super::joint_limits::Limits;
+use super::profile::Profile;
 use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
@@ -42,18 +44,18 @@ pub(crate) struct TickBox {
     /// The upper position limits over the tick (rad, m).
     pub ceiling: Point,
     varying: [Varying; 3],
-    /// Every tick has this box, whatever the configuration.
+    /// Whether every tick has this box, whatever the configuration.
     lasting: bool,
 }
 
-/// Which values of one kind of limit vary over time.
+/// Variation over time of one kind of limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Varying {
     /// None: all are constant.
     Not,
     /// All alike: joints share one profile.
     Together,
-    /// Each joint on its own.
+    /// Joints vary apart from each other.
     Apart,
 }
 

@@ -13,7 +13,7 @@
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
-//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
+//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
@@ -41,6 +41,7 @@ pub(crate) mod sincos;
 pub(crate) mod singular_values;
 pub mod so3;
 pub mod ticks;
+pub(crate) mod turns;
 pub(crate) mod vec3;
 pub(crate) mod vector;
 

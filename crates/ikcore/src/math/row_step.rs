@@ -185,14 +185,10 @@ impl RowSolver {
             for j in 0..=i {
                 let damping = if i == j { step.lambda } else { 0.0 };
                 let products = step.tasks.iter().map(|task| dot(&task.columns[i], &task.columns[j]));
-                let mut entry = products.sum::<f64>() + damping;
-                for k in 0..j {
-                    entry -= self.factor[i * n + k] * self.factor[j * n + k];
-                }
-                let pivot = if i == j { entry.max(0.5 * step.lambda).sqrt() } else { entry / self.factor[j * n + j] };
-                self.factor[i * n + j] = pivot;
+                self.factor[i * n + j] = products.sum::<f64>() + damping;
             }
         }
+        cholesky(&mut self.factor, n, 0.5 * step.lambda);
     }
 
     fn add(&mut self, step: &RowStep<'_>, constraint: Constraint) {
@@ -253,14 +249,24 @@ impl RowSolver {
                     };
                     entry *= 1.0 + softness;
                 }
-                for k in 0..j {
-                    entry -= self.system[i * m + k] * self.system[j * m + k];
-                }
-                self.system[i * m + j] =
-                    if i == j { entry.max(f64::MIN_POSITIVE.sqrt()).sqrt() } else { entry / self.system[j * m + j] };
+                self.system[i * m + j] = entry;
             }
         }
+        cholesky(&mut self.system, m, f64::MIN_POSITIVE.sqrt());
         solve_factored(&self.system, &mut self.trial);
+    }
+}
+
+/// Replaces the lower half of a matrix, by rows of `n`, by its Cholesky factor L. Squares of pivots are at least `least`.
+fn cholesky(matrix: &mut [f64], n: usize, least: f64) {
+    for i in 0..n {
+        for j in 0..=i {
+            let mut entry = matrix[i * n + j];
+            for k in 0..j {
+                entry -= matrix[i * n + k] * matrix[j * n + k];
+            }
+            matrix[i * n + j] = if i == j { entry.max(least).sqrt() } else { entry / matrix[j * n + j] };
+        }
     }
 }
 

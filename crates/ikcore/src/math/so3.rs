@@ -190,8 +190,9 @@ fn turned_twice(v: &[f64; 3], phi: &[f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
     std::array::from_fn(|k| v[k] + a * once[k] + b * twice[k])
 }
 
+/// a'b.
 #[inline(always)]
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -29,10 +29,29 @@ pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Writes q + fraction * (end - q), clamped so that rounding cannot take it beyond `end`.
-pub fn between(q: &[f64], end: &[f64], fraction: f64, out: &mut [f64]) {
-    for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
-        *out = (q + fraction * (end - q)).clamp(q.min(*end), q.max(*end));
+/// The number at `fraction` of the way from `from` to `to`.
+#[inline]
+pub fn between(from: f64, to: f64, fraction: f64) -> f64 {
+    from + fraction * (to - from)
+}
+
+/// The point at `fraction` of the straight line.
+#[inline]
+pub fn point_between(from: &[f64], to: &[f64], fraction: f64) -> impl Iterator<Item = f64> {
+    from.iter().zip(to).map(move |(from, to)| between(*from, *to, fraction))
+}
+
+/// Writes the point at `fraction` of the straight line.
+#[inline]
+pub fn write_between(from: &[f64], to: &[f64], fraction: f64, out: &mut [f64]) {
+    out.iter_mut().zip(point_between(from, to, fraction)).for_each(|(out, value)| *out = value);
+}
+
+/// Writes the point at `fraction` of the straight line; rounding cannot take it beyond an end.
+pub fn write_within(from: &[f64], to: &[f64], fraction: f64, out: &mut [f64]) {
+    write_between(from, to, fraction, out);
+    for (out, (from, to)) in out.iter_mut().zip(from.iter().zip(to)) {
+        *out = out.clamp(from.min(*to), from.max(*to));
     }
 }
 

@@ -5,12 +5,10 @@
 //! set of the next tick contains at least the continued stop: it is never empty, as long as limits do not close in. The
 //! highest position and the highest speed of the stop increase with the change, so the set is an interval.
 
-use super::Braking;
 use super::bracket::largest_not_positive;
-use super::braking::longest_first;
+use super::braking::{Braking, longest_first};
 
-/// Limits of a joint that could not stop in time otherwise, relative to those that it plans with: still below the limits
-/// that were given.
+/// Limits of a joint that could not stop in time otherwise, relative to its planned limits; still below the given ones.
 const HARDER: f64 = 1.0 + 0.8e-6;
 
 /// Distances to the position limits, and the largest step.
@@ -22,9 +20,9 @@ pub(super) struct Room {
 }
 
 impl Braking {
-    /// The admissible changes of a joint with this step and change, from smallest to largest; without any, the one that comes
-    /// nearest, twice. `slowest_until` gives the smallest velocity limit of the next ticks, in rad or m per tick, if it
-    /// varies.
+    /// Returns the smallest and largest admissible change of a joint with this step and change; if there is none, the
+    /// nearest one twice. `slowest_until` gives the smallest velocity limit of the next ticks, in rad or m per tick, if
+    /// it varies.
     pub(super) fn changes(
         &self,
         [step, change]: [f64; 2],
@@ -49,8 +47,8 @@ impl Braking {
         }
     }
 
-    /// The largest change from `least` to `most` after which the fastest stop stays within `room` above and below
-    /// `slowest_until` its end.
+    /// Returns the largest change from `least` to `most` after which the fastest stop stays within `room` above and
+    /// below `slowest_until` its end.
     fn largest_before(
         &self,
         step: f64,
@@ -78,6 +76,7 @@ impl Braking {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::between;
     use proptest::prelude::*;
 
     proptest! {
@@ -102,7 +101,7 @@ mod tests {
                 prop_assert!(least <= most);
                 let (kind, fraction) = fractions[tick as usize / 40];
                 let fraction = match kind { 0 => 0.0, 1 => 1.0, 2 => f64::from(u8::from(tick % 7 < 3)), _ => fraction };
-                let next = least + fraction * (most - least);
+                let next = between(least, most, fraction);
                 let rounding = 1e-12 * (1.0 + half);
                 prop_assert!((next - change).abs() <= HARDER * jerk + rounding && next.abs() <= HARDER + rounding);
                 (change, step) = (next, step + next);

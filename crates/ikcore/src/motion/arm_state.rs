@@ -15,7 +15,7 @@ pub struct ArmState {
 }
 
 impl ArmState {
-    /// At rest at `q`.
+    /// The state at rest at `q`.
     pub fn at_rest(q: &[f64]) -> Self {
         Self { q: q.to_vec(), qd: vec![0.0; q.len()], qdd: vec![0.0; q.len()] }
     }

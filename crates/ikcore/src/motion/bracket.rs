@@ -1,18 +1,18 @@
 //! Zeros of increasing functions.
 
-/// Enough iterations for bisections down to rounding.
+/// Number of iterations, enough to bisect down to rounding.
 const ITERATIONS: usize = 60;
 
-/// One iteration of so many bisects, so that the bracket shrinks for any function.
+/// Iterations between bisections, so that the bracket shrinks for any function.
 const BISECT_EVERY: usize = 4;
 
-/// A function that needs more iterations than this jumps at its zero; from then on all bisect.
+/// Number of iterations after which all bisect: the function jumps at its zero.
 const SECANTS: usize = 16;
 
-/// A bracket of this fraction of its first width is narrow enough.
+/// Final width of a bracket, as a fraction of its first width.
 const NARROW: f64 = 1e-11;
 
-/// Values within this fraction of those at the ends count as zero.
+/// Largest value that counts as zero, as a fraction of the values at the ends.
 const ZERO: f64 = 1e-12;
 
 /// The largest x from `least` on at which the increasing `function` is not positive, to rounding; `None` if it is positive

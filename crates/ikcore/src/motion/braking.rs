@@ -1,11 +1,11 @@
-//! How a joint brakes in discrete time, and its fastest stop in closed form.
+//! Braking of a joint in discrete time, and its fastest stop in closed form.
 //!
 //! The fastest stop is greedy: in every tick the joint brakes as hard as its limits allow, but never so hard that it would
 //! reverse before the braking itself has faded out. It has three phases: the braking builds up by `jerk` per tick, stays
 //! at `acceleration`, and fades out by `jerk` per tick. The rest of a greedy stop is the greedy stop of the state reached,
 //! so a joint that can stop now can still stop one tick later.
 
-/// What a joint may do from tick to tick: lengths in rad or m, times in ticks. Infinite without a limit.
+/// Limits of a joint from tick to tick: lengths in rad or m, times in ticks. Infinite without a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Braking {
     /// Largest change of the step.
@@ -16,7 +16,7 @@ pub(crate) struct Braking {
 
 /// The fastest stop of a joint, from its position at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StoppingMotion {
+pub(crate) struct FastestStop {
     /// Number of ticks until the joint is at rest.
     pub ticks: f64,
     /// Displacement at rest.
@@ -47,7 +47,7 @@ pub(super) struct StopPhases {
 }
 
 impl StopPhases {
-    /// At the beginning, with this step.
+    /// The beginning of a stop with this step.
     pub fn begin(step: f64) -> Self {
         Self { step, displacement: 0.0, lowest: 0.0, ticks: 0.0 }
     }
@@ -90,7 +90,7 @@ impl Braking {
         step + self.faded(change) - change
     }
 
-    /// 1 if a stop ends upwards, else -1.
+    /// Direction of a stop: 1 if it ends upwards, else -1.
     pub(super) fn direction(&self, step: f64, change: f64) -> f64 {
         if self.coasting(step, change) < 0.0 { -1.0 } else { 1.0 }
     }
@@ -114,9 +114,9 @@ impl Braking {
     }
 
     /// The fastest stop after a tick with this step and change.
-    pub fn stop(&self, step: f64, change: f64) -> StoppingMotion {
+    pub fn stop(&self, step: f64, change: f64) -> FastestStop {
         if step == 0.0 && change.abs() <= self.jerk {
-            return StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
+            return FastestStop { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
         }
         let sign = self.direction(step, change);
         let mut phases = StopPhases::begin(sign * step);
@@ -126,7 +126,7 @@ impl Braking {
         let StopPhases { displacement, lowest, ticks, .. } = phases;
         let (lowest, highest) = (lowest.min(displacement), displacement.max(0.0));
         let [lowest, highest] = if sign > 0.0 { [lowest, highest] } else { [-highest, -lowest] };
-        StoppingMotion { ticks, end: sign * displacement, lowest, highest }
+        FastestStop { ticks, end: sign * displacement, lowest, highest }
     }
 
     /// Builds the braking up from `braking` by `jerk` per tick, as long as the joint will not reverse. Returns the braking
@@ -184,7 +184,7 @@ impl Braking {
         }
     }
 
-    /// Brakes by what remains, fading out by `jerk` per tick.
+    /// Fades the remaining braking out, by `jerk` per tick.
     fn fade(&self, phases: &mut StopPhases) {
         let step = phases.step;
         if step <= 0.0 {
@@ -217,8 +217,8 @@ mod tests {
     use proptest::prelude::*;
 
     /// The greedy stop, tick by tick: the smallest change after which the joint does not reverse while its change fades out.
-    fn simulated(braking: &Braking, mut step: f64, mut change: f64) -> StoppingMotion {
-        let mut stop = StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
+    fn simulated(braking: &Braking, mut step: f64, mut change: f64) -> FastestStop {
+        let mut stop = FastestStop { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
         while step.abs() > 1e-13 * braking.acceleration.min(1.0) {
             let sign = if braking.coasting(step, change) < 0.0 { -1.0 } else { 1.0 };
             let [mut low, mut high] = [
@@ -297,7 +297,7 @@ mod tests {
     #[test]
     fn without_a_limit_the_stop_takes_a_tick() {
         let free = Braking { acceleration: f64::INFINITY, jerk: f64::INFINITY };
-        assert_eq!(free.stop(0.3, 0.1), StoppingMotion { ticks: 1.0, end: 0.0, lowest: 0.0, highest: 0.0 });
+        assert_eq!(free.stop(0.3, 0.1), FastestStop { ticks: 1.0, end: 0.0, lowest: 0.0, highest: 0.0 });
         assert_eq!((free.first_change(0.3, 0.1), free.stop(0.0, 0.0).ticks), (-0.3, 0.0));
     }
 }

@@ -3,7 +3,7 @@
 //! Of the samples it keeps moments alone: the sums of w s^k, k = 0 to 4, over their times s before the last sample and their weights w.
 //! A missing sample is a longer interval and nothing else: the fit after it is that of the samples that came.
 
-use super::Scales;
+use super::goal_scales::Scales;
 
 /// Least factor by which a sample may discount those before it: with less, rounding would decide about the acceleration.
 const LEAST_DISCOUNT: f64 = 1e-6;

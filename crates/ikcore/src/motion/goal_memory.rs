@@ -1,7 +1,7 @@
-//! How many samples of a noisy goal to average.
+//! Memory of a noisy goal: the number of samples to average.
 //!
-//! At rest, as many as keep the accelerations and jerks that noise causes small. A goal that moves in a way that such an
-//! average cannot follow is met late, always on the same side: then fewer.
+//! At rest, it is large enough to keep the accelerations and jerks caused by noise small. A goal that moves in a way
+//! that such an average cannot follow is met late, always on the same side: then fewer.
 
 use super::noise_level::root_mean_square;
 use crate::objective::Point;
@@ -11,20 +11,20 @@ use crate::objective::Point;
 /// time-optimal control grows.
 const SHAKE: f64 = 0.023;
 
-/// Likewise for jerk, which the noise of single samples causes.
+/// Standard deviation of the jerk that the noise of single samples may cause, in the same form.
 const JERK_SHAKE: f64 = 0.12;
 
-/// Following a goal with a memory of m samples multiplies noise by this over m^2.5 in the acceleration, and by this over
-/// m^3.5 in the jerk.
+/// Gain of noise when a goal is followed with a memory of m samples: this over m^2.5 in the acceleration, over m^3.5 in
+/// the jerk.
 const AMPLIFIED: f64 = 5.0;
 
 /// Smallest cube root: that of rounding, which is no noise to average.
-const ROUNDING: f64 = 1e-4;
+const SMALLEST_ROOT: f64 = 1e-4;
 
-/// A memory below this many samples follows single samples.
+/// Smallest memory (samples) that averages; below it single samples are followed.
 pub(super) const NOISELESS: f64 = 2.0;
 
-/// Mean surprises this many times as large as those of a goal that is followed well are a delay.
+/// Mean surprise that counts as a delay, as a multiple of that of a goal that is followed well.
 const DELAYED: f64 = 2.4;
 
 /// Factors of the memory per sample, with and without a delay.
@@ -34,7 +34,7 @@ const GROWS: f64 = 1.03;
 /// Smallest fraction of the memory at rest.
 const SHORTEST: f64 = 0.15;
 
-/// What a memory has to suit.
+/// Requirements on a memory.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Circumstances {
     /// Root mean square of the noise, in changes.
@@ -69,7 +69,7 @@ impl GoalMemory {
         self.samples
     }
 
-    /// Adapts to a sample that differs by `surprise` from what was expected; infinite `scales` count as zeros.
+    /// Adapts to a sample that differs by `surprise` from the expected one; infinite `scales` count as zeros.
     pub fn adapt(&mut self, surprise: impl Iterator<Item = f64>, scales: &[f64], circumstances: &Circumstances) {
         self.at_rest = circumstances.memory_at_rest();
         if self.at_rest <= NOISELESS || self.samples < NOISELESS {
@@ -92,10 +92,10 @@ impl GoalMemory {
 }
 
 impl Circumstances {
-    /// Samples to remember so that following the noise takes a small share of the limits.
+    /// Returns the number of samples to remember so that noise takes a small fraction of the limits.
     fn memory_at_rest(&self) -> f64 {
         let Self { noise, interval, age, jerk_fraction, quickness } = *self;
-        let allowed = (noise * quickness).cbrt().clamp(ROUNDING, 1.0);
+        let allowed = (noise * quickness).cbrt().clamp(SMALLEST_ROOT, 1.0);
         let seen = AMPLIFIED * noise * (1.0 + age / interval) / interval.powi(2);
         if seen == 0.0 {
             return 1.0;

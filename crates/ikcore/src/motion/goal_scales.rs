@@ -1,6 +1,6 @@
-//! What the motion of a goal is measured in.
+//! Scales of the motion of a goal.
 
-use super::Braking;
+use super::braking::Braking;
 use crate::objective::Point;
 
 /// Step of a joint without a velocity limit (rad, m).
@@ -9,7 +9,7 @@ const LONGEST_STEP: f64 = 1.0;
 /// Ticks that a joint without a velocity limit takes to full speed.
 const TICKS_TO_FULL_SPEED: f64 = 300.0;
 
-/// What the limits of a joint are measured in: per tick.
+/// Scales of the limits of a joint, per tick.
 #[derive(Debug, Clone)]
 pub(crate) struct Scales {
     /// Largest steps.

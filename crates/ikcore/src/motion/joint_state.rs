@@ -7,12 +7,12 @@ use crate::objective::Point;
 pub(crate) struct JointState {
     /// Displacement of each joint in the last tick.
     pub step: Point,
-    /// Its difference to the tick before.
+    /// Difference of the step to the tick before.
     pub change: Point,
 }
 
 impl JointState {
-    /// At rest.
+    /// The state of `n` joints at rest.
     pub fn at_rest(n: usize) -> Self {
         Self { step: Point::from_elem(0.0, n), change: Point::from_elem(0.0, n) }
     }

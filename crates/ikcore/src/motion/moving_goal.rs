@@ -9,8 +9,9 @@
 
 use super::goal_fit::{Degree, Gains, GoalFit};
 use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
+use super::goal_scales::Scales;
+use super::joint_state::JointState;
 use super::noise_level::{NoiseLevel, root_mean_square};
-use super::{JointState, Scales};
 use crate::objective::Point;
 
 /// Limit of the difference between a sample and its prediction, in standard deviations: beyond it, the sample is no noise.
@@ -19,7 +20,7 @@ const OUTLIER: f64 = 6.0;
 /// Limit of the same difference, in displacements of the largest acceleration since the last sample.
 const SUDDEN: f64 = 4.0;
 
-/// Where the memory grows at once from one sample to this many, what was taken for motion was noise.
+/// Growth of the memory from one sample at once to this many: the motion learned before was noise.
 const MISTAKEN: f64 = 2.0 * NOISELESS;
 
 /// Samples that a parabola needs.
@@ -39,7 +40,7 @@ const LONGEST: f64 = 300.0;
 pub(crate) struct GoalSample<'a> {
     /// The configuration that meets the target.
     pub q: &'a [f64],
-    /// Its time, in ticks.
+    /// Time of the sample, in ticks.
     pub time: f64,
 }
 
@@ -51,7 +52,7 @@ pub(crate) struct MovingGoal {
     fit: GoalFit,
     /// Configuration of the goal at the end of the tick.
     q: Point,
-    /// Its displacement in the tick.
+    /// Displacement of the goal in the tick.
     step: Point,
     /// The difference of its displacement to that of the tick before.
     change: Point,

@@ -16,7 +16,7 @@ const WINDOW: usize = 9;
 /// Median of the absolute value of a normal variable with standard deviation 1.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
-/// A median above this multiple of the level is a new level; smaller ones are averaged.
+/// Ratio of a median to the level from which on it is the new level; smaller medians are averaged.
 const RISE: f64 = 3.0;
 
 /// Samples over which the level is averaged.

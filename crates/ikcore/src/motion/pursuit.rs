@@ -9,38 +9,40 @@
 //! A goal far away is approached by all joints in proportion: the limits of each are scaled by its fraction of the way.
 
 use super::bracket::largest_not_positive;
-use super::braking::longest_first;
+use super::braking::{Braking, longest_first};
+use super::goal_scales::Scales;
+use super::joint_state::JointState;
 use super::moving_goal::MovingGoal;
-use super::{Braking, JointState, Scales};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.
 const EDGE: f64 = 4.0;
 
-/// A joint aims at the goal itself, not at the edge, where its stop is longer than this fraction of the edge.
+/// Length of a stop, as a fraction of the edge, from which on a joint aims at the goal itself, not at the edge.
 const FAST: f64 = 0.125;
 
 /// Time of the linear law, as a fraction of the memory of the goal.
 const SHARPER: f64 = 0.35;
 
-/// So many standard deviations of the goal away, the linear law takes half the time.
+/// Distance, in standard deviations of the goal, at which the linear law takes half the time.
 const NEAR: f64 = 3.0;
 
-/// A correction of the goal by its noise may change the change of the linear law by this fraction of the jerk limit.
-const JERK_SHARE: f64 = 0.125;
+/// Fraction of the jerk limit by which noise of the goal may change the change of the linear law.
+const JERK_FRACTION: f64 = 0.125;
 
-/// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
+/// Distance of a goal, in changes plus standard deviations of its noise, from which on joints approach it in
+/// proportion.
 const FAR: f64 = 16.0;
 
-/// Smallest share of its limits that a joint keeps.
-const LEAST_SHARE: f64 = 0.1;
+/// Smallest fraction of its limits that a joint keeps.
+const LEAST_FRACTION: f64 = 0.1;
 
 /// A pursuit in one tick.
 #[derive(Debug)]
 pub(crate) struct Pursuit<'a> {
     /// The goal at the end of the tick.
     pub goal: &'a MovingGoal,
-    /// How the joints may brake.
+    /// Braking of the joints.
     pub braking: &'a [Braking],
     /// Largest steps and changes.
     pub scales: &'a Scales,
@@ -76,7 +78,8 @@ impl Pursuit<'_> {
                 changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
             };
             let Braking { acceleration, jerk } = self.braking[j];
-            let acceleration = (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
+            let acceleration =
+                (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_FRACTION * acceleration);
             let braking = Braking { acceleration, jerk: fractions.jerk[j] * jerk };
             let scale = self.scales.change[j];
             let noise = if scale.is_finite() { self.goal.uncertainty_of(j) * scale } else { 0.0 };
@@ -95,25 +98,26 @@ impl Pursuit<'_> {
     /// Longest and shortest time of the linear law, in ticks.
     fn law_times(&self) -> (f64, f64) {
         let memory = self.goal.memory();
-        let quickest = (self.goal.jitter() / (JERK_SHARE * self.scales.jerk_fraction)).sqrt().min(memory).max(1.0);
+        let quickest = (self.goal.jitter() / (JERK_FRACTION * self.scales.jerk_fraction)).sqrt().min(memory).max(1.0);
         ((SHARPER * memory).max(quickest), quickest)
     }
 
     /// The fraction of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
-    fn fractions(&self, q: &[f64]) -> Shares {
+    fn fractions(&self, q: &[f64]) -> Fractions {
         let way = |j: usize| (self.goal.q()[j] - self.goal.step()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
         if farthest <= FAR * (1.0 + self.goal.noise()) {
             let all = Point::from_elem(1.0, n);
-            return Shares { far: false, step: all.clone(), change: all.clone(), jerk: all };
+            return Fractions { far: false, step: all.clone(), change: all.clone(), jerk: all };
         }
         let of = |limit: &dyn Fn(usize) -> f64| -> Point {
             let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
-            let fraction = |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_SHARE) } else { 1.0 };
+            let fraction =
+                |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_FRACTION) } else { 1.0 };
             (0..n).map(fraction).collect()
         };
-        Shares {
+        Fractions {
             far: true,
             step: of(&|j| self.scales.step[j]),
             change: of(&|j| self.braking[j].acceleration),
@@ -122,8 +126,8 @@ impl Pursuit<'_> {
     }
 }
 
-/// Shares of the limits of each joint.
-struct Shares {
+/// Fractions of the limits of each joint.
+struct Fractions {
     /// Whether the goal is far.
     far: bool,
     step: Point,

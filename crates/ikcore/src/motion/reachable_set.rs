@@ -6,15 +6,16 @@
 //! limit would overtake is moved out of its way.
 
 use super::admissible::Room;
-use super::{Braking, JointState};
+use super::braking::Braking;
+use super::joint_state::JointState;
 use crate::limits::{Field, Limits, Profile, TickBox};
 use crate::math::MAX_DOF;
 
 /// Fraction of the velocity, acceleration and jerk limits in use; with all of them, rounding of positions could exceed a limit.
 const PLANNED: f64 = 1.0 - 1e-6;
 
-/// Bounds that cross by less than this (rad, m; relative beyond 1) cross by rounding.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Rounding of bounds that cross (rad, m; relative beyond 1).
+const CROSSING: f64 = 16.0 * f64::EPSILON;
 
 /// The reachable set of an arm.
 #[derive(Debug)]
@@ -26,7 +27,8 @@ pub(crate) struct ReachableSet {
     positions_vary: bool,
     velocities_vary: bool,
     braking: [Braking; MAX_DOF],
-    /// The farthest that a joint gets before it has stopped; position limits beyond have no effect. Infinite if limits vary.
+    /// Farthest position of a joint before it has stopped; position limits beyond have no effect. Infinite if limits
+    /// vary.
     farthest: [f64; MAX_DOF],
     joints: usize,
 }
@@ -67,7 +69,7 @@ impl ReachableSet {
         Some(set)
     }
 
-    /// How each joint may brake from the last tick on.
+    /// Braking of each joint from the last tick on.
     pub fn braking(&self) -> &[Braking] {
         &self.braking[..self.joints]
     }
@@ -90,7 +92,7 @@ impl ReachableSet {
         self.narrow_now(q, state, time, limits, tick)
     }
 
-    /// [`narrow`](Self::narrow) with the acceleration and jerk limits of the last call of it.
+    /// Narrows as [`narrow`](Self::narrow), with the acceleration and jerk limits of its last call.
     pub fn narrow_now(&self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         let mut feasible = true;
         for j in 0..q.len() {
@@ -104,7 +106,7 @@ impl ReachableSet {
                 let ahead = self.dt * ticks_ahead(&braking, tick.velocity[j] * self.dt);
                 [floor, ceiling] = limits.position_range(j, time, time + ahead);
             }
-            let rounding = ROUNDING * q[j].abs().max(1.0);
+            let rounding = CROSSING * q[j].abs().max(1.0);
             let [below, above] = [q[j] - floor, ceiling - q[j]].map(|room| (room - rounding).max(room.min(0.0)));
             let [below, above] = [below, above].map(|room| if room > self.farthest[j] { f64::INFINITY } else { room });
             let longest = tick.velocity[j].max(0.0) * self.dt;
@@ -133,7 +135,7 @@ impl ReachableSet {
             let stop = braking.stop(step, change);
             let time = self.dt * stop.ticks;
             let [floor, ceiling] = limits.position_range(*j, 0.0, time);
-            let rounding = ROUNDING * q[*j].abs().max(1.0);
+            let rounding = CROSSING * q[*j].abs().max(1.0);
             let room =
                 Room { below: q[*j] - floor, above: ceiling - q[*j], step: self.dt * velocity.smallest(0.0, time).1 };
             let fastest = braking.fastest(step, change).max(braking.fastest(-step, -change));

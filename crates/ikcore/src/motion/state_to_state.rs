@@ -1,17 +1,14 @@
-//! The quickest motion of an arm from one state to another.
+//! The fastest motion of an arm from one state to another.
 
 use super::arm_state::ArmState;
 use super::synchronised::Synchronised;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits};
+use crate::limits::{Field, Limits, ROUNDING};
 use crate::math::one_joint::{MotionState, Rates, Transfer};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
 const METHOD: &str = "state_to_state";
-
-/// Relative excess over a limit that counts as rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// Returns the quickest motion from one state to another within constant `limits`, in which all joints arrive together.
 ///

@@ -1,19 +1,18 @@
 //! The fastest stop of a joint, tick by tick in closed form.
 
-use super::Braking;
-use super::braking::{StopPhases, fade_out};
+use super::braking::{Braking, StopPhases, fade_out};
 
-/// Where a joint is during its fastest stop.
+/// Position of a joint during its fastest stop.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StopCurve {
-    /// 1 for a stop that ends upwards, else -1.
+    /// Direction of the stop: 1 if it ends upwards, else -1.
     sign: f64,
     first: f64,
     /// The braking at the beginning.
     braking: f64,
-    /// By how much it grows per tick.
+    /// Growth of the braking per tick.
     jerk: f64,
-    /// When it stops growing, and when it begins to fade.
+    /// States at which the braking stops growing and begins to fade.
     built_up: StopPhases,
     fading: StopPhases,
     /// The deceleration between the two.
@@ -60,7 +59,7 @@ impl StopCurve {
         self.at(f64::INFINITY)
     }
 
-    /// By how much the largest displacement on the way exceeds the smallest.
+    /// Largest displacement on the way, less the smallest.
     pub fn range(&self) -> f64 {
         let end = self.along(self.ticks());
         end.max(0.0) - end.min(self.fading.lowest)

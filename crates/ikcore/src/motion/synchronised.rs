@@ -11,11 +11,11 @@ pub(crate) struct Synchronised {
     duration: f64,
 }
 
-/// Durations that are nearer to each other, relative to their size, count as one.
-const ROUNDING: f64 = 1e-12;
+/// Relative difference below which durations count as equal.
+const EQUAL: f64 = 1e-12;
 
 impl Synchronised {
-    /// The quickest motion of all joints together; `None` if there is none.
+    /// Returns the fastest motion of all joints together; `None` if there is none.
     ///
     /// A joint may be unable to take just a little longer than its shortest time, since it would have to turn back; so the
     /// duration is raised until it is possible for every joint.
@@ -23,7 +23,7 @@ impl Synchronised {
         let mut duration = 0.0_f64;
         loop {
             let next = transfers.iter().fold(duration, |least, transfer| transfer.duration(least).max(least));
-            let settled = next <= duration * (1.0 + ROUNDING);
+            let settled = next <= duration * (1.0 + EQUAL);
             duration = next;
             if settled {
                 break;
@@ -37,7 +37,7 @@ impl Synchronised {
 
     /// A motion of this duration (s); `None` if it is not possible for every joint.
     pub(crate) fn lasting(transfers: &[Transfer], duration: f64) -> Option<Self> {
-        let is_possible = |transfer: &Transfer| transfer.duration(duration) <= duration * (1.0 + ROUNDING);
+        let is_possible = |transfer: &Transfer| transfer.duration(duration) <= duration * (1.0 + EQUAL);
         transfers.iter().all(is_possible).then(|| Self::of(transfers, duration))
     }
 

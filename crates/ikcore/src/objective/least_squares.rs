@@ -4,10 +4,10 @@ use smallvec::SmallVec;
 
 use super::evaluation::{Objective, Score};
 use super::gradient::Gradient;
-use crate::math::Columns;
 use crate::math::block_step::{BlockStep, TaskRows};
 use crate::math::box_step::{BoxStep, LEAST_DAMPING, ROWS};
 use crate::math::vector::squared_size;
+use crate::math::{Columns, MAX_DOF};
 
 /// Residual r and Jacobian dr/dx of one task at a point.
 #[derive(Debug, Clone, Default)]
@@ -94,6 +94,25 @@ impl Linearization {
         } else {
             BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write_near(preferred, out);
         }
+    }
+
+    /// Moves `q` onto a task by Gauss-Newton: up to `most` bounded steps. `next` linearizes the task at a point and returns the
+    /// damping of the step from there, `None` to end. Returns whether it ended so.
+    pub fn project(
+        &mut self,
+        q: &mut [f64],
+        ends: [&[f64]; 2],
+        most: usize,
+        mut next: impl FnMut(&[f64], &mut Self) -> Option<f64>,
+    ) -> bool {
+        let mut from = [0.0; MAX_DOF];
+        let from = &mut from[..q.len()];
+        for _ in 0..most {
+            let Some(lambda) = next(q, self) else { return true };
+            from.copy_from_slice(q);
+            self.write_step(lambda, from, ends, q);
+        }
+        false
     }
 
     /// Smallest damping that keeps a singular system of `n` unknowns solvable; it has no effect otherwise.

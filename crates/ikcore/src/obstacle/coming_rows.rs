@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use super::scene::Scene;
 use crate::bodies::BodyPoses;
 use crate::math::MAX_DOF;
+use crate::math::vector::between;
 use crate::shape::PosedBody;
 
 /// Sections of the search; each leaves 0.62 of the interval.
@@ -141,16 +142,16 @@ impl Passing<'_> {
         let shape = &self.scene.others.obstacles[self.obstacle].shape;
         let distance = |time: f64| self.seen(time, |body| shape.distance_to_body(body, f64::INFINITY));
         let [mut low, mut high] = [0.0, self.coming.horizon];
-        let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        let mut inner = [between(high, low, GOLDEN), between(low, high, GOLDEN)];
         let mut values = inner.map(distance);
         for _ in 0..SECTIONS {
             if values[0] < values[1] {
                 high = inner[1];
-                inner = [high - GOLDEN * (high - low), inner[0]];
+                inner = [between(high, low, GOLDEN), inner[0]];
                 values = [distance(inner[0]), values[0]];
             } else {
                 low = inner[0];
-                inner = [inner[1], low + GOLDEN * (high - low)];
+                inner = [inner[1], between(low, high, GOLDEN)];
                 values = [values[1], distance(inner[1])];
             }
         }

@@ -11,7 +11,7 @@ use crate::shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, below_square};
 
 /// Rounding of distances in single precision, for coordinates of 1 m and angles of a few rad (m): a few units in the last place
 /// for each of the operations that lead to it.
-const ROUNDING: f64 = 2e-6;
+const SINGLE_ROUNDING: f64 = 2e-6;
 
 /// Two groups with bodies that must not touch.
 #[derive(Debug)]
@@ -103,8 +103,8 @@ impl<'a> EightScene<'a> {
     /// Rounding of a distance (m), for joint values of up to `largest` (rad, m). Not a number, which makes everything
     /// near, if coordinates are too large for single precision.
     pub fn rounding(&self, largest: f64) -> f64 {
-        let rounding = ROUNDING * self.extent * (1.0 + 0.1 * largest);
-        if rounding <= ROUNDING * LARGEST_IN_SINGLE { rounding } else { f64::NAN }
+        let rounding = SINGLE_ROUNDING * self.extent * (1.0 + 0.1 * largest);
+        if rounding <= SINGLE_ROUNDING * LARGEST_IN_SINGLE { rounding } else { f64::NAN }
     }
 
     /// A bound on how far any body moves (m) while the joints move by `reach` (rad, m).

@@ -1,5 +1,7 @@
 //! Motions that can be certified.
 
+use crate::math::vector::write_between;
+
 /// A joint motion over an interval of its parameter: time, ticks, or the fraction of a straight line.
 pub trait JointMotion {
     /// Writes the configuration at `at`.
@@ -34,9 +36,7 @@ pub struct Edge<'a> {
 
 impl JointMotion for Edge<'_> {
     fn write(&self, at: f64, q: &mut [f64]) {
-        for (q, (from, to)) in q.iter_mut().zip(self.from.iter().zip(self.to)) {
-            *q = from + at * (to - from);
-        }
+        write_between(self.from, self.to, at, q);
     }
 
     fn write_off_line(&self, _from: f64, _to: f64, _off_line: &mut [f64]) {}

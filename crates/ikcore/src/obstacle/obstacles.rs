@@ -9,10 +9,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::shape::{BoundingBall, Shape, ShapeIndex};
 
 /// Absolute rounding of the distance of two balls (m).
-const ROUNDING: f64 = 1e-9;
+const BALL_ROUNDING: f64 = 1e-9;
 
 /// Rounding of this distance, relative to coordinates and radius of one.
-const RELATIVE_ROUNDING: f64 = 1e-12;
+const BALL_ROUNDING_RELATIVE: f64 = 1e-12;
 
 /// A shape to keep clear of, and the links that may touch it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -88,7 +88,7 @@ impl Obstacles {
             None => {
                 for (obstacle, (middle, own)) in self.0.balls.iter().enumerate() {
                     // What is not a number is near.
-                    if !((middle - center).norm() > radius + own + ROUNDING) {
+                    if !((middle - center).norm() > radius + own + BALL_ROUNDING) {
                         visit(obstacle);
                     }
                 }
@@ -114,7 +114,7 @@ impl<T: Into<Obstacle>> FromIterator<T> for Obstacles {
             let BoundingBall { center, radius } = shape.bounding_ball();
             let center = Vector3::from(center);
             let radius = if shape.is_huge() { f64::INFINITY } else { radius };
-            (center, radius + RELATIVE_ROUNDING * (radius + center.amax()))
+            (center, radius + BALL_ROUNDING_RELATIVE * (radius + center.amax()))
         };
         let first = |is_so: fn(&Shape) -> bool| list.iter().position(|obstacle| is_so(&obstacle.shape));
         Self(Arc::new(Prepared {

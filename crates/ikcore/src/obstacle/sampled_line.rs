@@ -138,6 +138,7 @@ by_instructions! {
 mod tests {
     use super::*;
     use crate::math::arithmetic::NoFma;
+    use crate::math::vector::point_between;
     use crate::rng::{self, LazyRng};
     use crate::robot::Robot;
     use crate::shape::Shape;
@@ -210,9 +211,7 @@ mod tests {
                     }
                     let to: Vec<f64> = from.iter().map(|q| q + rng.uniform_in(-0.6, 0.6)).collect();
                     let verdict = check.is_clear(&from, &to);
-                    let at = |i: usize| -> Vec<f64> {
-                        from.iter().zip(&to).map(|(from, to)| from + i as f64 / 300.0 * (to - from)).collect()
-                    };
+                    let at = |i: usize| -> Vec<f64> { point_between(&from, &to, i as f64 / 300.0).collect() };
                     let least = (0..=300).map(|i| scene.clearance(&at(i)).unwrap()).fold(f64::INFINITY, f64::min);
                     // Between two of its configurations a body may come nearer by half of what it moves.
                     let missed = if verdict { 0.01 - 0.5 * SPACING } else { f64::NEG_INFINITY };

@@ -15,7 +15,7 @@ pub struct Polyline {
     vertices: Vec<[f64; 3]>,
 }
 
-/// Stored segments are checked again.
+/// Checks stored segments again.
 impl TryFrom<(Knots, Vec<[f64; 3]>)> for Polyline {
     type Error = Error;
 
@@ -82,7 +82,7 @@ impl Curve for Polyline {
         let (segment, elapsed) = self.knots.locate(t);
         let fraction = elapsed / self.knots.span(segment);
         let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
-        // In this form both ends are exact.
+        // Exact at both ends.
         std::array::from_fn(|i| (1.0 - fraction) * from[i] + fraction * to[i])
     }
 

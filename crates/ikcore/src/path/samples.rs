@@ -20,7 +20,7 @@ pub struct Samples {
 /// One rotation per sample.
 type Rotations = Option<Vec<UnitQuaternion<f64>>>;
 
-/// Stored samples are checked again.
+/// Checks stored samples again.
 impl TryFrom<(Polyline, Rotations)> for Samples {
     type Error = Error;
 

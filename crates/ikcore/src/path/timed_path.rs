@@ -80,7 +80,7 @@ impl Path {
         Reference::new(dt, positions, rotations)
     }
 
-    /// Like [`sample`](Self::sample), with the velocities at the ticks.
+    /// Samples the path as [`sample`](Self::sample), with the velocities at the ticks.
     ///
     /// # Errors
     /// As [`sample`](Self::sample).

@@ -6,7 +6,7 @@ use super::orientation::check_rotations;
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Pose, pose};
 
-/// At least two positions or poses, in the order in which the tip passes them.
+/// Positions or poses, at least two, in the order in which the tip passes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waypoints {
     positions: Vec<[f64; 3]>,

@@ -13,7 +13,7 @@ use crate::timing::Violation;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
 /// Distance added to the margin at end configurations (m), so that motions to them can be certified.
-pub(crate) const RESERVE: f64 = 2e-6;
+pub(crate) const END_RESERVE: f64 = 2e-6;
 
 /// The space that `surroundings` leave to a motion of `robot` from point to point; `None` if nothing can collide: without obstacles,
 /// by default, an arm without bodies cannot.
@@ -42,7 +42,7 @@ pub(crate) fn motion_space<'a>(surroundings: &Surroundings, robot: &'a Robot) ->
 /// # Errors
 /// [`Error::InCollision`].
 pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) -> Result<()> {
-    let (scene, kept) = (space.scene(), space.margin() + RESERVE);
+    let (scene, kept) = (space.scene(), space.margin() + END_RESERVE);
     match scene.nearest(q)? {
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));
@@ -201,6 +201,7 @@ fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vector::between;
     use crate::rng;
     use crate::shape::Shape;
     use crate::trajectory::polynomial;
@@ -229,7 +230,7 @@ mod tests {
             for i in 1..500 {
                 let fraction = f64::from(i) / 500.0;
                 let mut q = [0.0];
-                timed.write(from + fraction * (to - from), &mut q);
+                timed.write(between(from, to, fraction), &mut q);
                 let off = (q[0] - ends[0][0] - fraction * (ends[1][0] - ends[0][0])).abs();
                 assert!(
                     off <= 4.0 * fraction * (1.0 - fraction) * off_line[0] + 1e-12,

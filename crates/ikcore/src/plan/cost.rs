@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::polynomial::{derivative, evaluate, roots};
 use crate::math::vector::distance;
+use crate::math::vector::point_between;
 use crate::robot::Robot;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::{Coefficients, Trajectory};
 use crate::wording::words;
 
@@ -55,7 +56,7 @@ impl Cost {
     }
 
     /// A large value of the objective for `robot` under `limits`, which scales penalties.
-    pub(crate) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
+    pub(crate) fn scale(self, robot: &Robot, limits: &ConstantLimits) -> f64 {
         let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
         match self {
             Self::Time => limits.whole_range_time(),
@@ -97,8 +98,7 @@ pub(crate) fn tip_travel_along(robot: &Robot, points: &[Vec<f64>]) -> f64 {
     let of_line = |ends: &[Vec<f64>]| {
         let at = |i: usize| {
             let fraction = i as f64 / CHORDS_A_LINE as f64;
-            let q: Vec<f64> = ends[0].iter().zip(&ends[1]).map(|(from, to)| from + fraction * (to - from)).collect();
-            robot.tip_position(&q)
+            robot.tip_position(&point_between(&ends[0], &ends[1], fraction).collect::<Vec<_>>())
         };
         (1..=CHORDS_A_LINE).map(|i| distance(&at(i), &at(i - 1))).sum::<f64>()
     };

@@ -2,11 +2,13 @@
 
 use smallvec::smallvec;
 
+use super::collision_checks::configuration_at;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::message::{Message, message};
 use crate::robot::Robot;
 use crate::task::{NamedTask, Target, TargetRow, Task, Tolerance};
+use crate::trajectory::Trajectory;
 
 /// The start of a motion, or one of its possible ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +22,16 @@ pub enum Endpoint {
     },
     /// A configuration (n,) (rad, m).
     Configuration(Vec<f64>),
+}
+
+impl Endpoint {
+    /// The configuration at the end of a motion.
+    ///
+    /// # Errors
+    /// None in practice: the duration is finite.
+    pub(crate) fn at_end_of(motion: &Trajectory) -> Result<Self> {
+        configuration_at(motion, motion.duration()).map(Self::Configuration)
+    }
 }
 
 impl From<Target> for Endpoint {
@@ -76,12 +88,12 @@ impl EndName {
         if count == 1 { Self::End } else { Self::OneOf(index) }
     }
 
-    /// The argument of the target, such as `end[3]`.
+    /// The argument of the target, e.g. `end[3]`.
     pub(crate) fn of_target(self) -> String {
         self.argument("")
     }
 
-    /// The argument of the configuration, such as `end_q[3]`.
+    /// The argument of the configuration, e.g. `end_q[3]`.
     pub(crate) fn of_configuration(self) -> String {
         self.argument("_q")
     }

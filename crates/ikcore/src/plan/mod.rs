@@ -1,4 +1,4 @@
-//! What a planner is asked and what it returns: ends, options, the [`Plan`] and its checks.
+//! Arguments and results of planners: ends, options, the [`Plan`] and its checks.
 //!
 //! | file | what |
 //! |---|---|
@@ -30,7 +30,7 @@ mod straight_line;
 mod tpbso_options;
 
 pub(crate) use collision_checks::{
-    RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_collision, too_near,
+    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_collision, too_near,
 };
 pub use cost::Cost;
 pub(crate) use cost::tip_travel_along;

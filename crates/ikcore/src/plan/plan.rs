@@ -13,7 +13,7 @@ use crate::obstacle::{Clearance, ClearanceSweep, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
-use crate::timing::{JointPath, MotionLimits, Violation};
+use crate::timing::{ConstantLimits, JointPath, Violation};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -36,9 +36,9 @@ pub struct Plan {
     pub obstruction: Option<String>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
-    /// How the motion got out of a contact at its start, if it had to.
+    /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
-    /// What the whole motion keeps clear of, if anything.
+    /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
@@ -91,7 +91,7 @@ pub struct Improvement {
     pub cost: f64,
 }
 
-/// What to try where a path leads into collision.
+/// Advice where a path leads into collision.
 const ADVICE_ALONG_PATH: &str =
     "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
 
@@ -137,7 +137,7 @@ impl Plan {
     }
 
     /// Notes the largest acceleration of joints that have no acceleration limit in `limits`.
-    pub(crate) fn name_peak(&mut self, limits: &MotionLimits) {
+    pub(crate) fn name_peak(&mut self, limits: &ConstantLimits) {
         let reached = self.trajectory.max_acceleration();
         let unlimited = (0..limits.dof()).filter(|j| limits.acceleration[*j].is_infinite());
         let highest = unlimited.max_by(|i, k| reached[*i].total_cmp(&reached[*k]));
@@ -163,7 +163,7 @@ impl Plan {
         least.map_or(known, |(clearance, _)| Ok(Some(clearance)))
     }
 
-    /// Returns a sentence: what happened, and what to try.
+    /// Returns the outcome and advice, as a sentence.
     pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
             let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
@@ -188,7 +188,7 @@ impl Plan {
         }
     }
 
-    /// Of a certified motion.
+    /// Clearance of a certified motion, in words.
     fn clearance_in_words(&self) -> String {
         let Some(surroundings) = &self.surroundings else { return String::new() };
         clear_in_words(self.clearance.as_ref(), surroundings.first_open_mesh())

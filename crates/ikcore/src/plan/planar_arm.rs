@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use crate::math::turns::without_turns;
 use crate::robot::{JointKind, Robot};
 use crate::task::Target;
 use crate::wording::number;
@@ -139,7 +140,7 @@ impl PlanarArm {
         in_plane.then_some(PlanarTarget { position: [position[0], position[1]], orientation })
     }
 
-    /// Why a target cannot be reached, in words; `None` if it can.
+    /// Explains why a target cannot be reached; `None` if it can.
     pub fn problem(&self, place: &PlanarTarget) -> Option<String> {
         let (free, held) = match &place.orientation {
             None => (self.dof(), [].as_slice()),
@@ -269,6 +270,6 @@ pub type Orientations = SmallVec<[Orientation; 4]>;
 
 /// The angle (rad) in (-pi, pi] that differs from `angle` by whole turns.
 pub(crate) fn wrapped(angle: f64) -> f64 {
-    let wrapped = angle - TAU * (angle / TAU).round();
+    let wrapped = without_turns(angle);
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }

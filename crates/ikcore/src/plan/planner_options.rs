@@ -11,7 +11,7 @@ use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 use crate::task::Task;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Methods of point-to-point planning.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -108,7 +108,7 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
-    /// What the motion keeps clear of. By default nothing is checked.
+    /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,
@@ -137,7 +137,7 @@ impl AlongPathOptions {
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
-    pub(crate) fn start_within(&self, robot: &Robot, limits: &MotionLimits) -> Result<Option<&[f64]>> {
+    pub(crate) fn start_within(&self, robot: &Robot, limits: &ConstantLimits) -> Result<Option<&[f64]>> {
         let Some(q) = &self.start else { return Ok(None) };
         robot.check("start_q", q)?;
         robot.require_within("start_q", q, &limits.lower, &limits.upper)?;

@@ -8,12 +8,13 @@ use crate::message::message;
 use crate::obstacle::{Clearance, ClearanceSweep};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
-use crate::timing::{MotionLimits, TimingLimits, scaled, time_all};
+use crate::timing::{ConstantLimits, scaled, time_all};
 
 const METHOD: &str = "retime";
 
 impl Plan {
-    /// The same path as fast as these `limits` allow; `None` means those of `robot`, for which the plan was made.
+    /// Returns the same path as fast as these `limits` allow; `None` means those of `robot`, for which the plan was
+    /// made.
     ///
     /// The timing of a plan that has [`path`](Self::path) is optimised again. Any other motion is scaled in time as a
     /// whole, so that it passes the very same configurations. Either way its clearance and accuracy remain.
@@ -23,8 +24,7 @@ impl Plan {
     /// of the limits.
     pub fn retime(&self, robot: &Robot, limits: Option<&Limits>) -> Result<Self> {
         let stopwatch = Stopwatch::start();
-        let limits_of_all = limits.cloned().unwrap_or_else(|| Limits::of(robot));
-        let limits = MotionLimits::new(robot, Some(&limits_of_all), METHOD)?;
+        let limits = ConstantLimits::for_robot(robot, limits, METHOD)?;
         if !self.violations.is_empty() {
             let problem = message!["only a plan without violations can be retimed, and this one: ", self.message()];
             return Err(Error::Infeasible { problem });
@@ -32,7 +32,8 @@ impl Plan {
         let trajectory = if self.path.is_empty() {
             scaled(&self.trajectory, &limits)?
         } else {
-            time_all(&self.path, &TimingLimits::new(&limits_of_all, METHOD)?)?
+            limits.require_accelerations(METHOD)?;
+            time_all(&self.path, &limits)?
         };
         let violations = limits.violations(&trajectory);
         if let Some(violation) = violations.first() {

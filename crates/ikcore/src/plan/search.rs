@@ -12,11 +12,11 @@ use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Mon
 pub(crate) struct Search {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// Its budget.
+    /// Budget of the search.
     pub stop: Stop,
     /// Seed of the random draws.
     pub seed: u64,
-    /// Where it begins; `None`: at random.
+    /// Start of the search; `None`: at random.
     pub start: Option<Point>,
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct SearchResult {
 }
 
 impl SearchResult {
-    /// This search and a `later` one.
+    /// Joins this search and a `later` one.
     pub(crate) fn then(self, later: Self) -> Self {
         let Self { mut history, evaluations, .. } = self;
         let least = history.last().map_or(f64::INFINITY, |best| best.cost);

@@ -9,7 +9,7 @@ use crate::message::{Setting, message};
 use crate::plan::{AlongPathMethod, AlongPathOptions, Cost, Plan};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::tpbso;
 
 /// Plans a motion of `robot` whose tip follows `tip_path`.
@@ -55,7 +55,7 @@ pub fn plan_along_path(
         }),
         (AlongPathMethod::Tpbso(tpbso), _) => tpbso::along_path(robot, &tip_path, tpbso, options, monitor),
     }?;
-    plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_along_path")?);
+    plan.name_peak(&ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_along_path")?);
     Ok(plan)
 }
 

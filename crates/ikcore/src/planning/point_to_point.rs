@@ -9,7 +9,7 @@ use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPoin
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::{free_path, tpbso};
 
 /// Plans a motion of `robot` from `start` to rest at one of `ends`, the one with the lowest cost of those found. It begins at
@@ -62,11 +62,11 @@ fn plan_joined(
         }
     }
     .map_err(|error| with_way_out(error, options))?;
-    plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?);
+    plan.name_peak(&ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?);
     Ok(plan)
 }
 
-/// Err for what the planner does for one tip alone.
+/// Checks that options for one tip alone are not given for several.
 ///
 /// # Errors
 /// [`Error::SeveralTips`].
@@ -135,7 +135,7 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
     }
 }
 
-/// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
+/// The end of a motion by [`Tpbso`](super::Tpbso), checked for options beyond the published method.
 fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&'a Endpoint> {
     let refused = |what: Message, does: &str| {
         let [other, method] = ["minmax", "tpbso"].map(Setting::Method);

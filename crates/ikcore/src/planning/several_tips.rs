@@ -3,11 +3,11 @@
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::ClearSpace;
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, no_usable_end};
+use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
 const TRIED: usize = 6;
@@ -63,10 +63,10 @@ struct EndSearch<'a> {
 
 impl<'a> EndSearch<'a> {
     fn new(robot: &'a Robot, space: Option<&ClearSpace<'_>>, options: &PointToPointOptions) -> Result<Self> {
-        let limits = MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?;
+        let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?;
         let options = SolveOptions {
             limits: Some(limits.position_limits(robot)?),
-            surroundings: space.map(|space| space.narrowed(RESERVE).surroundings()).unwrap_or_default(),
+            surroundings: space.map(|space| space.narrowed(END_RESERVE).surroundings()).unwrap_or_default(),
             seed: options.seed,
             ..SolveOptions::default()
         };

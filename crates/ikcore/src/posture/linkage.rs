@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::error::{Error, Result};
 use crate::manipulability::{Manipulability, Motion};
+use crate::math::turns::without_turns;
 use crate::robot::Robot;
 use crate::wording::words;
 
@@ -176,7 +177,7 @@ impl Linkage {
     /// Shifts `angle` by whole turns into the limits of joint `j`, as near to zero as possible.
     fn within_limits(&self, j: usize, angle: f64) -> Option<f64> {
         let joint = &self.robot.joints()[j];
-        let nearest = angle - TAU * (angle / TAU).round();
+        let nearest = without_turns(angle);
         [nearest, nearest - TAU, nearest + TAU].into_iter().find(|q| joint.lower <= *q && *q <= joint.upper)
     }
 }

@@ -8,7 +8,7 @@ use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
 use super::enclosure::{Enclosure, TriangleSurface};
 use super::segment_lanes::{NearestFraction, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
-use super::tangent::Tangent;
+use super::tangent::{Tangent, point_between};
 use super::triangle::nearest_on_triangle;
 use super::winding::winding;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
@@ -163,7 +163,8 @@ impl Mesh {
     /// the length along the segment, so between two points it lies above a wedge.
     fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> SegmentDistance {
         let length = (b - a).norm();
-        let at = |fraction: f64| SegmentDistance { distance: self.tangent(&(a + fraction * (b - a))).value, fraction };
+        let at =
+            |fraction: f64| SegmentDistance { distance: self.tangent(&point_between(a, b, fraction)).value, fraction };
         let [first, last] = [at(0.0), at(1.0)];
         let deeper =
             |one: SegmentDistance, other: SegmentDistance| if other.distance < one.distance { other } else { one };

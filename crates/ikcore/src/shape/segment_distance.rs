@@ -6,7 +6,7 @@ use super::along_segment::{LineSegment, SegmentDistance, by_tangents};
 use super::checked_shape::{LARGEST, ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{TOUCHING, to_box};
-use super::tangent::{nearest_fraction, nearest_on_segment};
+use super::tangent::{nearest_fraction, nearest_on_segment, point_between};
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
@@ -46,7 +46,7 @@ impl Geometry {
             Self::Sphere { center, radius } => {
                 let fraction = nearest_fraction(a, b, &Vector3::from(*center));
                 SegmentDistance {
-                    distance: (a + fraction * (b - a) - Vector3::from(*center)).norm() - radius,
+                    distance: (point_between(a, b, fraction) - Vector3::from(*center)).norm() - radius,
                     fraction,
                 }
             }
@@ -174,7 +174,7 @@ mod tests {
         for _ in 0..100 {
             let [a, b] = segment(&mut rng);
             let found = egg.distance_to_segment(&[a, b], f64::INFINITY);
-            let at = |i: usize| egg.geometry().tangent(&(a + i as f64 / 2000.0 * (b - a))).value;
+            let at = |i: usize| egg.geometry().tangent(&point_between(&a, &b, i as f64 / 2000.0)).value;
             let nearest = (0..=2000).map(at).fold(f64::INFINITY, f64::min);
             assert!(found <= nearest + 1e-9 && nearest - found < 2e-3, "{found}, sampled {nearest}");
             // Search with `enough` = 0.1 m: larger distances may be underestimated, but stay at least 0.1 m.

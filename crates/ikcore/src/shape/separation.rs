@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::along_segment::LineSegment;
 use super::checked_shape::Shape;
 use super::segment_distance::between;
-use super::tangent::{Tangent, nearest_on_segment};
+use super::tangent::{Tangent, nearest_on_segment, point_between};
 
 /// Distance from the deepest point of an axis, as a fraction of its length, at which other faces are looked for.
 const BESIDE: f64 = 1e-6;
@@ -21,12 +21,12 @@ impl Shape {
     pub(crate) fn nearest_to_capsule(&self, segment: &LineSegment, radius: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [a, b] = segment;
         let fraction = self.geometry().approach(segment, f64::INFINITY).fraction;
-        let on_axis = a + fraction * (b - a);
+        let on_axis = point_between(a, b, fraction);
         let Tangent { value, normal } = self.geometry().tangent(&on_axis);
         if value >= 0.0 || fraction <= 0.0 || fraction >= 1.0 {
             return (on_axis - radius * normal, normal);
         }
-        let beside = |fraction: f64| self.geometry().tangent(&(a + fraction * (b - a))).normal;
+        let beside = |fraction: f64| self.geometry().tangent(&point_between(a, b, fraction)).normal;
         let [before, after] = [fraction - BESIDE, fraction + BESIDE].map(beside);
         let [falls, rises] = [before, after].map(|normal| normal.dot(&(b - a)));
         let common = before + (after - before) * (falls / (falls - rises));
@@ -42,7 +42,7 @@ pub(crate) fn capsules_nearest(
     (other, _): (&LineSegment, f64),
 ) -> (Vector3<f64>, Vector3<f64>) {
     let [a, b] = own;
-    let on_axis = a + between(own, other).fraction * (b - a);
+    let on_axis = point_between(a, b, between(own, other).fraction);
     let away = on_axis - nearest_on_segment(&other[0], &other[1], &on_axis);
     // Intersecting axes have no direction of separation; use the normal of both.
     let across = (b - a).cross(&(other[1] - other[0]));

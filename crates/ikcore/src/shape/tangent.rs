@@ -22,7 +22,13 @@ pub(super) fn nearest_fraction(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vecto
     if squared > 0.0 { ((point - a).dot(&along) / squared).clamp(0.0, 1.0) } else { 0.0 }
 }
 
+/// Returns the point at `fraction` of the way from `a` to `b`.
+#[inline]
+pub(super) fn point_between(a: &Vector3<f64>, b: &Vector3<f64>, fraction: f64) -> Vector3<f64> {
+    a + fraction * (b - a)
+}
+
 /// Returns the point of the segment from `a` to `b` nearest to `point`.
 pub(super) fn nearest_on_segment(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<f64>) -> Vector3<f64> {
-    a + nearest_fraction(a, b, point) * (b - a)
+    point_between(a, b, nearest_fraction(a, b, point))
 }

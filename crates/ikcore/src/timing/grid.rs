@@ -14,7 +14,7 @@ pub(super) struct Segment {
     pub length: f64,
 }
 
-/// More grid points count as a mistake; this many take a tenth of a second.
+/// Largest number of grid points, which takes a tenth of a second; more count as a mistake.
 pub(super) const MAX_GRIDPOINTS: usize = 200_000;
 
 /// Checks that a grid is not too coarse to start and stop on, nor too fine to be intended.
@@ -32,8 +32,8 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
 /// speed limit is soon reached, and up to there the mean speed is half of it.
 const HALVINGS: usize = 5;
 
-/// At most one in this many segments of a piece is used for halvings.
-const SHARE: usize = 4;
+/// Largest use of segments for halvings: one in this many segments of a piece is used for halvings.
+const SEGMENTS_PER_HALVING: usize = 4;
 
 /// Cuts the path into about `wanted` segments. No segment spans a break, and a piece that starts or ends at rest has
 /// one segment to accelerate and one to decelerate. They have equal length, except near rest.
@@ -48,7 +48,7 @@ pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
         // Slightly less than the quotient, so that rounding does not add one to each piece.
         let count = (wanted as f64 * length / total - 1e-6).ceil() as usize;
         let count = count.max(if rests_before || rests_after { 2 } else { 1 });
-        let halvings = |rests: bool| if rests { HALVINGS.min(count / SHARE) } else { 0 };
+        let halvings = |rests: bool| if rests { HALVINGS.min(count / SEGMENTS_PER_HALVING) } else { 0 };
         cut_piece(piece, length, count, [halvings(rests_before), halvings(rests_after)], &mut segments);
         rests_before = rests_after;
     }

@@ -5,11 +5,12 @@
 //! all limits allow, and the window is chosen to minimise the duration. So every limit holds, but this is a smoothed
 //! optimum, not the optimum under jerk limits.
 
+use super::constant_limits::ConstantLimits;
 use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
-use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
+use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
 /// Narrowest and widest window, relative to the duration.
@@ -23,23 +24,16 @@ const CUTS: usize = 10;
 const SMALLEST_SPAN: f64 = 3e-4;
 /// Number of uniform knots, in addition to those where the jerk changes.
 const EVEN_KNOTS: usize = 500;
-/// If quintics must be slowed down by more than this factor beyond the need at their knots, they oscillate between
-/// knots; then intervals between knots are halved, at most `HALVINGS` times.
+/// Largest slowdown of quintics, relative to the need at their knots. Beyond it they oscillate between knots, whose
+/// intervals are then halved, at most `HALVINGS` times.
 const FAITHFUL: f64 = 1.03;
 const HALVINGS: usize = 2;
-/// Fraction of a limit reserved for the rounding of polynomials.
-const MARGIN: f64 = 1e-9;
 
-/// Returns the motion of `profile` along `path`, smoothed until it also keeps the jerk limits `jerk`.
+/// Returns the motion of `profile` along `path`, smoothed until it also keeps the jerk limits.
 ///
 /// # Errors
 /// [`Error::UnsupportedLimit`] if the curvature of the path jumps.
-pub(super) fn smooth(
-    path: &JointPath,
-    profile: &SpeedProfile,
-    limits: &TimingLimits,
-    jerk: &[f64],
-) -> Result<Trajectory> {
+pub(super) fn smooth(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits) -> Result<Trajectory> {
     if (1..path.pieces()).any(|piece| path.has_curvature_jump_after(piece - 1)) {
         return Err(Error::UnsupportedLimit {
             field: "jerk".into(),
@@ -50,10 +44,10 @@ pub(super) fn smooth(
     let clock = Clock::new(path, profile);
     let played = |window: f64| {
         let smoothed = Smoothed { path, clock: &clock, window };
-        Ok((clock.duration() + window) * smoothed.stretch(limits, jerk)?)
+        Ok((clock.duration() + window) * smoothed.stretch(limits)?)
     };
     let window = shortest(played, clock.duration())?;
-    Smoothed { path, clock: &clock, window }.trajectory(limits, jerk)
+    Smoothed { path, clock: &clock, window }.trajectory(limits)
 }
 
 /// Returns the window with approximately the smallest duration `played`.
@@ -156,13 +150,13 @@ impl Smoothed<'_> {
     ///
     /// # Errors
     /// [`Error::Interrupted`].
-    fn stretch(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<f64> {
+    fn stretch(&self, limits: &ConstantLimits) -> Result<f64> {
         let mut largest = 0.0_f64;
         for (i, t) in self.knots().into_iter().enumerate() {
             checkpoint_at(i)?;
             let [s, rate, acceleration, change] = self.parameter(t);
             let (piece, from) = self.path.locate(s);
-            for j in 0..jerk.len() {
+            for j in 0..limits.dof() {
                 let [_, first, second] = self.path.joint_at(piece, from, j);
                 let third = 6.0 * self.path.powers(piece)[3][j];
                 let derivatives = [
@@ -170,30 +164,30 @@ impl Smoothed<'_> {
                     second * rate * rate + first * acceleration,
                     third * rate.powi(3) + 3.0 * second * rate * acceleration + first * change,
                 ];
-                largest = largest.max(scale(derivatives, [limits.velocity[j], limits.acceleration[j], jerk[j]]));
+                largest = largest.max(limits.joint_slowdown(j, derivatives));
             }
         }
         Ok(largest)
     }
 
     /// Returns the motion as quintics, as fast as their exact extremes allow.
-    fn trajectory(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<Trajectory> {
-        let expected = self.stretch(limits, jerk)?;
+    fn trajectory(&self, limits: &ConstantLimits) -> Result<Trajectory> {
+        let expected = self.stretch(limits)?;
         let mut knots = self.knots();
         for _ in 0..HALVINGS {
-            let (played, stretch) = self.interpolated(&knots, limits, jerk)?;
+            let (played, stretch) = self.interpolated(&knots, limits)?;
             if stretch <= FAITHFUL * expected {
-                return played.slowed(stretch * (1.0 + MARGIN));
+                return played.slowed(stretch * (1.0 + ROUNDING));
             }
             knots = with_midpoints(&knots);
         }
-        let (played, stretch) = self.interpolated(&knots, limits, jerk)?;
-        played.slowed(stretch * (1.0 + MARGIN))
+        let (played, stretch) = self.interpolated(&knots, limits)?;
+        played.slowed(stretch * (1.0 + ROUNDING))
     }
 
     /// Returns the quintics between `knots`, and the factor by which they must be slowed down.
-    fn interpolated(&self, knots: &[f64], limits: &TimingLimits, jerk: &[f64]) -> Result<(Trajectory, f64)> {
-        let n = jerk.len();
+    fn interpolated(&self, knots: &[f64], limits: &ConstantLimits) -> Result<(Trajectory, f64)> {
+        let n = limits.dof();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity(knots.len() * n));
         for (i, t) in knots.iter().enumerate() {
             checkpoint_at(i)?;
@@ -207,11 +201,7 @@ impl Smoothed<'_> {
             }
         }
         let played = Trajectory::from_samples(self.path.joints().to_vec(), knots, &q, Some(&qd), Some(&qdd))?;
-        let extremes = [played.max_velocity(), played.max_acceleration(), played.max_jerk()];
-        let of_joint = |j: usize| {
-            scale(extremes.each_ref().map(|of| of[j]), [limits.velocity[j], limits.acceleration[j], jerk[j]])
-        };
-        let stretch = (0..n).map(of_joint).fold(0.0, f64::max);
+        let stretch = limits.slowdown(&played);
         Ok((played, stretch))
     }
 }
@@ -220,11 +210,4 @@ fn with_midpoints(knots: &[f64]) -> Vec<f64> {
     let mut finer: Vec<f64> = knots.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).collect();
     finer.extend(knots.last());
     finer
-}
-
-/// Factor by which a motion with these derivatives must be slowed down to keep their limits: the k-th derivative scales
-/// with the k-th power of time.
-fn scale([velocity, acceleration, jerk]: [f64; 3], [v, a, j]: [f64; 3]) -> f64 {
-    let ratio = |value: f64, limit: f64| if value == 0.0 { 0.0 } else { value.abs() / limit };
-    ratio(velocity, v).max(ratio(acceleration, a).sqrt()).max(ratio(jerk, j).cbrt())
 }

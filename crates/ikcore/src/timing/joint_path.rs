@@ -12,7 +12,7 @@ pub(super) const POWERS: usize = 4;
 /// Largest difference of a derivative on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;
 
-/// Slope, relative to the largest of the path, below which it counts as zero: rounding error.
+/// Largest slope that counts as zero, relative to the largest of the path: rounding error.
 const VANISHING: f64 = 1e-12;
 
 /// A continuous path of all joints: piecewise cubics q(s) in the path parameter s.
@@ -30,7 +30,7 @@ pub struct JointPath {
     coefficients: Vec<f64>,
 }
 
-/// Stored paths are checked again.
+/// Checks stored paths again.
 impl TryFrom<(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)> for JointPath {
     type Error = Error;
 
@@ -134,7 +134,7 @@ impl JointPath {
     }
 
     /// The piece at an end of the path, and the parameter of the end within it.
-    fn place_of(&self, end: PathEnd) -> (usize, f64) {
+    fn located_end(&self, end: PathEnd) -> (usize, f64) {
         match end {
             PathEnd::Start => (0, 0.0),
             PathEnd::End => (self.pieces() - 1, self.length(self.pieces() - 1)),
@@ -143,13 +143,13 @@ impl JointPath {
 
     /// Euclidean norm of dq/ds at an end of the path.
     pub(super) fn slope(&self, end: PathEnd) -> f64 {
-        let (piece, from) = self.place_of(end);
+        let (piece, from) = self.located_end(end);
         (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
     }
 
     /// Whether dq/ds vanishes at an end of the path, e.g. for a clamped spline.
     pub(super) fn has_no_direction(&self, end: PathEnd) -> bool {
-        let (piece, _) = self.place_of(end);
+        let (piece, _) = self.located_end(end);
         let chord = (0..self.joints.len())
             .map(|joint| self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0])
             .fold(0.0, |sum: f64, d| sum + d * d)

@@ -1,23 +1,18 @@
-//! The quickest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
+//! The fastest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
 
-use super::motion_limits::MotionLimits;
-use super::within_limits::within_limits;
+use super::constant_limits::ConstantLimits;
+use super::polyline::JointPolyline;
+use super::quintic::quintic;
+use super::time_scaling::{CAUTION, within_limits};
 use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
-use crate::trajectory::{Coefficients, Trajectory, polynomial};
+use crate::math::vector::point_between;
+use crate::trajectory::{Trajectory, polynomial};
 
-/// Largest speed of a quintic from rest to rest, relative to displacement / duration.
-const QUINTIC_SPEED: f64 = 15.0 / 8.0;
-/// Largest acceleration of that quintic, relative to displacement / duration^2: 10 / sqrt(3).
-const QUINTIC_ACCELERATION: f64 = 5.773_502_691_896_258;
-/// Largest jerk of that quintic, relative to displacement / duration^3.
-const QUINTIC_JERK: f64 = 60.0;
 /// Largest acceleration of a blend, relative to change of velocity / duration.
 const BLEND_ACCELERATION: f64 = 1.5;
 /// Largest jerk of a blend, relative to change of velocity / duration^2.
 const BLEND_JERK: f64 = 6.0;
-/// Durations exceed the exact ones by this factor, so that rounding violates no limit.
-const CAUTION: f64 = 1.0 + 1e-12;
 
 /// Fraction by which a blend may be shorter than needed.
 const TOO_SHORT: f64 = 1e-9;
@@ -25,35 +20,7 @@ const TOO_SHORT: f64 = 1e-9;
 /// Maximum number of rounds in which blends and velocities are adjusted to each other.
 const ROUNDS: usize = 200;
 
-impl MotionLimits {
-    /// The shortest time (s) in which a quintic from rest to rest covers these displacements (rad, m).
-    pub(crate) fn quintic_duration(&self, displacement: impl Iterator<Item = f64>) -> f64 {
-        let of_joint = |(j, displacement): (usize, f64)| {
-            let size = displacement.abs();
-            if size == 0.0 {
-                return 0.0;
-            }
-            (QUINTIC_SPEED * size / self.velocity[j])
-                .max((QUINTIC_ACCELERATION * size / self.acceleration[j]).sqrt())
-                .max((QUINTIC_JERK * size / self.jerk[j]).cbrt())
-        };
-        displacement.enumerate().map(of_joint).fold(0.0, f64::max)
-    }
-
-    /// Returns how far a quintic can move joint `j` (rad, m) in `duration` (s).
-    pub(crate) fn quintic_reach(&self, j: usize, duration: f64) -> f64 {
-        let by_speed = self.velocity[j] * duration / QUINTIC_SPEED;
-        by_speed
-            .min(self.acceleration[j] * duration * duration / QUINTIC_ACCELERATION)
-            .min(self.jerk[j] * duration.powi(3) / QUINTIC_JERK)
-    }
-}
-
-/// Points (n each) joined by straight lines in joint space; consecutive points differ.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct JointPolyline(pub Vec<Vec<f64>>);
-
-/// How long a motion with blends takes on the lines, were there no blends, and in the blends (s).
+/// Durations of a motion with blends (s): of the lines as if there were no blends, and of the blends.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BlendTimes {
     lines: Vec<f64>,
@@ -68,8 +35,17 @@ impl BlendTimes {
 }
 
 impl JointPolyline {
+    /// Returns the faster of the motions with stops and with blends.
+    pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
+        let stopping = self.with_stops(limits)?;
+        match self.with_blends(limits, fractions).transpose()? {
+            Some(blended) if blended.duration() < stopping.duration() => Ok(blended),
+            _ => Ok(stopping),
+        }
+    }
+
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
-    pub(crate) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
+    pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         if limits.limit_jerk() {
             return self.with_stops_and_jerk(limits);
         }
@@ -86,7 +62,7 @@ impl JointPolyline {
     }
 
     /// Moves from rest to rest along each line as fast as the limits up to jerk allow.
-    fn with_stops_and_jerk(&self, limits: &MotionLimits) -> Result<Trajectory> {
+    fn with_stops_and_jerk(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         for line in self.0.windows(2) {
             let begin = knots[knots.len() - 1];
@@ -103,16 +79,16 @@ impl JointPolyline {
             }
         }
         let motion = Trajectory::from_phases(limits.joint_names(), knots, coefficients)?;
-        within_limits(motion, [&limits.velocity, &limits.acceleration, &limits.jerk])
+        within_limits(motion, limits)
     }
 
-    /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
+    /// Moves at constant velocity along the lines, with smooth blends at the points. `fractions[i]` in (0, 1] is the
     /// fraction of the shorter adjacent line that the blend of point i may take. `None` if a joint has no velocity
     /// limit.
     ///
     /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
-    pub(crate) fn with_blends(&self, limits: &MotionLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
+    pub(crate) fn with_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
         let times = self.blend_times(limits, fractions)?;
         let motion = self.blended(limits, &times);
         // A blend that is just too short exceeds a jerk limit by twice as much.
@@ -121,7 +97,7 @@ impl JointPolyline {
     }
 
     /// The times of the motion with blends.
-    pub(crate) fn blend_times(&self, limits: &MotionLimits, fractions: &[f64]) -> Option<BlendTimes> {
+    pub(crate) fn blend_times(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<BlendTimes> {
         let mut lines: Vec<f64> = self.0.windows(2).map(|line| line_duration(line, limits)).collect();
         if lines.iter().any(|duration| !duration.is_finite() || *duration <= 0.0) {
             return None;
@@ -156,14 +132,14 @@ impl JointPolyline {
         None
     }
 
-    /// Where the blend of inner point `i` begins and ends, if it takes this fraction of the shorter adjacent line.
-    pub(crate) fn blend_ends(&self, limits: &MotionLimits, i: usize, fraction: f64) -> [Vec<f64>; 2] {
+    /// Ends of the blend of inner point `i` if it takes this fraction of the shorter adjacent line.
+    pub(crate) fn blend_ends(&self, limits: &ConstantLimits, i: usize, fraction: f64) -> [Vec<f64>; 2] {
         let lines = [[i, i - 1], [i, i + 1]].map(|[corner, other]| [&self.0[corner], &self.0[other]]);
         let durations = [line_duration(&self.0[i - 1..=i], limits), line_duration(&self.0[i..=i + 1], limits)];
         let blend = fraction * durations[0].min(durations[1]);
         std::array::from_fn(|side| {
             let ([corner, other], part) = (lines[side], 0.5 * blend / durations[side]);
-            corner.iter().zip(other).map(|(corner, other)| corner + part * (other - corner)).collect()
+            point_between(corner, other, part).collect()
         })
     }
 
@@ -172,7 +148,7 @@ impl JointPolyline {
         line.map_or(0.0, |line| (self.0[line + 1][j] - self.0[line][j]) / durations[line])
     }
 
-    fn blended(&self, limits: &MotionLimits, BlendTimes { lines, blends }: &BlendTimes) -> Result<Trajectory> {
+    fn blended(&self, limits: &ConstantLimits, BlendTimes { lines, blends }: &BlendTimes) -> Result<Trajectory> {
         let n = limits.dof();
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;
@@ -202,7 +178,7 @@ impl JointPolyline {
 }
 
 /// The shortest time (s) for a line at constant velocity.
-fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
+fn line_duration(line: &[Vec<f64>], limits: &ConstantLimits) -> f64 {
     let of_joint = |j: usize| {
         let size = (line[1][j] - line[0][j]).abs();
         if size == 0.0 { 0.0 } else { size / limits.velocity[j] }
@@ -216,7 +192,7 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
 }
 
 /// The fastest motion from 0 to 1 along a line, as a fraction of it.
-fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
+fn line_profile(line: &[Vec<f64>], limits: &ConstantLimits) -> JointProfile {
     let fraction = |all: &[f64]| {
         let of_joint = |j: usize| {
             let size = (line[1][j] - line[0][j]).abs();
@@ -233,27 +209,21 @@ fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> JointProfile {
     transfer.motion(transfer.duration(0.0))
 }
 
-/// The quintic from rest to rest over `displacement` in `h` (s).
-fn quintic(start: f64, displacement: f64, h: f64) -> Coefficients {
-    let over = |power: i32| displacement / h.powi(power);
-    polynomial([start, 0.0, 0.0, 10.0 * over(3), -15.0 * over(4), 6.0 * over(5)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::limits::{Field, Limits, Profile};
     use crate::robot::Robot;
 
-    fn limits(velocity: f64, acceleration: f64) -> MotionLimits {
+    fn limits(velocity: f64, acceleration: f64) -> ConstantLimits {
         let robot = Robot::planar(&[1.0, 1.0]).unwrap();
         let all = |value: f64| vec![Profile::Constant(value)];
         let limits = Limits::of(&robot).replace(Field::Velocity, all(velocity)).unwrap();
         let limits = limits.replace(Field::Acceleration, all(acceleration)).unwrap();
-        MotionLimits::new(&robot, Some(&limits), "this test").unwrap()
+        ConstantLimits::for_robot(&robot, Some(&limits), "this test").unwrap()
     }
 
-    impl MotionLimits {
+    impl ConstantLimits {
         fn with_jerk(mut self, jerk: f64) -> Self {
             self.jerk = vec![jerk; self.dof()];
             self

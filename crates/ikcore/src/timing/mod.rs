@@ -1,11 +1,10 @@
-//! The fastest timing of a joint path, and the constant limits that all timings keep.
+//! The fastest timing of a joint path, and the constant limits of all timings.
 //!
 //! | file | what |
 //! |---|---|
 //! | `time_optimal` | [`time_optimal()`]: the fastest timing of a path, and its options |
 //! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
-//! | `timing_limits` | [`TimingLimits`] |
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
@@ -14,36 +13,35 @@
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
 //! | `jerk` | smoothing that keeps jerk limits |
-//! | `line_timing` | the quickest smooth timing of straight lines |
-//! | `time_scaling` | a whole motion, faster or slower by one factor |
-//! | `within_limits` | motions of short phases, slowed to their limits |
-//! | `motion_limits`, `violation` | constant limits of each joint, and their violations by a trajectory |
+//! | `line_timing` | the fastest smooth timing of straight lines |
+//! | `quintic` | the quintic from rest to rest |
+//! | `time_scaling` | scaling of a whole motion in time, to its limits |
+//! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
 
 mod compose;
+mod constant_limits;
 mod derivatives;
 mod grid;
 mod jerk;
 mod joint_path;
 mod line_timing;
-mod motion_limits;
 mod polyline;
+mod quintic;
 mod reachability;
 mod refine;
 mod spline;
 mod strips;
 mod time_optimal;
 mod time_scaling;
-mod timing_limits;
 mod velocity_curve;
 mod violation;
-mod within_limits;
 
 pub use crate::math::cubic_spline::SplineEnds;
+pub use constant_limits::ConstantLimits;
 pub use joint_path::JointPath;
-pub(crate) use line_timing::JointPolyline;
-pub(crate) use motion_limits::MotionLimits;
+pub(crate) use polyline::JointPolyline;
+pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};
 pub(crate) use time_optimal::{coarse_duration, time_all};
 pub(crate) use time_scaling::scaled;
-pub use timing_limits::TimingLimits;
 pub use violation::Violation;

@@ -1,12 +1,16 @@
-//! Straight lines between waypoints, with corners rounded by parabolas.
+//! Straight lines in joint space, and paths along them with corners rounded by parabolas.
 
 use super::joint_path::{JointPath, waypoint_rows};
 use crate::error::{Error, Result};
-use crate::math::vector::squared_distance;
+use crate::math::vector::{distance, squared_distance};
 
 /// Distance below which two waypoints count as one, and a line between two blends as none, relative to the extent of the
 /// waypoints: the time for it would be lost to rounding.
-const NEGLIGIBLE: f64 = 1e-12;
+const NEGLIGIBLE_LENGTH: f64 = 1e-12;
+
+/// Points (n each) joined by straight lines in joint space; consecutive points differ.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct JointPolyline(pub Vec<Vec<f64>>);
 
 impl JointPath {
     /// Straight lines through `waypoints` (rad or m, one row of all joints per point). Each corner is replaced by a
@@ -23,13 +27,34 @@ impl JointPath {
             return Err(Error::out_of_range("blend", "zero or more and finite", blend));
         }
         let rows: Vec<&[f64]> = waypoints.chunks_exact(joints.len()).collect();
-        let negligible = NEGLIGIBLE * extent(&rows);
-        let corners = distinct(&rows, negligible);
-        if corners.len() < 2 {
+        let negligible = NEGLIGIBLE_LENGTH * extent(&rows);
+        let corners = JointPolyline::through(&rows, negligible);
+        if corners.0.len() < 2 {
             let problem = "all waypoints are the same: give at least two that differ".into();
             return Err(Error::InvalidPath { problem });
         }
-        let legs: Vec<Leg> = corners.windows(2).map(|ends| Leg::new(ends[0], ends[1])).collect();
+        Ok(corners.rounded(joints, blend, negligible))
+    }
+}
+
+impl JointPolyline {
+    /// Lines through the rows farther than `negligible` from the one kept before; the first and the last row stay.
+    fn through(rows: &[&[f64]], negligible: f64) -> Self {
+        let mut kept = vec![rows[0].to_vec()];
+        for row in &rows[1..] {
+            if distance(row, &kept[kept.len() - 1]) > negligible {
+                kept.push(row.to_vec());
+            }
+        }
+        if let [_, .., last] = &mut kept[..] {
+            last.copy_from_slice(rows[rows.len() - 1]);
+        }
+        Self(kept)
+    }
+
+    /// The path along these lines, each corner replaced by a parabola from `blend` before it to `blend` after it.
+    fn rounded(&self, joints: Vec<String>, blend: f64, negligible: f64) -> JointPath {
+        let legs: Vec<Leg> = self.0.windows(2).map(|ends| Leg::new(&ends[0], &ends[1])).collect();
         let mut pieces = Pieces { breaks: vec![0.0], lengths: Vec::new(), coefficients: Vec::new() };
         let mut cut_before = 0.0;
         for (i, leg) in legs.iter().enumerate() {
@@ -46,29 +71,13 @@ impl JointPath {
             }
             cut_before = cut;
         }
-        Ok(Self::from_parts(joints, pieces.breaks, pieces.lengths, pieces.coefficients))
+        JointPath::from_parts(joints, pieces.breaks, pieces.lengths, pieces.coefficients)
     }
 }
 
 /// The largest distance of a row from the first.
 fn extent(rows: &[&[f64]]) -> f64 {
     rows.iter().map(|row| squared_distance(row, rows[0])).fold(0.0, f64::max).sqrt()
-}
-
-/// The rows farther than `negligible` from the one kept before; the first and the last stay where they are.
-fn distinct<'a>(rows: &[&'a [f64]], negligible: f64) -> Vec<&'a [f64]> {
-    let far = |one: &[f64], other: &[f64]| squared_distance(one, other).sqrt() > negligible;
-    let mut kept = vec![rows[0]];
-    for row in &rows[1..] {
-        if far(row, kept[kept.len() - 1]) {
-            kept.push(row);
-        }
-    }
-    if kept.len() > 1 {
-        kept.pop();
-        kept.push(rows[rows.len() - 1]);
-    }
-    kept
 }
 
 /// One straight line.
@@ -80,9 +89,9 @@ struct Leg {
 
 impl Leg {
     fn new(start: &[f64], end: &[f64]) -> Self {
-        let difference: Vec<f64> = end.iter().zip(start).map(|(end, start)| end - start).collect();
-        let length = difference.iter().map(|d| d * d).sum::<f64>().sqrt();
-        Self { start: start.to_vec(), direction: difference.iter().map(|d| d / length).collect(), length }
+        let length = distance(end, start);
+        let direction = end.iter().zip(start).map(|(end, start)| (end - start) / length).collect();
+        Self { start: start.to_vec(), direction, length }
     }
 
     fn at(&self, distance: f64) -> impl Iterator<Item = f64> + '_ {

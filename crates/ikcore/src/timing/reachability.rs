@@ -5,11 +5,11 @@
 //! method on the width of the interval that the strips leave for u, which is concave and piecewise linear in x: it
 //! converges from outside in a few steps, exactly.
 
+use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
-use super::timing_limits::TimingLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};
@@ -31,7 +31,7 @@ impl SpeedProfile {
     /// [`Error::Infeasible`] if the speeds at the ends are not possible.
     pub(super) fn fastest(
         path: &JointPath,
-        limits: &TimingLimits,
+        limits: &ConstantLimits,
         segments: Vec<Segment>,
         [start, end]: [Range; 2],
     ) -> Result<Self> {
@@ -59,7 +59,7 @@ impl SpeedProfile {
 
 struct Pass<'a> {
     path: &'a JointPath,
-    limits: &'a TimingLimits,
+    limits: &'a ConstantLimits,
     segments: &'a [Segment],
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
@@ -86,7 +86,7 @@ impl Pass<'_> {
             checkpoint_at(i)?;
             let segment = self.enter(i);
             let [lowest, highest] = sets[i + 1];
-            let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(highest);
+            let launch = LAUNCH_FRACTION * (2.0 * segment.length * self.strips.launch).min(highest);
             sets[i + 1][0] = lowest.max(launch);
             let next = Coupling::new(sets[i + 1], segment.length);
             let highest = sets[i][1].min(self.strips.largest_x);
@@ -134,7 +134,7 @@ impl Pass<'_> {
             let crossing = (upper.offset - lower.offset) / (upper.slope - lower.slope);
             let inward = if from > 0.0 { crossing < x } else { crossing > x };
             if !inward || crossing < 0.0 {
-                let narrow = lower.at(x) - upper.at(x) <= ROUNDING * (lower.offset.abs() + upper.offset.abs());
+                let narrow = lower.at(x) - upper.at(x) <= PARALLEL * (lower.offset.abs() + upper.offset.abs());
                 return narrow.then_some(x);
             }
             x = crossing;
@@ -144,10 +144,10 @@ impl Pass<'_> {
 
 /// The motion could never leave two consecutive grid points at rest. So each point is passed with at least this
 /// fraction of the x that a launch from the previous one would give, which is negligible on a fine grid.
-const LAUNCH_SHARE: f64 = 0.1;
+const LAUNCH_FRACTION: f64 = 0.1;
 
 /// Relative tolerance for intersecting lines.
-const ROUNDING: f64 = 1e-12;
+const PARALLEL: f64 = 1e-12;
 
 /// The constraint that x at the next grid point, x + 2 u length, is in its set.
 struct Coupling {

@@ -4,8 +4,8 @@
 //! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
 //! convex.
 
+use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
-use super::timing_limits::TimingLimits;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ pub(super) struct Strips {
 
 /// A coefficient of u below this fraction of the largest counts as zero: its line would be so steep that it is mostly
 /// rounding, and it hardly bounds u.
-const NEGLIGIBLE: f64 = 1e-9;
+const NEGLIGIBLE_SLOPE: f64 = 1e-9;
 
 impl Strips {
     pub(super) fn new(joints: usize) -> Self {
@@ -50,7 +50,7 @@ impl Strips {
     ///
     /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
     /// its three Bernstein coefficients bound it at every point, not only at grid points.
-    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
+    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &ConstantLimits) {
         let n = limits.acceleration.len();
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
@@ -65,7 +65,7 @@ impl Strips {
         for (of_end, slopes) in offsets.chunks_exact_mut(n).zip(slopes.chunks_exact_mut(n)) {
             for ((offset, slope), c) in of_end.iter_mut().zip(slopes).zip(&limits.acceleration) {
                 let (a, b) = (*offset, *slope);
-                if a.abs() <= NEGLIGIBLE * largest {
+                if a.abs() <= NEGLIGIBLE_SLOPE * largest {
                     self.largest_x = self.largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
                     (*offset, *slope) = (f64::INFINITY, 0.0);
                 } else {

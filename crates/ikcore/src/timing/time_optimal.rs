@@ -1,13 +1,13 @@
 //! The call `time_optimal`: grid, speed profile, trajectory.
 
 use super::compose::compose;
+use super::constant_limits::ConstantLimits;
 use super::grid::{check_gridpoints, cut};
 use super::jerk::smooth;
 use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
-use super::timing_limits::TimingLimits;
-use super::within_limits::within_limits;
+use super::time_scaling::within_limits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
@@ -34,7 +34,7 @@ const SEGMENTS_TO_SMOOTH: usize = 300;
 /// # Errors
 /// [`Error::Infeasible`] for a path that leaves the position limits, a joint that must move but may not, or speeds at the
 /// ends that are too high; [`Error::OutOfRange`] for the options.
-pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+pub fn time_optimal(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     limits.require_for(path)?;
     time(path, limits, options)
 }
@@ -43,7 +43,7 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
 ///
 /// # Errors
 /// As [`time_optimal`], except for position limits.
-pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
     let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
@@ -52,28 +52,27 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
             check_gridpoints(gridpoints)?;
             fastest(cut(path, gridpoints - 1))?
         }
-        None if limits.jerk.is_some() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
+        None if limits.limit_jerk() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
         None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
     };
-    match &limits.jerk {
-        None => within_limits(compose(path, &profile)?, [&limits.velocity, &limits.acceleration, &[]]),
-        Some(_) if options.start_speed != 0.0 || options.end_speed != 0.0 => {
-            let problem =
-                "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
-            Err(Error::Infeasible { problem })
-        }
-        Some(jerk) => smooth(path, &profile, limits, jerk),
+    if !limits.limit_jerk() {
+        return within_limits(compose(path, &profile)?, limits);
     }
+    if options.start_speed != 0.0 || options.end_speed != 0.0 {
+        let problem = "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
+        return Err(Error::Infeasible { problem });
+    }
+    smooth(path, &profile, limits)
 }
 
 /// The fastest motion along `paths`, each from rest to rest, one after the other.
 ///
 /// # Errors
 /// As [`time`]; [`Error::InvalidPath`] without a path.
-pub(crate) fn time_all(paths: &[JointPath], limits: &TimingLimits) -> Result<Trajectory> {
+pub(crate) fn time_all(paths: &[JointPath], limits: &ConstantLimits) -> Result<Trajectory> {
     let none = || Error::InvalidPath { problem: "it has no points".into() };
     let rest_to_rest = TimingOptions::default();
-    if limits.jerk.is_none() {
+    if !limits.limit_jerk() {
         return time(&JointPath::joined(paths.iter().cloned()).ok_or_else(none)?, limits, &rest_to_rest);
     }
     let mut motions = paths.iter().map(|path| time(path, limits, &rest_to_rest));
@@ -86,7 +85,7 @@ pub(crate) fn time_all(paths: &[JointPath], limits: &TimingLimits) -> Result<Tra
 ///
 /// # Errors
 /// None in practice: a motion from rest to rest always exists.
-pub(crate) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
+pub(crate) fn coarse_duration(path: &JointPath, limits: &ConstantLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
     SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
 }

@@ -1,37 +1,74 @@
-//! A whole motion, faster or slower by one factor.
+//! Scaling of a whole motion in time, by one factor.
 
-use super::motion_limits::MotionLimits;
-use super::within_limits::within_limits;
+use super::constant_limits::ConstantLimits;
 use crate::error::{Error, Result};
+use crate::limits::ROUNDING;
 use crate::message::{Setting, message};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
-/// Slower than necessary by this factor, so that rounding violates no limit.
-const CAUTION: f64 = 1.0 + 1e-12;
+/// Durations exceed the exact ones by this factor, so that rounding violates no limit.
+pub(super) const CAUTION: f64 = 1.0 + 1e-12;
 
 /// Jumps of an acceleration at a knot that count as rounding, relative to the largest acceleration of the joint.
-const ROUNDING: f64 = 1e-6;
+const JUMP_ROUNDING: f64 = 1e-6;
 
-/// The motion, faster or slower by one factor, as fast as the limits on velocity, acceleration and jerk allow.
-pub(crate) fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Trajectory> {
+/// Longest segment, as a fraction of the duration, that the rounding of times may take beyond its limits.
+const SHORT: f64 = 1e-6;
+
+/// Maximum number of times that a motion is slowed, because slower times are rounded anew.
+const SLOWINGS: usize = 20;
+
+impl ConstantLimits {
+    /// Factor by which `motion` must be slowed down to keep its velocity, acceleration and jerk limits; below 1 it can
+    /// be faster.
+    pub(super) fn slowdown(&self, motion: &Trajectory) -> f64 {
+        let extremes = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
+        let of_joint = |j: usize| self.joint_slowdown(j, extremes.each_ref().map(|of| of[j]));
+        (0..self.dof()).map(of_joint).fold(0.0, f64::max)
+    }
+
+    /// Slowdown factor of one joint with these velocity, acceleration and jerk: the k-th derivative scales with the
+    /// k-th power of time. A joint that may not move does not.
+    pub(super) fn joint_slowdown(&self, joint: usize, [velocity, acceleration, jerk]: [f64; 3]) -> f64 {
+        let ratio = |value: f64, limit: f64| if limit > 0.0 { value.abs() / limit } else { 0.0 };
+        ratio(velocity, self.velocity[joint])
+            .max(ratio(acceleration, self.acceleration[joint]).sqrt())
+            .max(ratio(jerk, self.jerk[joint]).cbrt())
+    }
+}
+
+/// Returns the motion, faster or slower by one factor, as fast as the limits on velocity, acceleration and jerk allow.
+pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
     if limits.limit_jerk() {
         refuse_jumps(motion, limits)?;
     }
-    let largest = |reached: Vec<f64>, limits: &[f64]| {
-        reached.iter().zip(limits).map(|(reached, limit)| reached / limit).fold(0.0, f64::max)
-    };
-    let factor = largest(motion.max_velocity(), &limits.velocity)
-        .max(largest(motion.max_acceleration(), &limits.acceleration).sqrt())
-        .max(largest(motion.max_jerk(), &limits.jerk).cbrt());
+    let factor = limits.slowdown(motion);
     if factor == 0.0 {
         return Err(Error::no_pace(limits.joint_name(0)));
     }
-    within_limits(motion.slowed(factor * CAUTION)?, [&limits.velocity, &limits.acceleration, &limits.jerk])
+    within_limits(motion.slowed(factor * CAUTION)?, limits)
+}
+
+/// Slows a motion from rest to rest where the rounding of its times makes it exceed the limits on velocity, acceleration
+/// and jerk of its joints.
+pub(super) fn within_limits(mut motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+    let shortest = motion.knots().windows(2).map(|ends| ends[1] - ends[0]).fold(f64::INFINITY, f64::min);
+    if shortest > SHORT * motion.duration() {
+        return Ok(motion);
+    }
+    for _ in 0..SLOWINGS {
+        let factor = limits.slowdown(&motion);
+        if factor <= 1.0 + ROUNDING {
+            break;
+        }
+        motion = motion.slowed(factor)?;
+    }
+    Ok(motion)
 }
 
 /// Checks that the acceleration does not jump, neither at a knot nor from or to rest.
-fn refuse_jumps(motion: &Trajectory, limits: &MotionLimits) -> Result<()> {
+fn refuse_jumps(motion: &Trajectory, limits: &ConstantLimits) -> Result<()> {
     let (n, largest, steepest) = (limits.dof(), motion.max_acceleration(), motion.max_jerk());
     let [mut before, mut after, mut at_end] = [(); 3].map(|()| vec![0.0; n]);
     for (i, &t) in motion.knots().iter().enumerate() {
@@ -40,7 +77,7 @@ fn refuse_jumps(motion: &Trajectory, limits: &MotionLimits) -> Result<()> {
             motion.end_accelerations(i, &mut after, &mut at_end);
         }
         // The end of a short segment late in a motion is rounded with its time.
-        let rounding = |j: usize| ROUNDING * largest[j] + 4.0 * f64::EPSILON * t * steepest[j];
+        let rounding = |j: usize| JUMP_ROUNDING * largest[j] + 4.0 * f64::EPSILON * t * steepest[j];
         let jump = |j: &usize| (after[*j] - before[*j]).abs() > rounding(*j).max(f64::MIN_POSITIVE);
         let limited = (0..n).filter(|j| limits.jerk[*j].is_finite());
         if let Some(j) = limited.filter(|j| largest[*j] > 0.0).find(jump) {

@@ -1,9 +1,9 @@
 //! The maximum velocity curve: the path speed that the velocity limits allow.
 
+use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use super::timing_limits::TimingLimits;
 use crate::math::polynomial::quadratic_roots;
 
 /// Represents no bound; finite, to leave room for arithmetic.
@@ -17,7 +17,7 @@ const LARGEST_GROWTH: f64 = 4.0;
 /// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
 pub(super) fn maximum_velocity_curve(
     path: &JointPath,
-    limits: &TimingLimits,
+    limits: &ConstantLimits,
     segments: &[Segment],
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
@@ -39,7 +39,7 @@ pub(super) fn maximum_velocity_curve(
 /// Returns the minimum over the joints of (v / q')^2; zero at corners.
 fn at_grid_points(
     path: &JointPath,
-    limits: &TimingLimits,
+    limits: &ConstantLimits,
     segments: &[Segment],
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
@@ -78,7 +78,7 @@ fn growth(bound: f64) -> f64 {
 
 /// Returns the factor by which the chord x(s) from `left` to `right` must be lowered to keep the velocity limits
 /// between grid points.
-fn chord_factor(derivatives: &PathDerivatives, limits: &TimingLimits, left: f64, right: f64) -> f64 {
+fn chord_factor(derivatives: &PathDerivatives, limits: &ConstantLimits, left: f64, right: f64) -> f64 {
     let m = (0.5 * (left + right)).sqrt();
     if m == 0.0 || m >= UNLIMITED.sqrt() {
         return 1.0;

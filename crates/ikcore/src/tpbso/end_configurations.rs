@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
+use crate::math::vector::largest_difference;
 use crate::plan::{ELBOW_LINKS, Elbow, Endpoint, PlanarArm, PlanarTarget};
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// The configurations of one end.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub(super) enum EndConfigurations {
         arm: PlanarArm,
         /// The target of its tip.
         place: PlanarTarget,
-        /// Its elbow.
+        /// Elbow of the arm.
         elbow: Elbow,
     },
     /// Any arm: one of these configurations, found by inverse kinematics and ordered so that similar ones are
@@ -49,7 +50,7 @@ impl EndConfigurations {
         what: &str,
         end: &Endpoint,
         robot: &Robot,
-        limits: &MotionLimits,
+        limits: &ConstantLimits,
         elbow: Elbow,
         seed: u64,
         monitor: &mut dyn Monitor,
@@ -141,7 +142,7 @@ fn solutions(
         };
         let solution = solve_query(&context, &query, monitor);
         if solution.status == Status::Solved {
-            if found.iter().all(|other| distance(other, &solution.q) > DISTINCT) {
+            if found.iter().all(|other| largest_difference(other, &solution.q) > DISTINCT) {
                 found.push(solution.q.to_vec());
             }
         } else if nearest.is_none() {
@@ -164,16 +165,12 @@ fn solutions(
 fn chained(mut rest: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut chain: Vec<Vec<f64>> = rest.pop().into_iter().collect();
     while let Some(last) = chain.last() {
-        let next = (0..rest.len()).min_by(|i, j| distance(last, &rest[*i]).total_cmp(&distance(last, &rest[*j])));
+        let next = (0..rest.len())
+            .min_by(|i, j| largest_difference(last, &rest[*i]).total_cmp(&largest_difference(last, &rest[*j])));
         match next {
             Some(next) => chain.push(rest.swap_remove(next)),
             None => break,
         }
     }
     chain
-}
-
-/// Largest joint difference (rad or m).
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

@@ -8,7 +8,7 @@ use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::plan::{Cost, Orientations};
 use crate::robot::Robot;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// The spline passes every second point; the others measure its accuracy.
@@ -28,21 +28,21 @@ const LONGEST_OVER_MIDDLE: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(super) struct PathCost<'a> {
     robot: &'a Robot,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     redundancy: Redundancy,
     spline: CubicSpline,
     cost: Cost,
     accuracy: f64,
     scale: f64,
     start: Option<&'a [f64]>,
-    motion: Motion,
+    motion: JointSplines,
     /// Second derivatives of the splines through x_phi.
     node_curvatures: Vec<f64>,
 }
 
 /// Splines of all joints over the path from 0 to 1: by joint, then by knot.
 #[derive(Debug, Clone)]
-struct Motion {
+struct JointSplines {
     values: Vec<f64>,
     curvatures: Vec<f64>,
 }
@@ -52,7 +52,7 @@ impl<'a> PathCost<'a> {
     /// of the points that the splines skip.
     pub(super) fn new(
         robot: &'a Robot,
-        limits: &'a MotionLimits,
+        limits: &'a ConstantLimits,
         redundancy: Redundancy,
         cost: Cost,
         accuracy: f64,
@@ -64,7 +64,7 @@ impl<'a> PathCost<'a> {
         let size = robot.dof() * spline.knots().len();
         Self {
             scale: cost.scale(robot, limits),
-            motion: Motion { values: vec![0.0; size], curvatures: vec![0.0; size] },
+            motion: JointSplines { values: vec![0.0; size], curvatures: vec![0.0; size] },
             node_curvatures: vec![0.0; NODES * redundancy.links()],
             robot,
             limits,

@@ -9,7 +9,7 @@ use crate::message::{Setting, message};
 use crate::plan::{AlongPathOptions, Plan, PlanarArm, Tpbso};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Plans along a path, for planar arms.
 pub(crate) fn along_path(
@@ -21,7 +21,7 @@ pub(crate) fn along_path(
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let arm = PlanarArm::of(robot).ok_or_else(|| not_planar(robot))?;
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
     let start = options.start_within(robot, &limits)?;

@@ -42,7 +42,7 @@ pub(super) struct Extremes {
 }
 
 impl RestSegment {
-    /// From rest at `start` to `via` in `t1` (s): eq. (3) with the coefficients of eq. (4).
+    /// The segment from rest at `start` to `via` in `t1` (s): eq. (3) with the coefficients of eq. (4).
     pub(super) fn leaving(start: f64, via: ViaPoint, t1: f64) -> Self {
         let a3 = (4.0 * via.position - via.velocity * t1 - 4.0 * start) / t1.powi(3);
         let a4 = (via.velocity * t1 - 3.0 * via.position + 3.0 * start) / t1.powi(4);
@@ -54,8 +54,8 @@ impl RestSegment {
         self.acceleration(self.duration)
     }
 
-    /// From `via`, passed with this `acceleration`, to rest at `end` in `t2` (s): eq. (5) and (6), with s as the time
-    /// to the end.
+    /// The segment from `via`, passed with this `acceleration`, to rest at `end` in `t2` (s): eq. (5) and (6), with s
+    /// as the time to the end.
     pub(super) fn arriving(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> Self {
         let [_, _, _, a3, a4, a5] = quintic(via, acceleration, end, t2);
         let c3 = -(a3 + 4.0 * a4 * t2 + 10.0 * a5 * t2 * t2);

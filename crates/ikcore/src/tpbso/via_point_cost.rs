@@ -9,7 +9,7 @@ use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Objective, Score};
 use crate::plan::Cost;
 use crate::robot::Robot;
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// Samples of each segment, at which the tip and collisions are evaluated.
@@ -25,7 +25,7 @@ const LONGEST: f64 = 4.0;
 #[derive(Debug, Clone)]
 pub(super) struct ViaPointCost<'a> {
     robot: &'a Robot,
-    limits: &'a MotionLimits,
+    limits: &'a ConstantLimits,
     start: EndConfigurations,
     end: EndConfigurations,
     cost: Cost,
@@ -50,7 +50,7 @@ impl<'a> ViaPointCost<'a> {
     /// The cost of motions of `robot` between these ends within `limits`, whose velocities are finite.
     pub(super) fn new(
         robot: &'a Robot,
-        limits: &'a MotionLimits,
+        limits: &'a ConstantLimits,
         [start, end]: [EndConfigurations; 2],
         cost: Cost,
         collisions: Option<&'a CollisionTest<'a>>,
@@ -209,7 +209,7 @@ mod tests {
         let all = |value: f64| vec![Profile::Constant(value)];
         let limits = Limits::of(&robot).replace(Field::Velocity, all(1.0)).unwrap();
         let limits = limits.replace(Field::Acceleration, all(2.0)).unwrap();
-        let limits = MotionLimits::new(&robot, Some(&limits), "this test").unwrap();
+        let limits = ConstantLimits::for_robot(&robot, Some(&limits), "this test").unwrap();
         for objective in [Cost::Time, Cost::JointTravel] {
             let ends = [vec![0.0, 0.0], vec![0.5, -0.4]].map(EndConfigurations::Fixed);
             let mut cost = ViaPointCost::new(&robot, &limits, ends, objective, None);

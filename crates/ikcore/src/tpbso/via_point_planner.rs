@@ -9,7 +9,7 @@ use crate::obstacle::{ClearSpace, ClearanceSweep};
 use crate::plan::{Elbow, Endpoint, Plan, PointToPointOptions, Tpbso, least_clearance, refuse_collision, too_near};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
-use crate::timing::MotionLimits;
+use crate::timing::ConstantLimits;
 
 /// Plans a motion from point to point.
 pub(crate) fn point_to_point(
@@ -20,7 +20,7 @@ pub(crate) fn point_to_point(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
-    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
     let collisions = space.map(|space| CollisionTest::new(space, robot));

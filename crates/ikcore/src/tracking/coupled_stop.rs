@@ -3,7 +3,7 @@
 
 use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
 use super::step_context::StepContext;
-use crate::math::vector::dot;
+use crate::math::vector::{dot, write_between};
 use crate::motion::{Braking, JointState};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
@@ -127,9 +127,7 @@ impl JointMotion for CoupledStop {
         let last = self.configurations.len() - 1;
         let before = (tick.max(0.0).floor() as usize).min(last);
         let (from, to) = (&self.configurations[before], &self.configurations[(before + 1).min(last)]);
-        for (q, (from, to)) in q.iter_mut().zip(from.iter().zip(to)) {
-            *q = from + tick.fract() * (to - from);
-        }
+        write_between(from, to, tick.fract(), q);
     }
 
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
@@ -140,7 +138,7 @@ impl JointMotion for CoupledStop {
     }
 
     fn middle(&self, from: f64, to: f64) -> Option<f64> {
-        super::stop_motion::middle(from, to, self.limited)
+        super::command_and_stop::middle(from, to, self.limited)
     }
 
     fn is_spline(&self) -> bool {

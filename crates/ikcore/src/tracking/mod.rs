@@ -12,13 +12,13 @@
 //! | file | what |
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
-//! | `approach_motion` | approach from rest onto a moving path, `TrackOptions::ease` |
+//! | `path_approach` | approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
 //! | `tracked_arm` | accepted configuration, clock, limits and targets |
-//! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `limited_state` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
-//! | `safety_filter`, `stop_motion`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | progress towards its target of an arm held by obstacles |
 //! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
 //! | `tip_paths`, `tip_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
@@ -29,15 +29,16 @@
 //! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
 
-mod approach_motion;
 mod around_arm;
+mod command_and_stop;
 mod commanded_motion;
 mod constrained_step;
 mod controller;
 mod coupled_stop;
 mod late_sensor;
-mod limited_motion;
+mod limited_state;
 mod model_free;
+mod path_approach;
 mod plant;
 mod progress;
 mod record;
@@ -47,7 +48,6 @@ mod safety_filter;
 mod session;
 mod step;
 mod step_context;
-mod stop_motion;
 mod target_filter;
 mod target_stream;
 mod tip_paths;

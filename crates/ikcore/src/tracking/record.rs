@@ -8,16 +8,13 @@ use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
 use crate::error::Result;
 use crate::kinematics::ReachShortfall;
-use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::limits::{Field, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::message::{Message, Setting, message};
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
-
-/// Tolerance for rounding of displacement differences, as a fraction of an acceleration or jerk limit.
-const ROUNDED: f64 = 1e-9;
 
 /// Tolerance for rounding of positions, in units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
@@ -240,8 +237,8 @@ impl Record {
         let change = step - last;
         let [acceleration, jerk] =
             [Field::Acceleration, Field::Jerk].map(|field| self.limits.smallest_over(field, j, tick));
-        let too_hard = change.abs() - (1.0 + ROUNDED) * acceleration * self.dt.powi(2);
-        let too_abrupt = (change - (last - before)).abs() - (1.0 + ROUNDED) * jerk * self.dt.powi(3);
+        let too_hard = change.abs() - (1.0 + ROUNDING) * acceleration * self.dt.powi(2);
+        let too_abrupt = (change - (last - before)).abs() - (1.0 + ROUNDING) * jerk * self.dt.powi(3);
         larger(too_hard, too_abrupt)
     }
 

@@ -17,7 +17,7 @@ use super::progress::{ArmProgress, Pace, is_nearer};
 use super::step_context::StepContext;
 use crate::error::Result;
 use crate::limits::Limits;
-use crate::math::vector::between;
+use crate::math::vector::write_within;
 use crate::objective::{Bounds, Point};
 use crate::obstacle::{ClearSpace, MOST_COMING, MOST_ROWS};
 use crate::task::Aims;
@@ -185,7 +185,7 @@ impl SafetyFilter {
         let mut parts = PARTS.into_iter().filter(|_| pace != Pace::Rest);
         let allowed = allowed
             || parts.any(|part| {
-                between(&brake, &best, part, q);
+                write_within(&brake, &best, part, q);
                 self.allows(context, nearer_than, q)
             });
         if !allowed {
@@ -210,7 +210,7 @@ impl SafetyFilter {
         self.move_beside_rows(context, (pace, blocked), [&rest, &brake], q);
         let best = q.clone();
         for part in [1.0].into_iter().chain(PARTS).filter(|_| pace != Pace::Rest) {
-            between(&brake, &best, part, q);
+            write_within(&brake, &best, part, q);
             if !(self.rows.hold(&context.request(Towards::Start), q) && self.finds_stop(context, q)) {
                 continue;
             }

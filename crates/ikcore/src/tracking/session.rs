@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
-use super::limited_motion::LimitedMotion;
+use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::safety_filter::{FilterWork, Kept, SafetyFilter};
@@ -14,7 +14,7 @@ use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::Limits;
-use crate::math::vector::between;
+use crate::math::vector::write_within;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
 use crate::problem::Problem;
@@ -339,7 +339,7 @@ impl Session {
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
         let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
-        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop);
+        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedState::time_to_stop);
         held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
     }
 
@@ -373,11 +373,11 @@ impl Session {
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
             let fraction = 0.5 * (kept + past);
-            between(&self.arm.q, &end, fraction, &mut found.q);
+            write_within(&self.arm.q, &end, fraction, &mut found.q);
             let inside = region.contains(&self.arm.robot.tip_position(&found.q));
             (kept, past) = if inside { (fraction, past) } else { (kept, fraction) };
         }
-        between(&self.arm.q, &end, kept, &mut found.q);
+        write_within(&self.arm.q, &end, kept, &mut found.q);
         found.assess(&self.arm.robot, &self.arm.aims());
         found.evaluations += BISECTIONS + 1;
         self.running.forget();

@@ -1,8 +1,8 @@
 //! Inputs of one tracking step.
 
+use super::command_and_stop::CommandAndStop;
 use super::constrained_step::{StepRequest, Towards};
-use super::limited_motion::LimitedMotion;
-use super::stop_motion::StopMotion;
+use super::limited_state::LimitedState;
 use crate::limits::{LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
@@ -21,7 +21,7 @@ pub(super) struct StepContext<'a> {
     pub limits: &'a Limits,
     pub limit_at: LimitAt,
     /// Steps, changes and limits of an arm under acceleration or jerk limits.
-    pub limited: Option<&'a LimitedMotion>,
+    pub limited: Option<&'a LimitedState>,
     /// Squared error accepted in the previous tick, if any.
     pub last_value: Option<f64>,
     /// Start of the tick, and its length (s).
@@ -60,10 +60,10 @@ impl<'a> StepContext<'a> {
     }
 
     /// Motion that takes the command `q` and then stops.
-    pub fn stop_after<'m>(&self, q: &'m [f64]) -> StopMotion<'m>
+    pub fn stop_after<'m>(&self, q: &'m [f64]) -> CommandAndStop<'m>
     where
         'a: 'm,
     {
-        StopMotion::new(self.q, q, self.limited.map(|limited| (limited.braking(), limited.state())))
+        CommandAndStop::new(self.q, q, self.limited.map(|limited| (limited.braking(), limited.state())))
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Result, require_finite, require_positive};
 use crate::math::so3::norm;
-use crate::task::{Target, TargetMotion, Twist};
+use crate::task::{Target, TargetSegment, Twist};
 
 /// Cutoff of the speed that the one-euro filter adapts to (Hz), as in the paper.
 const SPEED_CUTOFF: f64 = 1.0;
@@ -93,7 +93,7 @@ impl RunningFilter {
             self.last = Some([*target; 2]);
             return *target;
         };
-        let motion = |begin: Target| TargetMotion { begin, end: *target, velocities: None, dt: interval };
+        let motion = |begin: Target| TargetSegment { begin, end: *target, velocities: None, dt: interval };
         let (_, measured) = motion(raw).at(1.0);
         let speed_fraction = fraction(SPEED_CUTOFF, interval);
         let Twist { linear, angular } = &mut self.twist;

@@ -5,7 +5,7 @@ use smallvec::smallvec;
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::task::{NamedTask, Target, TargetMotion, TargetRow, Twist};
+use crate::task::{NamedTask, Target, TargetRow, TargetSegment, Twist};
 
 /// Longest extrapolation of a target (s), however old it is.
 const LONGEST_AGE: f64 = 0.25;
@@ -72,17 +72,17 @@ impl TargetStream {
 
     /// Motion of the first target to its `end` during the last tick, of `dt` (s). Without a previous tick, the target is
     /// assumed to have moved with its velocity or, if that is unknown, to have stood still.
-    pub fn motion(&self, end: Target, dt: f64) -> TargetMotion {
+    pub fn motion(&self, end: Target, dt: f64) -> TargetSegment {
         let first = |arrival: &Arrival| Some((*arrival.targets.first()?, arrival.velocity));
         match (self.before.as_ref().and_then(first), self.last.as_ref().and_then(|arrival| arrival.velocity)) {
             (Some((begin, before)), velocity) => {
                 let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
-                TargetMotion { begin, end, velocities, dt }
+                TargetSegment { begin, end, velocities, dt }
             }
-            (None, None) => TargetMotion { begin: end, end, velocities: None, dt },
+            (None, None) => TargetSegment { begin: end, end, velocities: None, dt },
             (None, Some(linear)) => {
                 let begin = end.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
-                TargetMotion { begin, end, velocities: Some([linear; 2]), dt }
+                TargetSegment { begin, end, velocities: Some([linear; 2]), dt }
             }
         }
     }

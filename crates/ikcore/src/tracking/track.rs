@@ -1,6 +1,6 @@
 //! Tracking of a whole path.
 
-use super::approach_motion::ApproachMotion;
+use super::path_approach::PathApproach;
 use super::record::Record;
 use super::session::Session;
 use super::tip_paths::TipPaths;
@@ -69,7 +69,7 @@ pub fn track_tips(
     let beginning = session.begin(asked.arrival(0))?;
     asked.push(&session, &beginning, &mut record);
     if options.ease {
-        match ApproachMotion::find(robot, asked, &start, options, monitor)? {
+        match PathApproach::find(robot, asked, &start, options, monitor)? {
             Some(approach) => drive(&approach, asked, &mut session, &mut record)?,
             None => record.note_no_approach(),
         }
@@ -101,7 +101,7 @@ fn farthest_out_of_reach(
 }
 
 /// Drives the arm along the approach.
-fn drive(approach: &ApproachMotion, asked: &TipPaths<'_>, session: &mut Session, record: &mut Record) -> Result<()> {
+fn drive(approach: &PathApproach, asked: &TipPaths<'_>, session: &mut Session, record: &mut Record) -> Result<()> {
     for i in 1..=approach.ticks {
         let step = session.drive(&approach.at(asked.time(i))?, asked.arrival(i))?;
         asked.push(session, &step, record);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::limited_motion::LimitedMotion;
+use super::limited_state::LimitedState;
 use super::repeated_targets::RepeatedTargets;
 use super::rule::TickResult;
 use super::step_context::StepContext;
@@ -23,7 +23,7 @@ pub(super) struct TrackedArm {
     pub limit_at: LimitAt,
     pub tick_box: TickBox,
     /// State and reachable set under acceleration or jerk limits.
-    pub limited: Option<LimitedMotion>,
+    pub limited: Option<LimitedState>,
     pub tasks: TipTasks,
     pub targets: TargetStream,
     pub dt: f64,
@@ -44,7 +44,7 @@ impl TrackedArm {
         let (tasks, limits) = (TipTasks::new(robot, options)?, options.limits_for(robot));
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
-        let limited = LimitedMotion::new(&limits, dt);
+        let limited = LimitedState::new(&limits, dt);
         let repeated = options.rule.extrapolates(limited.is_some()).then(|| RepeatedTargets::new(dt));
         let targets = TargetStream::new(options.target_filter, options.timeout, repeated)?;
         if tasks.region().is_some() {

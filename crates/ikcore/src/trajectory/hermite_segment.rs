@@ -4,18 +4,18 @@
 
 use super::coefficients::{Coefficients, polynomial};
 
-/// Meets two positions.
+/// The line through two positions.
 pub(super) fn line(h: f64, [q0, q1]: [f64; 2]) -> Coefficients {
     polynomial([q0, (q1 - q0) / h])
 }
 
-/// Meets two positions and two velocities.
+/// The cubic with these positions and velocities at its ends.
 pub(super) fn cubic(h: f64, [q0, q1]: [f64; 2], [v0, v1]: [f64; 2]) -> Coefficients {
     let slope = (q1 - q0) / h;
     polynomial([q0, v0, (3.0 * slope - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * slope) / (h * h)])
 }
 
-/// Meets two positions, two velocities and two accelerations.
+/// The quintic with these positions, velocities and accelerations at its ends.
 pub(super) fn quintic(h: f64, [q0, q1]: [f64; 2], [v0, v1]: [f64; 2], [a0, a1]: [f64; 2]) -> Coefficients {
     // Remaining differences at the end after coasting with the acceleration of the start.
     let position = q1 - (q0 + h * (v0 + 0.5 * h * a0));

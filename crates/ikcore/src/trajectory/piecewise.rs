@@ -26,11 +26,11 @@ const SHORTEST: f64 = 16.0 * f64::EPSILON;
 pub struct Trajectory {
     joints: Vec<String>,
     knots: Knots,
-    /// By segment, then by joint.
+    /// Polynomials by segment, then by joint.
     coefficients: Vec<Coefficients>,
 }
 
-/// Stored trajectories are checked again.
+/// Checks stored trajectories again.
 impl TryFrom<(Vec<String>, Knots, Vec<Coefficients>)> for Trajectory {
     type Error = Error;
 
@@ -290,7 +290,7 @@ mod tests {
     use super::*;
     use crate::trajectory::polynomial;
 
-    /// At 1 rad/s, with these knots.
+    /// A motion at 1 rad/s with these knots.
     fn steady(knots: &[f64]) -> Result<Trajectory> {
         let coefficients = knots[1..].iter().zip(knots).map(|(_, start)| polynomial([*start, 1.0])).collect();
         Trajectory::from_phases(vec!["a".into()], knots.to_vec(), coefficients)

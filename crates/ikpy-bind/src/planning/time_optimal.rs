@@ -1,6 +1,6 @@
 //! `time_optimal`.
 
-use ikcore::planning::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal as fastest};
+use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
@@ -70,7 +70,7 @@ pub fn time_optimal(
     let knots = knots.map(|knots| vector("knots", knots)).transpose()?;
     let waypoints = waypoints.as_slice()?;
     let options = TimingOptions { gridpoints: optional_count("gridpoints", gridpoints)?, start_speed, end_speed };
-    let limits = TimingLimits::new(&limits, "time_optimal").map_err(raise)?;
+    let limits = ConstantLimits::new(&limits, "time_optimal").map_err(raise)?;
     let path: Box<dyn FnOnce() -> ikcore::Result<JointPath> + Send> = if spline == "polyline" {
         if knots.is_some() {
             return Err(invalid(

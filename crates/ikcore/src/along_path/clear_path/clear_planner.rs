@@ -8,7 +8,7 @@ use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
 use super::smoothing::Smoothing;
 use crate::along_path::missed_points::{missed_at, missed_points};
 use crate::along_path::timed::{
-    Interpolation, JointWaypoints, PathMotion, PathProblem, RedundantMotion, TimedCost, search,
+    FollowedPath, Interpolation, JointWaypoints, NullSpaceOffsets, PathProblem, TimedCost, search,
 };
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result};
@@ -23,14 +23,14 @@ use crate::solver::{Monitor, Status, Stop};
 const SPACING: f64 = 0.03;
 const INTERVALS: [f64; 2] = [50.0, 400.0];
 
-/// A path with at least this many segments gets layers at its points alone: between them it is straight, and the curve that
-/// the points sample is not.
+/// Number of segments from which on a path gets layers at its points alone: it is straight between them, unlike the
+/// curve that they sample.
 const SEGMENTS: usize = 25;
 
 /// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
 const DENSITIES: [usize; 2] = [32, 128];
 
-/// Motions that are tried at the most, each with more clearance where the one before came too near.
+/// Maximum number of motions tried, each with more clearance where the one before came too near.
 const ROUNDS: usize = 10;
 
 /// Rounds in which a motion that leaves the path is made to follow it more closely.
@@ -42,16 +42,16 @@ const EVALUATIONS: usize = 600;
 /// The first extra clearance (m) where a motion came too near.
 const FIRST_EXTRA: f64 = 2.5e-4;
 
-/// How far around such a place it is kept, in intervals between layers.
+/// Reach of that clearance to both sides, in intervals between layers.
 const AROUND: f64 = 1.5;
 
-/// A motion is certified to keep this much more than the margin (m), so that the margin remains where it is timed anew.
+/// Certified distance beyond the margin (m), so that the margin remains when the motion is retimed.
 const SPARE: f64 = 2e-5;
 
-/// What to try where no motion is found.
+/// Advice where no motion is found.
 const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by a task";
 
-/// The penalty of a posture in collision, for each metre that is missing of the margin.
+/// Penalty of a posture in collision per metre of its shortfall from the margin.
 const DEEP: f64 = 1e6;
 
 /// Plans along a path in `space`, or without regard to obstacles.
@@ -82,7 +82,7 @@ pub(crate) fn along_path(
     }
 }
 
-/// The number of intervals between layers.
+/// Returns the number of intervals between layers.
 fn intervals(tip_path: &TipPath) -> usize {
     let wanted = (tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize;
     let segments = tip_path.positions().len() - 1;
@@ -91,7 +91,7 @@ fn intervals(tip_path: &TipPath) -> usize {
 
 struct ClearPlanner<'p> {
     problem: &'p PathProblem<'p>,
-    /// What the motion keeps clear of, if anything.
+    /// Space that the motion stays in, if anything can collide.
     space: Option<&'p ClearSpace<'p>>,
     price: Price,
     passage: Passage<'p>,
@@ -102,7 +102,7 @@ struct ClearPlanner<'p> {
     accuracy: f64,
 }
 
-/// Why a motion is not taken.
+/// Reason against a motion.
 enum Fault {
     TooNear(Box<TooNear>),
     OutsideLimits,
@@ -110,7 +110,7 @@ enum Fault {
 }
 
 impl ClearPlanner<'_> {
-    /// The cheapest clear sequence of as few postures as suffice.
+    /// Returns the cheapest clear sequence, from as few postures as suffice.
     fn first_sequence(&mut self) -> Result<FoundSequence> {
         let mut dead_end = Unreached(0);
         for density in DENSITIES {
@@ -134,7 +134,7 @@ impl ClearPlanner<'_> {
         cheapest(&layers, &self.fractions, &self.price, &mut self.passage)
     }
 
-    /// The plan of the first motion without a fault; of the last one tried, where none is.
+    /// Returns the plan of the first motion without a fault, or of the last one tried.
     fn certified(mut self, mut sequence: Vec<Point>, monitor: &mut dyn Monitor) -> Result<Plan> {
         let starts_as_given = self.problem.options.start.is_some();
         let mut found = None;
@@ -177,20 +177,20 @@ impl ClearPlanner<'_> {
         }
     }
 
-    fn cost(&self, motion: &PathMotion) -> f64 {
+    fn cost(&self, motion: &FollowedPath) -> f64 {
         self.problem.options.objective.of(&self.problem.robot, &motion.trajectory)
     }
 
-    /// The best motion that a search finds around `waypoints`.
+    /// Searches around `waypoints` for a better motion.
     fn improved(
         &self,
         interpolation: Interpolation<'_>,
         waypoints: JointWaypoints,
         monitor: &mut dyn Monitor,
-    ) -> Result<(PathMotion, Option<SearchResult>)> {
+    ) -> Result<(FollowedPath, Option<SearchResult>)> {
         let Self { problem, space, accuracy, .. } = self;
         let starts_as_given = problem.options.start.is_some();
-        let motion = RedundantMotion::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
+        let motion = NullSpaceOffsets::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
         cost.space = *space;
         let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
@@ -200,7 +200,7 @@ impl ClearPlanner<'_> {
         Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
     }
 
-    fn fault(&self, motion: &PathMotion) -> Option<Fault> {
+    fn fault(&self, motion: &FollowedPath) -> Option<Fault> {
         let trajectory = &motion.trajectory;
         let too_near = self.space.and_then(|space| {
             certify(&mut ClearanceSweep::new(space.scene()), trajectory, space.margin() + SPARE).err()
@@ -214,15 +214,14 @@ impl ClearPlanner<'_> {
         self.problem.leaves_path(motion).then_some(Fault::OffPath)
     }
 
-    /// Keeps more clearance, and the path more closely, where a motion comes too near.
-    fn keep_away(&mut self, motion: &PathMotion, near: &TooNear) -> Result<()> {
+    /// Requires more clearance where a motion comes too near, and a smaller deviation from the path.
+    fn keep_away(&mut self, motion: &FollowedPath, near: &TooNear) -> Result<()> {
         let Some(space) = self.space else { return Ok(()) };
         let q = configuration_at(&motion.trajectory, near.at)?;
-        let rows: Vec<&[f64]> = motion.waypoints.rows.chunks_exact(q.len()).collect();
-        let nearest = (0..rows.len())
-            .min_by(|i, k| squared_distance(rows[*i], &q).total_cmp(&squared_distance(rows[*k], &q)))
-            .unwrap_or(0);
-        let fraction = motion.waypoints.knots[nearest];
+        let waypoints = &motion.waypoints;
+        let distance = |i: &usize| squared_distance(waypoints.row(*i), &q);
+        let nearest = (0..waypoints.knots.len()).min_by(|i, k| distance(i).total_cmp(&distance(k)));
+        let fraction = waypoints.knots[nearest.unwrap_or(0)];
         let kept = self.passage.kept_beyond_margin(fraction);
         let missing = (space.margin() - near.contact.distance).max(0.0);
         let extra = FIRST_EXTRA.max(2.0 * kept).max(kept + 2.0 * missing);
@@ -237,7 +236,7 @@ impl ClearPlanner<'_> {
         Ok(())
     }
 
-    /// The plan that comes least deep into collision, where there is no clear one.
+    /// Returns the plan that penetrates least, where there is no clear one.
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { fractions: &self.fractions, postures: &self.postures };
         let obstruction = layers.obstruction(&self.passage, space, dead_end);
@@ -271,7 +270,7 @@ impl ClearPlanner<'_> {
         {
             return Ok(error);
         }
-        let place = tip_path.place(self.fractions[layer]);
+        let place = tip_path.point_in_words(self.fractions[layer]);
         let problem = match self.postures[layer].len() {
             0 => "none of the motions tried reached it".into(),
             1 => "the one configuration tried there is on another branch than those before".into(),
@@ -280,8 +279,8 @@ impl ClearPlanner<'_> {
         Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}").into() })
     }
 
-    /// The plan of a motion; `blocked` is the status of one that is not certified.
-    fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
+    /// Returns the plan of a motion; `blocked` is the status of a motion that is not certified.
+    fn finished(&self, motion: FollowedPath, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
         let mut plan = self.problem.after(found, self.problem.plan(motion));
         let Some(space) = self.space else { return Ok(plan) };
         let margin = space.margin();

@@ -1,4 +1,4 @@
-//! Why there is no clear motion along a path.
+//! Obstructions of a path without a clear motion.
 
 use super::passage::Passage;
 use super::postures::are_all;
@@ -13,13 +13,14 @@ pub(super) struct Layers<'a> {
 }
 
 impl Layers<'_> {
-    /// Says why no clear motion was found: the first point without a clear posture, or else the one that none leads to.
+    /// Names the obstruction of a path: the first point without a clear posture, or else the point that no clear motion
+    /// reaches.
     pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: Unreached) -> String {
         let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.fractions[*i], q));
         match (0..self.fractions.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
             None => {
-                let place = passage.problem.tip_path.place(self.fractions[dead_end.0]);
+                let place = passage.problem.tip_path.point_in_words(self.fractions[dead_end.0]);
                 let count = self.clear(passage, dead_end.0);
                 format!(
                     "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
@@ -33,7 +34,7 @@ impl Layers<'_> {
         self.postures[layer].iter().filter(|q| passage.is_clear(self.fractions[layer], q)).count()
     }
 
-    /// What is in the way at a point without a clear posture.
+    /// Names the obstruction at a point without a clear posture.
     fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> String {
         let tip_path = passage.problem.tip_path;
         let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
@@ -59,7 +60,7 @@ impl Layers<'_> {
                 None => "no posture was found".into(),
             },
         };
-        format!("{}: {what}", tip_path.place(fraction))
+        format!("{}: {what}", tip_path.point_in_words(fraction))
     }
 }
 

@@ -1,4 +1,4 @@
-//! LayerPosture postures at the points of a path.
+//! Candidate postures at the points of a path.
 
 use super::passage::Passage;
 use super::price::Price;
@@ -14,7 +14,7 @@ use crate::task::Target;
 /// Starts tried for each motion along the path.
 const TRIES: usize = 4;
 
-/// Where the layers are, and how many postures they have.
+/// Path parameters of the layers, and their density of postures.
 #[derive(Debug)]
 pub(super) struct LayerSampling<'a> {
     /// Path parameters of the layers.
@@ -23,7 +23,7 @@ pub(super) struct LayerSampling<'a> {
     pub density: usize,
 }
 
-/// The postures at each of the layers, clear or not.
+/// Returns the postures of each layer, clear or not.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
@@ -45,7 +45,7 @@ pub(super) fn postures(
     Ok(layers)
 }
 
-/// Whether the postures at this place are all that exist, whole turns aside.
+/// Whether the postures at this path parameter are all that exist, whole turns aside.
 pub(super) fn are_all(passage: &Passage<'_>, fraction: f64) -> bool {
     let PathProblem { robot, tip_path, .. } = passage.problem;
     let found = || solve_all(robot, &tip_path.target(fraction), &AllOptions::default(), &mut Unattended);
@@ -57,7 +57,7 @@ fn has_closed_form(passage: &Passage<'_>) -> bool {
     matches!(tip_path.target(0.0), Target::Pose(_)) && robot.solves_at_once() == Some(true)
 }
 
-/// All branches; of a redundant arm those at many values of its parameter.
+/// Returns all branches; of a redundant arm the branches at many values of its parameter.
 fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Vec<Vec<Point>>> {
     let (robot, tip_path) = (&passage.problem.robot, passage.problem.tip_path);
     let each = SolveOptions { seed: passage.problem.options.seed, ..SolveOptions::default() };
@@ -70,7 +70,7 @@ fn by_branches(passage: &Passage<'_>, sampling: &LayerSampling<'_>) -> Result<Ve
     sampling.fractions.iter().map(at).collect()
 }
 
-/// Motions along the path from random starts, to both sides of random places, as far as they lead.
+/// Follows the path from random configurations at random points of it, to both sides, as far as each motion leads.
 fn by_following(
     passage: &mut Passage<'_>,
     price: &Price,

@@ -10,12 +10,12 @@ const JUMP: f64 = 1.0;
 /// Weight of the energy beside the joint travel: of steps of equal travel, even ones are better.
 const ENERGY: f64 = 1e-3;
 
-/// What steps cost.
+/// Cost of the steps from layer to layer.
 #[derive(Debug)]
 pub(super) struct Price {
     /// Typical speed of each joint (rad/s, m/s).
     pace: Point,
-    /// After this much a joint has turned once round (rad); 0 where that does not matter.
+    /// Period of each joint (rad); 0 for a joint without one.
     periods: Point,
     objective: Cost,
 }
@@ -36,12 +36,12 @@ impl Price {
         self.of_differences((0..from.len()).map(|j| to[j] - from[j]), fraction)
     }
 
-    /// The same, whole turns aside.
+    /// The cost of the same step modulo whole turns.
     pub fn of_turned_step(&self, from: &[f64], to: &[f64], fraction: f64) -> f64 {
         self.of_differences((0..from.len()).map(|j| self.turned(j, to[j] - from[j])), fraction)
     }
 
-    /// `to`, shifted by whole turns to be near `from`.
+    /// Returns `to`, shifted by whole turns to be near `from`.
     pub fn turned_near(&self, from: &[f64], to: &[f64]) -> Point {
         (0..from.len()).map(|j| from[j] + self.turned(j, to[j] - from[j])).collect()
     }

@@ -6,17 +6,17 @@ use crate::error::Result;
 use crate::interrupt::checkpoint;
 use crate::objective::Point;
 
-/// Steps to a posture that are checked, the cheapest first, before it counts as out of reach.
+/// Number of steps to a posture that are checked, cheapest first, before it counts as out of reach.
 const CHECKED: usize = 12;
 
-/// Where fewer candidates than this are reached, sequences that lead to none of them go on by themselves.
+/// Number of reached candidates below which sequences that lead to none of them go on by themselves.
 const FEW: usize = 16;
 
 /// A candidate posture.
 #[derive(Debug, Clone)]
 pub(super) struct LayerPosture {
     pub q: Point,
-    /// What it costs beside the steps.
+    /// Cost beside the steps.
     pub penalty: f64,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct LayerPosture {
 struct Reached {
     q: Point,
     cost: f64,
-    /// Its number in the layer before.
+    /// Index of its predecessor in the layer before.
     before: usize,
 }
 
@@ -32,11 +32,11 @@ struct Reached {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Unreached(pub usize);
 
-/// A sequence, or where it would break off.
+/// A sequence, or the layer at which it breaks off.
 pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
 
-/// The cheapest sequence through `layers` at `fractions` of the path, each step of which leads along the path. Where the start is
-/// free, the joints begin at whatever whole turns keep them inside their limits.
+/// Returns the cheapest sequence through `layers` at `fractions` of the path, each step of which leads along the path.
+/// Where the start is free, the joints begin at whatever whole turns keep them inside their limits.
 ///
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
@@ -63,7 +63,7 @@ pub(super) fn cheapest(
     Ok(reached.map(|reached| ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
 }
 
-/// The postures that sequences reach, layer by layer.
+/// Returns the postures that sequences reach, layer by layer.
 fn reached(
     layers: &[Vec<LayerPosture>],
     fractions: &[f64],
@@ -98,7 +98,7 @@ struct Step<'s, 'a> {
 }
 
 impl Step<'_, '_> {
-    /// The cheapest way to a candidate.
+    /// Returns the cheapest predecessor of a candidate.
     fn to(&mut self, candidate: &LayerPosture, before: &[Reached]) -> Option<Reached> {
         let [from, to] = self.fractions;
         let cost = |reached: &Reached| reached.cost + self.price.of_turned_step(&reached.q, &candidate.q, to - from);
@@ -121,8 +121,8 @@ impl Step<'_, '_> {
 }
 
 impl Step<'_, '_> {
-    /// Adds to `next` where sequences go on that lead to none of the candidates: these lack what is between samples, and at a
-    /// singularity all but one of a family.
+    /// Adds to `next` the continuations of sequences that lead to none of the candidates. Candidates are samples:
+    /// between them others lie, and at a singularity a whole family.
     fn beside_candidates(&mut self, before: &[Reached], next: &mut Vec<Reached>) {
         let mut goes_on = vec![false; before.len()];
         next.iter().for_each(|reached| goes_on[reached.before] = true);
@@ -141,7 +141,7 @@ impl Step<'_, '_> {
     }
 }
 
-/// The postures of the last layer, the cheapest first.
+/// Returns the postures of the last layer, cheapest first.
 fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
     let last = reached.last().map_or(&[][..], |last| last);
     let mut ends: Vec<usize> = (0..last.len()).collect();
@@ -149,7 +149,7 @@ fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
     ends.into_iter()
 }
 
-/// The sequence that leads to a posture of the last layer.
+/// Traces the sequence that leads to a posture of the last layer.
 fn traced(reached: &[Vec<Reached>], mut at: usize) -> Vec<Point> {
     let mut postures: Vec<Point> = reached
         .iter()

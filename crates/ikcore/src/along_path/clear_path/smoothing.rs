@@ -1,9 +1,10 @@
-//! Smoother sequences: stretches of them are replaced by postures between their ends.
+//! Smoothing of sequences: postures between two others are replaced by postures near the straight line.
 
 use super::passage::Passage;
 use super::price::Price;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
+use crate::math::vector::point_between;
 use crate::objective::Point;
 
 /// Passes over the sequence, from long stretches to short ones.
@@ -12,7 +13,7 @@ const PASSES: usize = 8;
 /// A stretch is replaced if that lowers its cost by more than this fraction.
 const GAIN: f64 = 1e-5;
 
-/// A sequence of postures at these shares of the path.
+/// A sequence of postures at these path parameters.
 pub(super) struct Smoothing<'s, 'a> {
     pub fractions: &'s [f64],
     pub price: &'s Price,
@@ -45,14 +46,14 @@ impl Smoothing<'_, '_> {
         Ok(())
     }
 
-    /// Replaces what is between two postures by the postures nearest to the straight line between them.
+    /// Replaces the postures between two others by those nearest to the straight line between them.
     fn replace(&mut self, postures: &mut [Point], begin: usize, end: usize) {
         let (from, to) = (&postures[begin], &postures[end]);
         let length = self.fractions[end] - self.fractions[begin];
         let mut between = vec![from.clone()];
         for i in begin + 1..end {
             let part = (self.fractions[i] - self.fractions[begin]) / length;
-            let guess: Point = from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect();
+            let guess: Point = point_between(from, to, part).collect();
             let Some(q) = self.passage.clear_on_path(self.fractions[i], &guess) else { return };
             between.push(q);
         }

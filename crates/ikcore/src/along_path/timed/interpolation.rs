@@ -1,14 +1,13 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
-use super::projection::{NEAR_ENOUGH, approach, project, strays};
-use crate::along_path::deviation::TipDeviation;
+use super::projection::{NEAR_ENOUGH, Projection, strays};
+use crate::along_path::deviation::deviation_on;
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::SplineEnds;
 use crate::math::vector::largest_difference;
-use crate::objective::{Bounds, Linearization};
 use crate::robot::{Joint, Robot};
 use crate::timing::JointPath;
 
@@ -19,6 +18,20 @@ pub(crate) struct JointWaypoints {
     pub knots: Vec<f64>,
     /// Joint positions at each knot, in row-major order.
     pub rows: Vec<f64>,
+}
+
+impl JointWaypoints {
+    /// Joint positions at knot `i`.
+    pub(crate) fn row(&self, i: usize) -> &[f64] {
+        let n = self.rows.len() / self.knots.len();
+        &self.rows[i * n..(i + 1) * n]
+    }
+
+    /// Appends a knot with joint positions `q`.
+    pub(super) fn push(&mut self, knot: f64, q: &[f64]) {
+        self.knots.push(knot);
+        self.rows.extend_from_slice(q);
+    }
 }
 
 /// Behaviour of the joints at the corners of a path.
@@ -52,13 +65,13 @@ pub(crate) struct Interpolation<'a> {
     pub corners: Corners,
 }
 
-/// An interval is halved if the tip deviates by more than this fraction of the accuracy.
+/// Largest deviation of the tip in an interval that is not halved, as a fraction of the accuracy.
 const ENOUGH: f64 = 0.8;
 
 /// Samples inside each interval.
 const SAMPLES: usize = 7;
 
-/// An interval is halved too if a joint swings out of its limits by more than this fraction of the accuracy (rad, m).
+/// Largest excess of a joint over its limits in an interval that is not halved (rad, m), as a fraction of the accuracy.
 const SWING: f64 = 0.05;
 
 /// Maximum number of halvings of an interval: to 1/4096 of its length.
@@ -100,16 +113,15 @@ impl Interpolation<'_> {
         ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
     }
 
-    /// Refuses a motion that rests at a part of the path: a spline over the path cannot.
+    /// Refuses a motion that rests on a part of the path: a spline over the path cannot.
     ///
     /// # Errors
     /// [`Error::InvalidPath`] names that part.
     fn refuse_rest(&self, waypoints: &JointWaypoints) -> Result<()> {
-        let n = self.robot.dof();
-        let JointWaypoints { knots, rows } = waypoints;
-        let rests = |i: &usize| rows[(i - 1) * n..i * n] == rows[i * n..(i + 1) * n];
+        let knots = &waypoints.knots;
+        let rests = |i: &usize| waypoints.row(i - 1) == waypoints.row(*i);
         let Some(i) = (1..knots.len()).find(rests) else { return Ok(()) };
-        let [from, to] = [knots[i - 1], knots[i]].map(|fraction| self.tip_path.place(fraction));
+        let [from, to] = [knots[i - 1], knots[i]].map(|fraction| self.tip_path.point_in_words(fraction));
         let problem = format!(
             "the task leaves the tip so free that the arm need not move from {from} to {to}: ask for more of the pose, or for \
              smaller tolerances"
@@ -125,11 +137,7 @@ impl Interpolation<'_> {
     pub(super) fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
-            let deviation = TipDeviation {
-                robot: self.robot,
-                tip_path: self.tip_path,
-                configurations: |fraction: f64, q: &mut [f64]| path.position(fraction, q),
-            };
+            let deviation = deviation_on(self.robot, self.tip_path, &path);
             let is_coarse = |i: usize| {
                 checkpoint_at(i)?;
                 let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
@@ -151,7 +159,7 @@ impl Interpolation<'_> {
         Ok(waypoints)
     }
 
-    /// By how much a joint is outside its limits between two knots, at the most (rad, m).
+    /// Largest excess of a joint over its limits between two knots (rad, m).
     fn swing(&self, path: &JointPath, from: f64, to: f64) -> f64 {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
@@ -164,7 +172,7 @@ impl Interpolation<'_> {
         most
     }
 
-    /// Draws each joint that swings out of its limits inside: all its positions are scaled into them.
+    /// Scales all positions of a joint that swings out of its limits into them.
     ///
     /// # Errors
     /// As [`path`](Self::path).
@@ -188,13 +196,11 @@ impl Interpolation<'_> {
     /// there, or `within` this distance (m, rad).
     fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath, within: f64) -> JointWaypoints {
         let n = self.robot.dof();
-        let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
-        let mut scratch = Linearization::default();
+        let mut projection = Projection::new(self.robot);
         let mut finer = JointWaypoints { knots: vec![], rows: vec![] };
         let mut intervals = intervals.iter().peekable();
         for (i, knot) in waypoints.knots.iter().enumerate() {
-            finer.knots.push(*knot);
-            finer.rows.extend_from_slice(&waypoints.rows[i * n..(i + 1) * n]);
+            finer.push(*knot, waypoints.row(i));
             if intervals.next_if_eq(&&i).is_none() {
                 continue;
             }
@@ -202,21 +208,19 @@ impl Interpolation<'_> {
             let mut spline = [0.0; MAX_DOF];
             let spline = &mut spline[..n];
             path.position(middle, spline);
-            bounds.clip(spline);
+            projection.bounds.clip(spline);
             let mut q = [0.0; MAX_DOF];
             let q = &mut q[..n];
             q.copy_from_slice(spline);
             let target = self.tip_path.path_target(middle);
-            let ends = &waypoints.rows[i * n..(i + 2) * n];
-            let apart = largest_difference(&ends[..n], &ends[n..]);
-            let mut is_met = project(self.robot, &target, &bounds, q, &mut scratch) == 0.0;
+            let apart = largest_difference(waypoints.row(i), waypoints.row(i + 1));
+            let mut is_met = projection.project(&target, q) == 0.0;
             if !is_met || strays(q, spline, apart) {
                 q.copy_from_slice(spline);
-                is_met = approach(self.robot, &target, &bounds, q, &mut scratch, within);
+                is_met = projection.approach(&target, q, within);
             }
             if is_met {
-                finer.knots.push(middle);
-                finer.rows.extend_from_slice(q);
+                finer.push(middle, q);
             }
         }
         finer

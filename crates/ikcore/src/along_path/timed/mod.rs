@@ -9,11 +9,11 @@
 //! | `timed_planner` | the planner |
 //! | `path_problem` | the path, what the motion has to keep, and the motion through given configurations |
 //! | `nominal_motions` | motions that follow the path from a few starts |
-//! | `redundant_motion` | one of them, and free offsets from it |
+//! | `null_space_offsets` | one of them, and free offsets from it |
 //! | `path_walk` | configurations along the path, each the nearest to the one before |
 //! | `elastic_band` | the shortest motion around one |
 //! | `null_space` | joint motions that leave the tip in place |
-//! | `projection` | the nearest configuration that reaches a target, or comes near it |
+//! | `projection` | projection of configurations onto targets of the path, or near them |
 //! | `interpolation` | splines through configurations, dense enough to stay on the path |
 //! | `timed_cost` | the duration as a function of the offsets |
 
@@ -21,18 +21,18 @@ mod elastic_band;
 mod interpolation;
 mod nominal_motions;
 mod null_space;
+mod null_space_offsets;
 mod path_problem;
 mod path_walk;
 mod projection;
-mod redundant_motion;
 mod timed_cost;
 mod timed_planner;
 
 pub(super) use interpolation::{Interpolation, JointWaypoints};
-pub(super) use path_problem::PathMotion;
+pub(super) use null_space_offsets::NullSpaceOffsets;
+pub(super) use path_problem::FollowedPath;
 pub(crate) use path_problem::PathProblem;
-pub(super) use projection::{NEAR_ENOUGH, approach, project, strays};
-pub(super) use redundant_motion::RedundantMotion;
+pub(super) use projection::{NEAR_ENOUGH, Projection, strays};
 pub(super) use timed_cost::TimedCost;
 pub(crate) use timed_planner::along_path;
 pub(super) use timed_planner::search;

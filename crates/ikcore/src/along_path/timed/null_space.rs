@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Singular values below this fraction of the largest count as zero.
+/// Largest singular value that counts as zero, relative to the largest one.
 const NULL: f64 = 1e-6;
 
 /// Returns an orthonormal basis of the Jacobian's null space.

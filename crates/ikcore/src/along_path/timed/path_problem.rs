@@ -1,15 +1,14 @@
-//! A path, and what the motion along it has to keep.
+//! A path, and the limits and accuracy of the motion along it.
 
 use super::interpolation::{Corners, Interpolation, JointWaypoints};
 use crate::along_path::deviation::TipDeviation;
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result, require_positive};
-use crate::limits::Limits;
 use crate::message::Setting;
 use crate::plan::AlongPathOptions;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
-use crate::timing::{JointPath, MotionLimits, TimingLimits, coarse_duration, time_all};
+use crate::timing::{ConstantLimits, JointPath, coarse_duration, time_all};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -25,26 +24,24 @@ pub(crate) struct PathProblem<'a> {
     /// The path of its tip.
     pub tip_path: &'a TipPath,
     /// Limits to keep.
-    pub limits: MotionLimits,
-    /// Limits of the timing.
-    pub timing_limits: TimingLimits,
+    pub limits: ConstantLimits,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
     pub accuracy: f64,
     /// The options of the call.
     pub options: &'a AlongPathOptions,
-    /// Measures the call.
+    /// Stopwatch of the call.
     pub stopwatch: Stopwatch,
 }
 
-/// A motion along the path.
-pub(crate) struct PathMotion {
+/// A path that the tip follows, as joint motion.
+pub(crate) struct FollowedPath {
     /// The configurations that it passes.
     pub waypoints: JointWaypoints,
     /// The joint paths between stops.
     pub stretches: Vec<JointPath>,
-    /// All of them, joined.
+    /// Concatenation of these paths.
     pub path: JointPath,
-    /// The same in time.
+    /// Fastest timing of these paths.
     pub trajectory: Trajectory,
 }
 
@@ -53,15 +50,15 @@ impl<'a> PathProblem<'a> {
     /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path.
     pub(crate) fn new(robot: &Robot, tip_path: &'a TipPath, options: &'a AlongPathOptions) -> Result<Self> {
         let stopwatch = Stopwatch::start();
-        let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
-        let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
+        let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
+        limits.require_accelerations(METHOD)?;
         let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
         require_positive("accuracy", accuracy)?;
         if let Some(q) = options.start_within(robot, &limits)? {
             require_on_path(robot, q, tip_path, accuracy)?;
         }
         let robot = limits.applied_to(robot)?;
-        Ok(Self { robot, tip_path, limits, timing_limits, accuracy, options, stopwatch })
+        Ok(Self { robot, tip_path, limits, accuracy, options, stopwatch })
     }
 
     /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
@@ -74,13 +71,13 @@ impl<'a> PathProblem<'a> {
         nominal: &JointWaypoints,
         accuracy: f64,
     ) -> Result<(Interpolation<'a>, JointWaypoints)> {
-        let Self { robot, tip_path, timing_limits, .. } = self;
+        let Self { robot, tip_path, limits, .. } = self;
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
         for corners in Corners::on(tip_path) {
             let interpolation = Interpolation { robot, tip_path, corners: *corners };
             let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
             let path = interpolation.path(&waypoints)?;
-            let duration = coarse_duration(&path, timing_limits, SEGMENTS_A_PIECE * path.pieces())?;
+            let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
             if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
                 quickest = Some((duration, interpolation, waypoints));
             }
@@ -89,7 +86,7 @@ impl<'a> PathProblem<'a> {
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
     }
 
-    /// The fastest motion through `waypoints`, and through the knots added that its accuracy needs.
+    /// Returns the fastest motion through `waypoints`, with knots added as its accuracy requires.
     ///
     /// # Errors
     /// None in practice, as for [`corners_of`](Self::corners_of).
@@ -98,15 +95,15 @@ impl<'a> PathProblem<'a> {
         interpolation: &Interpolation<'_>,
         waypoints: JointWaypoints,
         accuracy: f64,
-    ) -> Result<PathMotion> {
+    ) -> Result<FollowedPath> {
         let mut waypoints = interpolation.refined(waypoints, accuracy)?;
         if self.options.start.is_none() {
             interpolation.draw_inside(&mut waypoints)?;
         }
         let stretches = interpolation.stretches(&waypoints)?;
         let path = interpolation.path(&waypoints)?;
-        let trajectory = time_all(&stretches, &self.timing_limits)?;
-        Ok(PathMotion { waypoints, stretches, path, trajectory })
+        let trajectory = time_all(&stretches, &self.limits)?;
+        Ok(FollowedPath { waypoints, stretches, path, trajectory })
     }
 }
 
@@ -121,13 +118,9 @@ fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) 
     } else {
         return Ok(());
     };
-    let tolerance_band = if tip_path.has_leeway() { ", beyond its tolerance," } else { "" };
+    let tolerance_band = if tip_path.has_tolerance() { ", beyond its tolerance," } else { "" };
     let (value, accuracy) = (number(value), number(accuracy));
     let problem =
         format!("start_q {what} {value} {unit}{tolerance_band} from the path's first point, allowed {accuracy} {unit}");
     Err(Error::Infeasible { problem: problem.into() })
-}
-
-fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {
-    TimingLimits::new(&limits.cloned().unwrap_or_else(|| Limits::of(robot)), METHOD)
 }

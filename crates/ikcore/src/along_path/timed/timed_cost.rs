@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::interpolation::{Interpolation, JointWaypoints};
+use super::null_space_offsets::{NODES, NullSpaceOffsets, travel};
 use super::path_problem::PathProblem;
-use super::redundant_motion::{NODES, RedundantMotion, travel};
-use crate::along_path::deviation::TipDeviation;
+use crate::along_path::deviation::deviation_on;
 use crate::error::Result;
 use crate::objective::{Bounds, Objective, Score};
 use crate::obstacle::ClearSpace;
@@ -15,13 +15,13 @@ use crate::timing::{JointPath, coarse_duration};
 /// The duration, or the joint travel, of the motion along a path, as a function of the offsets along the self-motion at
 /// its nodes.
 pub(crate) struct TimedCost<'a> {
-    /// The path, and what the motion has to keep.
+    /// The path, and the limits and accuracy of the motion.
     pub problem: &'a PathProblem<'a>,
     /// The configurations to choose from.
-    pub motion: RedundantMotion<'a>,
+    pub motion: NullSpaceOffsets<'a>,
     /// The splines through the chosen configurations.
     pub interpolation: Interpolation<'a>,
-    /// What the motion keeps clear of, if anything.
+    /// Space that the motion stays in, if anything can collide.
     pub space: Option<&'a ClearSpace<'a>>,
     /// A large value of the cost, which scales penalties.
     scale: f64,
@@ -46,7 +46,7 @@ const BROKEN: f64 = 10.0;
 impl<'a> TimedCost<'a> {
     pub(crate) fn new(
         problem: &'a PathProblem<'a>,
-        motion: RedundantMotion<'a>,
+        motion: NullSpaceOffsets<'a>,
         interpolation: Interpolation<'a>,
     ) -> Self {
         let scale = problem.options.objective.scale(&problem.robot, &problem.limits);
@@ -66,7 +66,7 @@ impl<'a> TimedCost<'a> {
     pub(crate) fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
         let knots = self.motion.nominal().knots.clone();
         let mut waypoints = JointWaypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
-        let missed = self.motion.place(z, &mut waypoints.rows);
+        let missed = self.motion.write(z, &mut waypoints.rows);
         (waypoints, missed)
     }
 
@@ -79,7 +79,7 @@ impl<'a> TimedCost<'a> {
         let path = self.interpolation.path(&waypoints)?;
         let cost = match self.problem.options.objective {
             Cost::JointTravel => travel(&waypoints.rows, self.motion.dof()),
-            _ => coarse_duration(&path, &self.problem.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
+            _ => coarse_duration(&path, &self.problem.limits, SEGMENTS_A_PIECE * path.pieces())?,
         };
         let broken = self.deviation(&waypoints, &path) + self.outside(&path) + self.blocked(&waypoints);
         Ok(cost + BROKEN * self.scale * broken)
@@ -106,8 +106,7 @@ impl<'a> TimedCost<'a> {
     /// summed.
     fn deviation(&self, waypoints: &JointWaypoints, path: &JointPath) -> f64 {
         let Interpolation { robot, tip_path, .. } = self.interpolation;
-        let tip =
-            TipDeviation { robot, tip_path, configurations: |fraction: f64, q: &mut [f64]| path.position(fraction, q) };
+        let tip = deviation_on(robot, tip_path, path);
         let off = |ends: &[f64]| (tip.bound(0.5 * (ends[0] + ends[1])) / self.problem.accuracy - 1.0).max(0.0);
         waypoints.knots.windows(2).map(off).sum()
     }

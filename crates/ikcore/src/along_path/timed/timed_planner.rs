@@ -2,10 +2,10 @@
 
 use super::interpolation::{Interpolation, JointWaypoints};
 use super::nominal_motions::NominalMotions;
-use super::path_problem::{PathMotion, PathProblem};
-use super::redundant_motion::RedundantMotion;
+use super::null_space_offsets::NullSpaceOffsets;
+use super::path_problem::{FollowedPath, PathProblem};
 use super::timed_cost::TimedCost;
-use crate::along_path::deviation::TipDeviation;
+use crate::along_path::deviation::deviation_on;
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 use crate::plan::{AlongPathOptions, Plan, Search, SearchResult};
@@ -53,7 +53,7 @@ struct Candidate<'p> {
 }
 
 impl<'p> Candidate<'p> {
-    /// The best plan that a search around this one finds with a budget for one of so many `searches`.
+    /// Returns the best plan of a search around this one, with the budget divided by the number of `searches`.
     fn improved(
         self,
         problem: &'p PathProblem<'p>,
@@ -61,7 +61,7 @@ impl<'p> Candidate<'p> {
         monitor: &mut dyn Monitor,
     ) -> Result<(Plan, Option<SearchResult>)> {
         let PathProblem { robot, tip_path, options, .. } = problem;
-        let motion = RedundantMotion::around(robot, tip_path, self.waypoints, options.start.is_some());
+        let motion = NullSpaceOffsets::around(robot, tip_path, self.waypoints, options.start.is_some());
         let mut cost = TimedCost::new(problem, motion, self.interpolation);
         let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
         let stop = Stop {
@@ -84,19 +84,17 @@ fn is_better(plan: &Plan, other: &Plan) -> bool {
 
 impl PathProblem<'_> {
     /// Whether the tip of a motion is farther off the path than its accuracy.
-    pub(crate) fn leaves_path(&self, motion: &PathMotion) -> bool {
-        let PathMotion { waypoints, path, .. } = motion;
-        let configurations = |fraction: f64, q: &mut [f64]| path.position(fraction, q);
-        let tip = TipDeviation { robot: &self.robot, tip_path: self.tip_path, configurations };
+    pub(crate) fn leaves_path(&self, motion: &FollowedPath) -> bool {
+        let FollowedPath { waypoints, path, .. } = motion;
+        let tip = deviation_on(&self.robot, self.tip_path, path);
         tip.largest(&waypoints.knots).violations(self.tip_path, self.accuracy).next().is_some()
     }
 
     /// The plan of a motion.
-    pub(crate) fn plan(&self, motion: PathMotion) -> Plan {
+    pub(crate) fn plan(&self, motion: FollowedPath) -> Plan {
         let Self { robot, tip_path, options, .. } = self;
-        let PathMotion { waypoints, stretches, path, trajectory } = motion;
-        let configurations = |fraction: f64, q: &mut [f64]| path.position(fraction, q);
-        let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
+        let FollowedPath { waypoints, stretches, path, trajectory } = motion;
+        let deviation = deviation_on(robot, tip_path, &path).largest(&waypoints.knots);
         let mut violations = self.limits.violations(&trajectory);
         violations.extend(deviation.violations(tip_path, self.accuracy));
         let cost = options.objective.of(robot, &trajectory);

@@ -7,6 +7,7 @@ use super::repetition::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
 use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
+use crate::math::vector::between;
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
 use crate::path::Waypoints;
@@ -24,7 +25,7 @@ pub struct TipPath {
     rotations: Option<Vec<UnitQuaternion<f64>>>,
     /// The part of the poses that matters, without a tool; `None` if all of it does.
     task: Option<Task>,
-    /// How far the tip may be off; `None`: not at all.
+    /// Band in which the tip may be off; `None`: not at all.
     tolerance_band: Option<ToleranceBand>,
     /// Length of the curve (m); a radian of rotation counts as a metre.
     length: f64,
@@ -37,7 +38,7 @@ pub struct TipPath {
     point_fractions: Vec<f64>,
 }
 
-/// A path pauses if it advances by less than this fraction of its length.
+/// Smallest advance of a path that is no pause, as a fraction of its length.
 pub(super) const PAUSE: f64 = 1e-9;
 
 /// Allowed distance of the tip from the path, relative to the extent of the path.
@@ -97,8 +98,8 @@ impl TipPath {
         Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
     }
 
-    /// The same curve, of whose poses only the part matters that `task` uses, for a motion that strays by `accuracy` (m, rad), or
-    /// by [`default_accuracy`](Self::default_accuracy).
+    /// Returns the same curve, reduced to the part of its poses that `task` uses, for a motion that strays by
+    /// `accuracy` (m, rad), or by [`default_accuracy`](Self::default_accuracy).
     ///
     /// # Errors
     /// [`Error::WrongTarget`] for a path without orientations and a task that needs them; [`Error::Contradiction`] for a
@@ -125,23 +126,23 @@ impl TipPath {
         Ok(Self { tolerance_band: Some(tolerance_band), ..curve })
     }
 
-    /// The part of the poses that matters, if not all of it does.
+    /// Task that uses a part of the poses; `None` if all of it matters.
     pub fn task(&self) -> Option<&Task> {
         self.task.as_ref()
     }
 
     /// Whether the tip has to meet whole poses.
     pub fn fixes_pose(&self) -> bool {
-        matches!(self.target(0.0), Target::Pose(_)) && !self.has_leeway()
+        matches!(self.target(0.0), Target::Pose(_)) && !self.has_tolerance()
     }
 
     /// Whether the tip may be off the path.
-    pub fn has_leeway(&self) -> bool {
+    pub fn has_tolerance(&self) -> bool {
         self.tolerance_band.is_some()
     }
 
-    /// How far a component of the tip may be off that is not free (m, rad), at the most.
-    pub(crate) fn largest_leeway(&self) -> f64 {
+    /// Largest tolerance of a component that is not free (m, rad).
+    pub(crate) fn largest_tolerance(&self) -> f64 {
         self.tolerance_band.map_or(0.0, |tolerance_band| tolerance_band.largest())
     }
 
@@ -151,8 +152,8 @@ impl TipPath {
         self.rotations.is_some() && (leaves_free || !matches!(self.target(0.0), Target::Pose(_)))
     }
 
-    /// How far the tip may stray (m, rad) where the caller does not say: a thousandth of the extent, and the distance of the
-    /// sampled curve; no more than the smallest tolerance.
+    /// Default accuracy (m, rad): a thousandth of the extent, and the distance of the sampled curve; at most the
+    /// smallest tolerance.
     pub fn default_accuracy(&self) -> f64 {
         let least = self.task.and_then(|task| task.components).map_or(f64::INFINITY, |it| smallest_tolerance(&it));
         (ACCURACY * self.extent() + self.coarseness()).min(least)
@@ -244,9 +245,9 @@ impl TipPath {
         self.task.and_then(|task| task.target(&pose).ok()).unwrap_or(pose)
     }
 
-    /// The target, and how far the tip may be off.
+    /// The target and the tolerance band of the tip.
     pub(crate) fn path_target(&self, fraction: f64) -> PathTarget {
-        PathTarget { target: self.target(fraction), tolerance_band: self.tolerance_band, place: None }
+        PathTarget { target: self.target(fraction), tolerance_band: self.tolerance_band, displacement: None }
     }
 
     /// The whole pose at this path parameter, or the position where the path has no orientations.
@@ -272,11 +273,11 @@ impl TipPath {
     }
 
     /// The point at this path parameter, in words for messages.
-    pub fn place(&self, fraction: f64) -> String {
+    pub fn point_in_words(&self, fraction: f64) -> String {
         let (row, part) = self.locate(fraction);
         match &self.times {
             Some(times) => {
-                let time = times[row] + part * (times[row + 1] - times[row]);
+                let time = between(times[row], times[row + 1], part);
                 format!("the path at t = {} s", number(time))
             }
             None if part == 0.0 => format!("point {row} of the path"),

@@ -1,4 +1,4 @@
-//! How far the tip may be off its path, component by component.
+//! Tolerance band of the tip around its path, component by component.
 
 use crate::error::{Error, Result};
 use crate::math::Frame;
@@ -9,16 +9,16 @@ use crate::objective::TaskBlock;
 use crate::task::{Components, Criterion, Target, Tolerance};
 use crate::wording::number;
 
-/// A configuration that is sought from outside the tolerance_band is to be this far inside (m, rad), so that the search ends. Little, because
-/// configurations that follow one another along the border are not to differ for it.
+/// Target depth inside the band (m, rad) of a configuration sought from outside, so that the search ends. Small,
+/// because configurations that follow one another along the border are not to differ for it.
 const INSIDE: f64 = 1e-6;
 
-/// Where the tip is relative to a target, along its axes: x, y, z (m) and the rotation vector (rad), or the difference of the axes of
-/// a pointing target.
+/// Displacement of the tip from a target, along its axes: x, y, z (m) and the rotation vector (rad), or the difference
+/// of the axes of a pointing target.
 pub(crate) type Displacement = [f64; ROWS];
 
-/// How far each component of the tip may be off: x, y, z (m) and the rotation vector (rad), along the axes of the target. For a
-/// pointing target the fourth is the angle between the axes.
+/// Largest displacement of each component of the tip: x, y, z (m) and the rotation vector (rad), along the axes of the
+/// target. For a pointing target the fourth is the angle between the axes.
 ///
 /// It is the tolerance of the task, less the accuracy: what the tip strays between points is within the tolerance too.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,14 +26,14 @@ pub(crate) struct ToleranceBand {
     allowed: [f64; ROWS],
 }
 
-/// The border of the tolerance_band to which each component is drawn while a configuration is sought: its sign, or 0.
+/// Borders of the tolerance band, to which components are drawn while a configuration is sought: a sign each, or 0.
 ///
 /// A component that has been beyond stays drawn to its border, or else the next step could undo what the last one did.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Borders([f64; ROWS]);
 
 impl ToleranceBand {
-    /// The tolerance_band that `components` leave to a motion that strays by `accuracy`.
+    /// Returns the band that `components` leave to a motion that strays by `accuracy`.
     ///
     /// # Errors
     /// [`Error::Contradiction`] if that is more than the smallest tolerance.
@@ -52,7 +52,7 @@ impl ToleranceBand {
         Ok(Self { allowed: std::array::from_fn(allowed) })
     }
 
-    /// This tolerance_band, with no component off by more than `most`; those that are free stay free.
+    /// The same band with no component off by more than `most`; free components stay free.
     pub fn at_most(&self, most: f64) -> Self {
         Self { allowed: self.allowed.map(|allowed| if allowed.is_finite() { allowed.min(most) } else { allowed }) }
     }
@@ -68,7 +68,7 @@ impl ToleranceBand {
         Criterion { components, ..Tolerance::default().into() }
     }
 
-    /// Drops from residual and Jacobian what is within the tolerance_band; returns the sum of squares of what exceeds it.
+    /// Reduces residual and Jacobian to the excess over the tolerance band; returns the sum of its squares.
     pub fn reduce(&self, target: &Target, borders: &mut Borders, dof: usize, block: &mut TaskBlock) -> f64 {
         let mut squares = 0.0;
         for k in 0..separate_components(target) {
@@ -90,7 +90,7 @@ impl ToleranceBand {
         if is_pointing(target) { squares + self.reduce_angle(borders, dof, block) } else { squares }
     }
 
-    /// The same for the difference of two axes, of which only the length counts.
+    /// Reduces the difference of two axes, of which only the length counts.
     fn reduce_angle(&self, borders: &mut Borders, dof: usize, block: &mut TaskBlock) -> f64 {
         let [_, _, _, difference @ ..] = block.residual;
         let (chord, allowed) = (norm(&difference), chord_of(self.allowed[3]));
@@ -111,34 +111,35 @@ impl ToleranceBand {
         beyond * beyond
     }
 
-    /// Turns residual and Jacobian into those of a tip that is to be at `place`; drops what is free. Returns the sum of squares.
-    pub fn hold(&self, target: &Target, place: &Displacement, dof: usize, block: &mut TaskBlock) -> f64 {
-        let mut place = *place;
+    /// Turns residual and Jacobian into those of a tip that is to be at `displacement`, without free components. Returns the
+    /// sum of squares.
+    pub fn hold(&self, target: &Target, displacement: &Displacement, dof: usize, block: &mut TaskBlock) -> f64 {
+        let mut displacement = *displacement;
         if let Target::Pointing { frame, .. } = target {
-            let [_, _, _, difference @ ..] = place;
-            place[3..].copy_from_slice(&frame.turn::<NoFma>(&difference));
+            let [_, _, _, difference @ ..] = displacement;
+            displacement[3..].copy_from_slice(&frame.turn::<NoFma>(&difference));
         }
         for k in 0..ROWS {
             if self.allowed[k].is_infinite() {
                 drop_row(k, dof, block);
             } else {
-                block.residual[k] -= place[k];
+                block.residual[k] -= displacement[k];
             }
         }
         block.residual.iter().map(|residual| residual * residual).sum()
     }
 
-    /// Where a tip is relative to `target`.
-    pub fn place_of(target: &Target, tip: &Frame) -> Displacement {
-        let mut place = target.residual_by_component(tip);
+    /// Displacement of a tip from `target`.
+    pub fn displacement_of(target: &Target, tip: &Frame) -> Displacement {
+        let mut displacement = target.residual_by_component(tip);
         if let Target::Pointing { frame, .. } = target {
-            let [_, _, _, difference @ ..] = place;
-            place[3..].copy_from_slice(&frame.turn_back(&difference));
+            let [_, _, _, difference @ ..] = displacement;
+            displacement[3..].copy_from_slice(&frame.turn_back(&difference));
         }
-        place
+        displacement
     }
 
-    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the tolerance_band of `target`.
+    /// The distance (m) and the angle (rad) of a tip from the nearest pose within the tolerance band of `target`.
     pub fn excess(&self, target: &Target, tip: &Frame) -> [f64; 2] {
         let residual = target.residual_by_component(tip);
         let beyond = |k: usize| (residual[k].abs() - self.allowed[k]).max(0.0);
@@ -168,7 +169,7 @@ fn angle_of(residual: &[f64; ROWS]) -> f64 {
     2.0 * (0.5 * norm(&std::array::from_fn(|k| residual[3 + k]))).min(1.0).asin()
 }
 
-/// How many components are off one by one: of a pointing target only x, y and z.
+/// Number of components with a tolerance of their own: of a pointing target x, y and z.
 fn separate_components(target: &Target) -> usize {
     if is_pointing(target) { 3 } else { ROWS }
 }

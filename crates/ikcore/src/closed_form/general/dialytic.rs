@@ -5,6 +5,7 @@
 //! solution where the determinant vanishes, and its null vector contains x and y.
 
 use crate::closed_form::angle::Angle;
+use crate::math::vector::dot;
 
 /// Number of equations.
 pub const EQUATIONS: usize = 6;
@@ -135,15 +136,14 @@ fn half_angle(high: f64, low: f64) -> Angle {
 
 /// Separates two solution pairs in their common null space: x maps the products with i up to 2 to the products with i from 1.
 fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     // Solutions satisfy x low = high; z = (x - 1)/(x + 1) replaces x, which may be infinite.
     let parts = basis.map(|v| {
         let sum: [f64; 9] = std::array::from_fn(|k| v[k + 3] + v[k]);
         let difference: [f64; 9] = std::array::from_fn(|k| v[k + 3] - v[k]);
         (sum, difference)
     });
-    let gram = |i: usize, j: usize| product(&parts[i].0, &parts[j].0);
-    let mixed = |i: usize, j: usize| product(&parts[i].0, &parts[j].1);
+    let gram = |i: usize, j: usize| dot(&parts[i].0, &parts[j].0);
+    let mixed = |i: usize, j: usize| dot(&parts[i].0, &parts[j].1);
     let (a, b, d) = (gram(0, 0), gram(0, 1), gram(1, 1));
     let determinant = a * d - b * b;
     // Matrix m = gram^-1 mixed, whose eigenvalues are z.
@@ -158,7 +158,7 @@ fn separated(basis: &[[f64; SIZE]; 2]) -> ([[Angle; 2]; 2], usize) {
     let root = radicand.max(0.0).sqrt();
     for (pair, value) in pairs.iter_mut().zip([half + root, half - root]) {
         let (u, v) = ([m[0][1], value - m[0][0]], [value - m[1][1], m[1][0]]);
-        let weights = if product(&u, &u) > product(&v, &v) { u } else { v };
+        let weights = if dot(&u, &u) > dot(&v, &v) { u } else { v };
         *pair = angles(&std::array::from_fn(|k| weights[0] * basis[0][k] + weights[1] * basis[1][k]));
     }
     (pairs, 2)

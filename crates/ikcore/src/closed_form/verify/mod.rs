@@ -5,7 +5,7 @@ mod polish;
 mod residuals;
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{BranchError, Branches, Candidates};
 use crate::closed_form::configurations::AxisColumns;
 use crate::math::Frame;
@@ -39,7 +39,7 @@ pub struct Verifier<const N: usize> {
 impl<const N: usize> Verifier<N> {
     /// Prepares a chain for candidates whose error is at most `worth_polishing` (m, rad).
     pub fn new(chain: &AxisChain<N>, worth_polishing: f64) -> Self {
-        let slides = std::array::from_fn(|k| chain.joints[k].motion == AxisMotion::Slides);
+        let slides = std::array::from_fn(|k| chain.joints[k].motion == AxisKind::Slides);
         Self { chain: *chain, frames: FixedFrames::new(chain), slides, worth_polishing }
     }
 

@@ -1,11 +1,12 @@
 //! Newton's method from a candidate with a small error.
 
 use super::residuals::difference;
-use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::BranchError;
 use crate::closed_form::vector::{Vector, add, cross, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector::{dot, norm};
 
 /// Largest residual of a branch, in position (m) and rotation (rad).
 pub const TOLERANCE: f64 = 1e-10;
@@ -30,27 +31,23 @@ pub fn polished<const N: usize>(
         let residual = difference(&tip, target);
         let error = error(&tip, target);
         if residual < best.0 {
-            best = (residual, q, BranchError { position: length(&error[..3]), rotation: length(&error[3..]) });
+            best = (residual, q, BranchError { position: norm(&error[..3]), rotation: norm(&error[3..]) });
         }
         // Stop only when further steps no longer pay, even within the tolerance.
         if !(residual.is_finite()) || residual <= TOLERANCE && residual > 0.1 * last || residual < 1e-14 {
             break;
         }
         last = residual;
-        let square = error.iter().map(|e| e * e).sum::<f64>();
+        let square = dot(&error, &error);
         let step = damped_step(&columns, &error, 1e-3 * square.min(1.0) + 1e-16);
         (0..N).for_each(|k| q[k] += step[k]);
     }
     let (residual, q, error) = best;
-    let turns = |k: usize| chain.joints[k].motion == AxisMotion::Turns;
+    let turns = |k: usize| chain.joints[k].motion == AxisKind::Turns;
     if residual > TOLERANCE {
         return Err(residual);
     }
     Ok((std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
-}
-
-fn length(v: &[f64]) -> f64 {
-    v.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// Wraps the angle to (-pi, pi].
@@ -81,11 +78,11 @@ fn jacobian<const N: usize>(chain: &AxisChain<N>, q: &[f64; N]) -> (Frame, [[f64
         let joint = chain.joints[k].moved(&moved[k]);
         let [hx, hy, hz] = joint.axis;
         match joint.motion {
-            AxisMotion::Turns => {
+            AxisKind::Turns => {
                 let [vx, vy, vz] = cross(&joint.axis, &sub(&tip.origin, &joint.point));
                 [vx, vy, vz, hx, hy, hz]
             }
-            AxisMotion::Slides => [hx, hy, hz, 0.0, 0.0, 0.0],
+            AxisKind::Slides => [hx, hy, hz, 0.0, 0.0, 0.0],
         }
     });
     (tip, columns)

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 use crate::ik::self_motion::{CurvePoint, WrappedLimits};
 use crate::math::MAX_DOF;
 use crate::math::hermite::Cubic;
-use crate::math::vector::dot;
+use crate::math::vector::{between, dot};
 use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Goals;
@@ -83,7 +83,7 @@ impl<'r, 'a> Arcs<'r, 'a> {
         let cost = Cubic::new([left.cost, right.cost], [slope(left, from), slope(right, to)]);
         let lowest = cost.lowest();
         let fall = left.cost.min(right.cost) - cost.at(lowest);
-        let q = self.place(ways, from + lowest * (to - from));
+        let q = self.place(ways, between(from, to, lowest));
         self.candidates.push(Candidate { cost: cost.at(lowest) - DOUBT * fall, q });
     }
 

@@ -101,9 +101,8 @@ fn walk_on(
         let length = norm(&chord);
         arcs.look(&from, there, length);
         passed.push((from.q, chord));
-        let since = limits.apart(&there.q, &begin.q);
         // Overlap of begin and end, so that no part of the curve is missed.
-        if count > 3 && norm(&since) < 1.1 * length && dot(&since, &begin.along) >= 0.0 {
+        if count > 3 && there.has_closed_at(&begin, length, limits) {
             return End::Closed;
         }
         let earlier = passed.len().saturating_sub(STEPS_BETWEEN);

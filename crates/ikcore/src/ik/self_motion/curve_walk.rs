@@ -3,6 +3,7 @@
 //! Predictor and corrector: a step follows the tangent and the curvature of the last step; Gauss-Newton brings it back to the
 //! task. Between two points, joints follow the cubics that match the tangents at both.
 
+use super::wrapped_limits::WrappedLimits;
 use crate::ik::goal_descent::difference;
 use crate::math::MAX_DOF;
 use crate::math::box_step::{BoxStep, least_damping};
@@ -30,6 +31,15 @@ const MOST_CORRECTIONS: usize = 2;
 pub(in crate::ik) struct CurvePoint {
     pub q: Point,
     pub along: Point,
+}
+
+impl CurvePoint {
+    /// Whether a step of this `length` has led to or past `begin`, in its direction.
+    pub fn has_closed_at(&self, begin: &Self, length: f64, limits: &WrappedLimits<'_>) -> bool {
+        let since = limits.apart(&self.q, &begin.q);
+        let is_past = dot(&since, &begin.along) >= 0.0 && dot(&self.along, &begin.along) > 0.0;
+        is_past && norm(&since) < 1.1 * length
+    }
 }
 
 /// Outcome of one predictor-corrector step.

@@ -2,7 +2,7 @@
 
 use super::curve_walk::{CurvePoint, StepKind, Walk};
 use super::wrapped_limits::WrappedLimits;
-use crate::math::vector::{distance, dot, norm};
+use crate::math::vector::{distance, dot};
 use crate::problem::Problem;
 use crate::solver::Monitor;
 
@@ -76,9 +76,7 @@ fn walk_on(
         if length > spacing || step == StepKind::Corner && length > 0.5 * spacing || limits.slid_out(&there.q) {
             return false;
         }
-        let since = limits.apart(&there.q, &begin.q);
-        let is_past_begin = dot(&since, &begin.along) >= 0.0 && dot(&there.along, &begin.along) > 0.0;
-        if count > 3 && is_past_begin && norm(&since) < 1.1 * length {
+        if count > 3 && there.has_closed_at(&begin, length, limits) {
             return true;
         }
         points.push(there.clone());

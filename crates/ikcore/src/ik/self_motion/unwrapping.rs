@@ -107,7 +107,7 @@ fn fitted(
     bounds: &Bounds,
     limits: &WrappedLimits<'_>,
 ) -> Option<bool> {
-    const ROUNDING: f64 = 1e-6;
+    const OFF_CURVE: f64 = 1e-6;
     let joints = limits.joints();
     let mut winding = false;
     for j in 0..joints {
@@ -115,7 +115,7 @@ fn fitted(
         let range =
             points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q[j]), high.max(q[j])]);
         let shift = limits.near_middle(j, points[anchor][j]) - points[anchor][j];
-        let fits = |shift: f64| lower - ROUNDING <= range[0] + shift && range[1] + shift <= upper + ROUNDING;
+        let fits = |shift: f64| lower - OFF_CURVE <= range[0] + shift && range[1] + shift <= upper + OFF_CURVE;
         let turns = if limits.repeats(j) { [0.0, TAU, -TAU] } else { [0.0; 3] };
         let shift = turns.into_iter().map(|turn| shift + turn).find(|shift| fits(*shift))?;
         points.iter_mut().for_each(|q| q[j] += shift);

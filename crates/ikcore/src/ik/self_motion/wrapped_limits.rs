@@ -7,6 +7,7 @@ use smallvec::{SmallVec, smallvec};
 use crate::math::MAX_DOF;
 use crate::math::hermite::Cubic;
 use crate::math::polynomial::roots;
+use crate::math::turns::without_turns;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
@@ -64,7 +65,7 @@ impl<'a> WrappedLimits<'a> {
     /// Shifts `angle` of joint `j` by whole turns near zero.
     #[inline]
     pub fn turned(&self, j: usize, angle: f64) -> f64 {
-        if angle.abs() > PI && self.repeats[j] { angle - TAU * (angle / TAU).round() } else { angle }
+        if angle.abs() > PI && self.repeats[j] { without_turns(angle) } else { angle }
     }
 
     /// Shifts `angle` of joint `j` by whole turns as near as possible to the middle of its limits.

@@ -41,7 +41,7 @@ pub(super) fn entry(from: MotionState, rates: &Rates) -> (JointProfile, MotionSt
 /// Whether a joint exceeds its velocity limit in this direction (1 or -1), or cannot avoid it.
 fn leaves(state: &MotionState, sign: f64, rates: &Rates) -> bool {
     let to_come = if state.a * sign > 0.0 { 0.5 * state.a * state.a / rates.jerk } else { 0.0 };
-    state.v * sign + to_come > rates.velocity * (1.0 + ROUNDING)
+    state.v * sign + to_come > rates.velocity * (1.0 + SPEED_ROUNDING)
 }
 
 /// Reduces the velocity in this direction to its limit, with a deceleration that can end before the opposite limit.
@@ -62,7 +62,7 @@ fn slow_down(state: &mut MotionState, sign: f64, rates: &Rates, go: &mut impl Fn
 }
 
 /// Tolerance for rounding of a velocity, relative to its limit.
-const ROUNDING: f64 = 1e-12;
+const SPEED_ROUNDING: f64 = 1e-12;
 
 /// Largest number of direction changes: the second only corrects what the first could not avoid.
 const ROUNDS: usize = 4;

@@ -3,8 +3,9 @@
 use smallvec::SmallVec;
 
 use super::motion_state::MotionState;
-use super::phases::Phases;
+use super::phases::{Phases, ROUNDING};
 use crate::math::polynomial::quadratic_roots;
+use crate::math::vector::between;
 
 /// Segment of constant jerk: its start (s), and state and jerk there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +124,7 @@ impl JointProfile {
         loop {
             let (one, two) = (&self.segments[i], &other.segments[k]);
             let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
-            let blend = |x: f64, y: f64| y + fraction * (x - y);
+            let blend = |x: f64, y: f64| between(y, x, fraction);
             let state = MotionState { q, v: blend(a.v, b.v), a: blend(a.a, b.a) };
             let segment = JointSegment { time, state, jerk: blend(one.jerk, two.jerk) };
             mean.segments.push(segment);
@@ -162,6 +163,3 @@ impl JointProfile {
         self
     }
 }
-
-/// Tolerance for equal times, relative to the duration.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;

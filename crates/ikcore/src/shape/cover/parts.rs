@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
+use crate::math::vector::between;
 use crate::shape::mesh::Mesh;
 
 /// Polygons of a mesh on one side of the cutting planes.
@@ -47,7 +48,7 @@ impl CoveredPart {
         let axes = principal_axes(&corners);
         let planes = axes.iter().flat_map(|axis| {
             let (low, high) = extent(&corners, axis);
-            PLACES.map(|place| CuttingPlane { normal: *axis, offset: low + place * (high - low) })
+            PLACES.map(|place| CuttingPlane { normal: *axis, offset: between(low, high, place) })
         });
         planes.collect()
     }

@@ -6,7 +6,7 @@
 //! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
 use super::tick::{Tick, TickResult};
-use crate::math::vector::distance;
+use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
@@ -84,7 +84,7 @@ impl GoalPursuit {
 
     /// Largest joint distance of the predicted goal from `q` (rad, m).
     fn away(&self, q: &[f64]) -> f64 {
-        self.expected.iter().zip(q).map(|(expected, q)| (expected - q).abs()).fold(0.0, f64::max)
+        largest_difference(&self.expected, q)
     }
 
     /// Start of the search for a clear sample by an arm at `q`, and the sample to replace.
@@ -166,8 +166,7 @@ impl GoalPursuit {
                 }
                 None => self.linearization.write_step(lambda, &begin, ends, &mut self.sample),
             }
-            let longest = self.sample.iter().zip(&begin).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
-            if longest <= SHORT {
+            if largest_difference(&self.sample, &begin) <= SHORT {
                 return;
             }
         }

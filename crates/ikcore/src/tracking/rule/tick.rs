@@ -6,7 +6,7 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
-use crate::task::{Aims, Assessment, Criterion, Goals, SquaredError, Target, TargetMotion};
+use crate::task::{Aims, Assessment, Criterion, Goals, SquaredError, Target, TargetSegment};
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
 
@@ -33,7 +33,7 @@ impl Tick<'_> {
     }
 
     /// Motion of the first target during the tick.
-    pub(super) fn motion(&self) -> TargetMotion {
+    pub(super) fn motion(&self) -> TargetSegment {
         self.targets.motion(*self.target, self.context.dt)
     }
 

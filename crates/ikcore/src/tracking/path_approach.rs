@@ -18,12 +18,12 @@ use crate::trajectory::Trajectory;
 const AROUND: usize = 3;
 
 /// Approach trajectory and its length in ticks.
-pub(super) struct ApproachMotion {
+pub(super) struct PathApproach {
     pub ticks: usize,
     trajectory: Trajectory,
 }
 
-impl ApproachMotion {
+impl PathApproach {
     /// Finds the earliest approach of an arm at rest at `start`. Follows the path without acceleration and jerk limits until a
     /// motion within them meets it; `None` if none does before the path ends.
     ///

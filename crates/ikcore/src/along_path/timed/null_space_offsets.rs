@@ -1,30 +1,29 @@
 //! Configurations of an arm along a path, and free offsets along its self-motion.
 //!
-//! A nominal motion follows the path. At a few nodes along it, offsets
-//! in the null space of the task Jacobian are free; natural splines interpolate them. The nominal configurations plus
-//! offsets are then projected back onto the points by damped least squares. Where the tip has tolerance_band, the nominal motion uses it,
-//! and offsets leave the tip where that motion has it.
+//! A nominal motion follows the path. At a few nodes along it, offsets in the null space of the task Jacobian are free;
+//! natural splines interpolate them. The nominal configurations plus offsets are then projected back onto the points by
+//! damped least squares. If the tip has a tolerance band, the nominal motion uses it, and offsets leave the tip where
+//! that motion has it.
 
 use nalgebra::DMatrix;
 
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
-use super::projection::project;
+use super::projection::Projection;
 use crate::along_path::tip_path::{Borders, PathTarget, TipPath};
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
-use crate::objective::{Bounds, Linearization};
+use crate::objective::Linearization;
 use crate::robot::Robot;
 
 /// Nodes of the offsets along the path: as many as the published planner has knots.
 pub(super) const NODES: usize = 5;
 
-/// The arm on its path.
-pub(crate) struct RedundantMotion<'a> {
-    robot: &'a Robot,
-    bounds: Bounds,
+/// Configurations along a path: a nominal motion, and offsets in the null space of the task.
+pub(crate) struct NullSpaceOffsets<'a> {
+    projection: Projection<'a>,
     nominal: JointWaypoints,
-    /// Targets of the tip at the nominal motion's knots, each where in its tolerance_band that motion has the tip.
+    /// Targets of the tip at the nominal motion's knots, each with the tip's displacement in its tolerance band.
     held: Vec<PathTarget>,
     /// Directions of the self-motion at each node, one per column.
     bases: Vec<DMatrix<f64>>,
@@ -32,10 +31,9 @@ pub(crate) struct RedundantMotion<'a> {
     weights: Vec<f64>,
     /// Whether the first configuration is given, and remains unchanged.
     starts_as_given: bool,
-    linearization: Linearization,
 }
 
-impl<'a> RedundantMotion<'a> {
+impl<'a> NullSpaceOffsets<'a> {
     /// The arm on `tip_path`, with this nominal motion.
     pub(crate) fn around(
         robot: &'a Robot,
@@ -46,14 +44,12 @@ impl<'a> RedundantMotion<'a> {
         let rows = nominal.rows.chunks_exact(robot.dof());
         let held = nominal.knots.iter().zip(rows).map(|(knot, q)| tip_path.path_target(*knot).held_at(|| robot.tip(q)));
         let mut motion = Self {
-            robot,
-            bounds: Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))),
+            projection: Projection::new(robot),
             held: held.collect(),
             weights: node_weights(&nominal.knots),
             nominal,
             bases: vec![],
             starts_as_given,
-            linearization: Linearization::default(),
         };
         motion.bases = motion.self_motions();
         motion
@@ -66,7 +62,7 @@ impl<'a> RedundantMotion<'a> {
 
     /// Number of joints.
     pub(super) fn dof(&self) -> usize {
-        self.robot.dof()
+        self.projection.robot.dof()
     }
 
     /// Number of points passed.
@@ -86,14 +82,14 @@ impl<'a> RedundantMotion<'a> {
 
     /// Writes the configurations at all points for the offsets `z` (by node; rad, m along the self-motion) into
     /// `waypoints`; returns the total distance to the points (m, rad).
-    pub(super) fn place(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
+    pub(super) fn write(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
         let n = self.dof();
         let freedom = self.freedom();
         let mut missed = 0.0;
         let mut correction = [0.0; MAX_DOF];
         for point in 0..self.points() {
             let q = &mut waypoints[point * n..(point + 1) * n];
-            q.copy_from_slice(&self.nominal.rows[point * n..(point + 1) * n]);
+            q.copy_from_slice(self.nominal.row(point));
             for (node, basis) in self.bases.iter().enumerate() {
                 let weight = self.weights[point * NODES + node];
                 for (k, z) in z[node * freedom..(node + 1) * freedom].iter().enumerate() {
@@ -104,9 +100,9 @@ impl<'a> RedundantMotion<'a> {
             let mut from = [0.0; MAX_DOF];
             from[..n].copy_from_slice(q);
             q.iter_mut().zip(&correction).for_each(|(q, c)| *q += c);
-            self.bounds.clip(q);
+            self.projection.bounds.clip(q);
             if point > 0 || !self.starts_as_given {
-                missed += project(self.robot, &self.held[point], &self.bounds, q, &mut self.linearization);
+                missed += self.projection.project(&self.held[point], q);
             }
             for j in 0..n {
                 correction[j] = q[j] - from[j];
@@ -116,15 +112,15 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// Returns the null space of the task Jacobian at each node, each basis aligned with the previous one.
-    fn self_motions(&mut self) -> Vec<DMatrix<f64>> {
+    fn self_motions(&self) -> Vec<DMatrix<f64>> {
         let n = self.dof();
-        let mut bases: Vec<DMatrix<f64>> = Vec::with_capacity(NODES);
+        let (mut bases, mut at): (Vec<DMatrix<f64>>, _) = (Vec::with_capacity(NODES), Linearization::default());
         for node in 0..NODES {
             let point = self.nominal.knots.partition_point(|knot| *knot < node as f64 / (NODES - 1) as f64);
             let point = point.min(self.points() - 1);
-            let q = &self.nominal.rows[point * n..(point + 1) * n];
-            self.held[point].linearize(self.robot, q, &mut Borders::default(), &mut self.linearization);
-            let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.first.columns[joint][row]);
+            let q = self.nominal.row(point);
+            self.held[point].linearize(self.projection.robot, q, &mut Borders::default(), &mut at);
+            let jacobian = DMatrix::from_fn(6, n, |row, joint| at.first.columns[joint][row]);
             let null = null_space(&jacobian);
             bases.push(match bases.first() {
                 None => null,

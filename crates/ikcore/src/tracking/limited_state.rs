@@ -8,14 +8,14 @@ use crate::wording::number;
 
 /// Motion of an arm under acceleration or jerk limits.
 #[derive(Debug)]
-pub(super) struct LimitedMotion {
+pub(super) struct LimitedState {
     reachable: ReachableSet,
     state: JointState,
     scales: Scales,
     dt: f64,
 }
 
-impl LimitedMotion {
+impl LimitedState {
     /// Motion at rest; `None` without acceleration and jerk limits.
     pub fn new(limits: &Limits, dt: f64) -> Option<Self> {
         let reachable = ReachableSet::new(limits, dt)?;

@@ -1,10 +1,11 @@
-//! Constant limits of each joint, for planners.
+//! Constant limits of each joint, for planners and timings.
 
 use std::f64::consts::PI;
 
+use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile};
+use crate::limits::{Field, Limits, Profile, ROUNDING};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot};
@@ -12,50 +13,131 @@ use crate::trajectory::Trajectory;
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct MotionLimits {
+pub struct ConstantLimits {
     /// Lower position limits (rad, m).
-    pub lower: Vec<f64>,
+    pub(crate) lower: Vec<f64>,
     /// Upper position limits (rad, m).
-    pub upper: Vec<f64>,
+    pub(crate) upper: Vec<f64>,
     /// Velocity limits (rad/s, m/s).
-    pub velocity: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
     /// Acceleration limits (rad/s^2, m/s^2).
-    pub acceleration: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
     /// Jerk limits (rad/s^3, m/s^3).
-    pub jerk: Vec<f64>,
-    joints: Vec<(String, JointKind)>,
+    pub(crate) jerk: Vec<f64>,
+    /// Names, and kinds where a robot is known.
+    joints: Vec<(String, Option<JointKind>)>,
 }
 
-/// Relative excess over a limit that counts as rounding of the polynomial coefficients.
-const ROUNDING: f64 = 1e-9;
+impl ConstantLimits {
+    /// The limits of a path without a robot; `method` names the call in errors.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] for limits that vary over time and for joints without an acceleration limit;
+    /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
+    pub fn new(limits: &Limits, method: impl Into<Message>) -> Result<Self> {
+        let method = method.into();
+        let remedy = "when a point of the path is passed is what it looks for; give numbers";
+        let joints = limits.joint_names().iter().map(|name| (name.clone(), None)).collect();
+        let limits = Self::read(limits, joints, method.clone(), remedy)?;
+        limits.require_accelerations(method)?;
+        Ok(limits)
+    }
 
-impl MotionLimits {
     /// The limits for `robot`; `None` means its own. `method` names the planner in errors.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`] for limits that vary over time, [`Error::OutOfRange`] for a velocity, acceleration or
     /// jerk limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
-    pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: impl Into<Message>) -> Result<Self> {
+    pub(crate) fn for_robot(robot: &Robot, limits: Option<&Limits>, method: impl Into<Message>) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
+        let joints = robot.joints().iter().map(|joint| (joint.name.clone(), Some(joint.kind))).collect();
+        let limits = Self::read(&limits, joints, method.into(), "give numbers")?;
+        limits.require_motion()?;
+        Ok(limits)
+    }
+
+    fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: Message, remedy: &str) -> Result<Self> {
         limits.validate(0.0, 0)?;
-        let method = method.into();
-        let constants = |field: Field| limits.constants(field, &method, "give numbers");
-        let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
-        let or_unlimited = |mut values: Vec<f64>| {
-            values.resize(robot.dof(), f64::INFINITY);
-            values
+        let constants = |field: Field| {
+            let mut values = limits.constants(field, &method, remedy)?;
+            values.resize(joints.len(), f64::INFINITY);
+            Ok(values)
         };
-        let limits = Self {
+        Ok(Self {
             lower: constants(Field::Lower)?,
             upper: constants(Field::Upper)?,
             velocity: constants(Field::Velocity)?,
-            acceleration: or_unlimited(constants(Field::Acceleration)?),
-            jerk: or_unlimited(constants(Field::Jerk)?),
+            acceleration: constants(Field::Acceleration)?,
+            jerk: constants(Field::Jerk)?,
             joints,
-        };
-        limits.require_motion()?;
-        Ok(limits)
+        })
+    }
+
+    /// Checks that every joint has an acceleration limit, which `method` needs.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn require_accelerations(&self, method: impl Into<Message>) -> Result<()> {
+        match self.acceleration.iter().position(|limit| *limit == f64::INFINITY) {
+            None => Ok(()),
+            Some(joint) => Err(Error::UnsupportedLimit {
+                field: "infinite acceleration".into(),
+                method: method.into(),
+                remedy: format!(
+                    "joint '{}' could start at any speed; give acceleration limits",
+                    self.joint_name(joint)
+                )
+                .into(),
+            }),
+        }
+    }
+
+    /// Checks that these limits fit the joints of `path`, that the path is within the position limits, and that no
+    /// joint that must move is locked.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::Infeasible`] names the joint.
+    pub(super) fn require_for(&self, path: &JointPath) -> Result<()> {
+        let joints = path.joints();
+        if self.dof() != joints.len() {
+            let expected = format!("{} joints, as the path has", joints.len());
+            return Err(Error::WrongLength { what: "limits".into(), expected, got: self.dof() });
+        }
+        for (j, joint) in joints.iter().enumerate() {
+            let [lowest, highest] = path.range(j);
+            for (place, excess, bound, limit) in [
+                (lowest, self.lower[j] - lowest, self.lower[j], "lower"),
+                (highest, highest - self.upper[j], self.upper[j], "upper"),
+            ] {
+                if excess > ROUNDING * bound.abs().max(1.0) {
+                    let problem =
+                        format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
+                    return Err(Error::Infeasible { problem: problem.into() });
+                }
+            }
+            if let Some((field, _)) = self.rates().into_iter().find(|(_, limits)| limits[j] == 0.0)
+                && highest > lowest
+            {
+                let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
+                return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0").into() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Limits on derivatives of the position, with their names.
+    fn rates(&self) -> [(&'static str, &[f64]); 3] {
+        [("velocity", &self.velocity), ("acceleration", &self.acceleration), ("jerk", &self.jerk)]
+    }
+
+    /// Units of a joint's position, velocity, acceleration and jerk.
+    fn units(&self, joint: usize) -> [&'static str; 4] {
+        if self.joints[joint].1.is_none_or(JointKind::turns) {
+            ["rad", "rad/s", "rad/s^2", "rad/s^3"]
+        } else {
+            ["m", "m/s", "m/s^2", "m/s^3"]
+        }
     }
 
     /// Whether any joint has a jerk limit.
@@ -77,7 +159,7 @@ impl MotionLimits {
 
     /// Unit of the acceleration of a joint.
     pub(crate) fn acceleration_unit(&self, joint: usize) -> &'static str {
-        if self.joints[joint].1.turns() { "rad/s^2" } else { "m/s^2" }
+        self.units(joint)[2]
     }
 
     /// Number of joints.
@@ -122,7 +204,7 @@ impl MotionLimits {
         (0..self.dof()).map(time).fold(0.0, f64::max)
     }
 
-    /// `robot` with these position limits.
+    /// Returns `robot` with these position limits.
     ///
     /// # Errors
     /// None in practice: the limits were checked.
@@ -158,15 +240,11 @@ impl MotionLimits {
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let [velocity, acceleration, jerk] =
             [trajectory.max_velocity(), trajectory.max_acceleration(), trajectory.max_jerk()];
-        // Of the times of the trajectory: a velocity may be off by what an acceleration changes meanwhile, and so on.
+        // Rounding of the times of the trajectory: a velocity may be off by its change in that time, and so on.
         let resolution = 4.0 * f64::EPSILON * trajectory.duration();
         let mut found = vec![];
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
-            let units = if self.joints[j].1.turns() {
-                ["rad", "rad/s", "rad/s^2", "rad/s^3"]
-            } else {
-                ["m", "m/s", "m/s^2", "m/s^3"]
-            };
+            let units = self.units(j);
             let checks = [
                 ("lowest position", lowest, self.lower[j], self.lower[j] - lowest, units[0]),
                 ("highest position", highest, self.upper[j], highest - self.upper[j], units[0]),
@@ -198,8 +276,7 @@ impl MotionLimits {
 
     /// Checks that no joint is locked by a zero limit.
     fn require_motion(&self) -> Result<()> {
-        for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration), ("jerk", &self.jerk)]
-        {
+        for (name, values) in self.rates() {
             if let Some(j) = values.iter().position(|value| *value <= 0.0) {
                 let what = format!("{name} limit of joint '{}'", self.joint_name(j));
                 return Err(Error::out_of_range(what, "positive", values[j]));

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
+use crate::math::vector::write_between;
 use crate::motion::{Braking, JointState, StopCurve};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
@@ -12,7 +13,7 @@ const SHORTEST: f64 = 1e-3;
 
 /// Motion of an arm that takes one command and then stops. Tick 0 is before the command, tick 1 at its end.
 #[derive(Debug)]
-pub(super) struct StopMotion<'a> {
+pub(super) struct CommandAndStop<'a> {
     from: &'a [f64],
     command: &'a [f64],
     /// Stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
@@ -22,7 +23,7 @@ pub(super) struct StopMotion<'a> {
     ticks: f64,
 }
 
-impl<'a> StopMotion<'a> {
+impl<'a> CommandAndStop<'a> {
     /// Motion of an arm at `from` that receives `command`. `limited` holds the braking limits of the joints and their state in
     /// the last tick; `None` without acceleration limits.
     pub fn new(from: &'a [f64], command: &'a [f64], limited: Option<(&[Braking], &'a JointState)>) -> Self {
@@ -59,7 +60,7 @@ impl<'a> StopMotion<'a> {
     }
 }
 
-impl JointMotion for StopMotion<'_> {
+impl JointMotion for CommandAndStop<'_> {
     fn write(&self, tick: f64, q: &mut [f64]) {
         if tick < 0.0 && self.is_spline() {
             for (q, (from, step)) in q.iter_mut().zip(self.from.iter().zip(self.before)) {
@@ -68,9 +69,7 @@ impl JointMotion for StopMotion<'_> {
             return;
         }
         if tick <= 1.0 {
-            for (q, (from, command)) in q.iter_mut().zip(self.from.iter().zip(self.command)) {
-                *q = from + tick * (command - from);
-            }
+            write_between(self.from, self.command, tick, q);
             return;
         }
         let (before, fraction) = (tick.floor() - 1.0, tick.fract());

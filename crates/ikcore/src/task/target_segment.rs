@@ -8,7 +8,7 @@ use crate::math::so3::{rotated, rotation_between};
 /// Motion of a target from the start of a tick to its end. Positions follow the cubic that meets both velocities, or a straight
 /// line if these are unknown; orientations rotate at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TargetMotion {
+pub(crate) struct TargetSegment {
     /// Target at the start.
     pub begin: Target,
     /// Target at the end, of the same kind.
@@ -28,7 +28,7 @@ pub struct Twist {
     pub angular: [f64; 3],
 }
 
-impl TargetMotion {
+impl TargetSegment {
     /// Target and twist at `fraction` of the tick, from 0 to 1.
     pub fn at(&self, fraction: f64) -> (Target, Twist) {
         let (from, to) = (self.begin.position().unwrap_or_default(), self.end.position().unwrap_or_default());
@@ -74,7 +74,7 @@ mod tests {
     fn both_ends_and_their_velocities_are_met() {
         let (from, to) = ([1.0, -2.0, 0.5], [1.3, -1.0, 0.0]);
         let velocities = [[0.2, 4.0, -1.0], [3.0, 0.0, -0.4]];
-        let motion = TargetMotion {
+        let motion = TargetSegment {
             begin: Target::Position(from),
             end: Target::Position(to),
             velocities: Some(velocities),
@@ -98,7 +98,7 @@ mod tests {
         let begin = Frame { axes: [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.1, 0.2, 0.3] };
         let turn = [0.3, -0.8, 0.5];
         let end = Frame { axes: begin.axes.map(|axis| rotated(&axis, &turn)), origin: [0.3, 0.2, 0.1] };
-        let motion = TargetMotion { begin: Target::Pose(begin), end: Target::Pose(end), velocities: None, dt: 0.5 };
+        let motion = TargetSegment { begin: Target::Pose(begin), end: Target::Pose(end), velocities: None, dt: 0.5 };
         let (Target::Pose(half), twist) = motion.at(0.5) else { panic!("a pose stays a pose") };
         assert!((0..3).all(|k| (rotation_between(&begin, &half)[k] - 0.5 * turn[k]).abs() < 1e-15));
         assert!((0..3).all(|k| (twist.angular[k] - 2.0 * turn[k]).abs() < 1e-14 && half.origin[1] == 0.2));

@@ -5,17 +5,17 @@ use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
 use crate::obstacle::{ClearSpace, ClearanceSweep, NearestContact};
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, certify, configuration_at};
+use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, certify, configuration_at};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// Configurations of a target that are tried.
+/// Number of configurations of a target that are tried.
 const TRIED: usize = 32;
-/// Values of the parameter of a redundant arm at which its closed form is asked for them.
+/// Number of values of the parameter of a redundant arm at which its closed form is evaluated.
 const REDUNDANCY: usize = 16;
 
-/// Which end of the motion the line is at.
+/// End of the motion at which a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     /// After the start.
@@ -42,7 +42,7 @@ impl Side {
     }
 }
 
-/// Finds straight lines at the ends of a motion.
+/// Search for straight lines at an end of a motion.
 pub(super) struct LineSearch<'a> {
     pub options: &'a PointToPointOptions,
     pub line: &'a StraightLine,
@@ -60,7 +60,7 @@ pub(super) struct LineSearch<'a> {
 }
 
 impl LineSearch<'_> {
-    /// Up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
+    /// Returns up to `count` clear motions along the line at one end of the motion: from the start away, or to the end.
     ///
     /// # Errors
     /// [`Error::Unreachable`] if there is none: why the best one is none; errors of the surroundings.
@@ -94,7 +94,7 @@ impl LineSearch<'_> {
         Ok(found)
     }
 
-    /// The configurations of an end; clear ones, if it is a target.
+    /// Returns the configurations of an end; clear ones if it is a target.
     fn configurations(&mut self, name: EndName, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Vec<f64>>> {
         let target = match end {
             Endpoint::Configuration(q) => {
@@ -122,7 +122,7 @@ impl LineSearch<'_> {
         Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())
     }
 
-    /// The motion along the line from or to `q`, or how far it gets (m), and why no farther.
+    /// Returns the motion along the line from or to `q`, or the length reached (m) and the hindrance.
     fn from(&self, q: &[f64]) -> Result<Result<Trajectory, (f64, Hindrance)>> {
         let (frame, place) = (self.tip.robot().tip(q), self.side.place());
         // Always found from the end of the motion away, and reversed for an approach.
@@ -134,7 +134,7 @@ impl LineSearch<'_> {
             Ok(motion) => motion,
             Err(why) => return Ok(Err((0.0, why))),
         };
-        let margin = self.along_line.map_or(0.0, |space| space.margin() - RESERVE);
+        let margin = self.along_line.map_or(0.0, |space| space.margin() - END_RESERVE);
         let checked = self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
@@ -165,7 +165,7 @@ fn why_none(set: &SolutionSet) -> String {
     }
 }
 
-/// The same motion from its end to its start.
+/// Returns the motion reversed in time.
 fn reversed(motion: &Trajectory) -> Result<Trajectory> {
     let (duration, n) = (motion.duration(), motion.joints().len());
     let times: Vec<f64> = motion.knots().iter().rev().map(|t| duration - t).collect();
