@@ -30,8 +30,8 @@ use ikcore::objective::Bounds;
 use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
-    AlongPathOptions, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds, StraightLine,
-    TimingLimits, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
+    AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
+    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;

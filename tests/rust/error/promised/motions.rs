@@ -9,7 +9,7 @@ pub fn paths_and_trajectories() -> Vec<Row> {
     let timed = |limits: Limits, options: TimingOptions| {
         time_optimal(
             &polyline(&[0.0, 0.0, 1.0, 1.0]).unwrap(),
-            &TimingLimits::new(&limits, "time_optimal").unwrap(),
+            &ConstantLimits::new(&limits, "time_optimal").unwrap(),
             &options,
         )
     };
@@ -61,9 +61,9 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "JointPath::spline" NotIncreasing: spline(&[0.0, 0.0, 1.0, 1.0, 2.0, 2.0], Some(&[0.0, 2.0, 1.0])), "knots must increase, but row 2 has 1 after 2";
         "time_optimal" Infeasible: timed(rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap(), TimingOptions::default()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "time_optimal" OutOfRange: timed(rated(), TimingOptions { gridpoints: Some(0), ..Default::default() }), "gridpoints must be from 3 to 200000, got 0";
-        "TimingLimits::new" UnsupportedLimit: TimingLimits::new(&varying(Field::Acceleration), "time_optimal"), "time_optimal cannot honour time-varying acceleration limits: when a point of the path is passed is what it looks for; give numbers";
-        "TimingLimits::new" NegativeLimit: TimingLimits::new(&constant(Field::Acceleration, -1.0), "time_optimal"), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
-        "TimingLimits::new" EmptyRange: TimingLimits::new(&crossed(), "time_optimal"), "joint '0': lower limit 1 is above upper limit 0";
+        "ConstantLimits::new" UnsupportedLimit: ConstantLimits::new(&varying(Field::Acceleration), "time_optimal"), "time_optimal cannot honour time-varying acceleration limits: when a point of the path is passed is what it looks for; give numbers";
+        "ConstantLimits::new" NegativeLimit: ConstantLimits::new(&constant(Field::Acceleration, -1.0), "time_optimal"), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
+        "ConstantLimits::new" EmptyRange: ConstantLimits::new(&crossed(), "time_optimal"), "joint '0': lower limit 1 is above upper limit 0";
         "Trajectory::new" InvalidTrajectory: Trajectory::new(vec![], vec![0.0, 1.0], vec![]), "trajectory: it needs at least 1 joint";
         "Trajectory::new" WrongLength: Trajectory::new(names(1), vec![0.0, 1.0], vec![]), "trajectory coefficients: expected 1 polynomials (1 segments of 1 joints), got 0";
         "Trajectory::new" NotFinite: Trajectory::new(names(1), vec![0.0, 1.0], vec![[NAN; 7]]), "trajectory coefficients must be finite, but power 0 of joint 'joint_1' in segment 0 is NaN";
