@@ -5,9 +5,9 @@ use std::sync::{LazyLock, OnceLock};
 
 use smallvec::SmallVec;
 
+use super::checked_tasks::{asked_tasks, reduce};
 use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
-use super::tip_tasks::{asked_tasks, reduce};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
@@ -17,7 +17,7 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
-use crate::task::{Aims, Goals, Target, TargetRow, TipCriterion};
+use crate::task::{Aims, CheckedTask, Goals, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +40,7 @@ pub(crate) struct SolveContext<'a> {
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     /// Task of each target; one for a robot with one tip.
-    tasks: SmallVec<[TipCriterion; 1]>,
+    tasks: SmallVec<[CheckedTask; 1]>,
     goals: Goals,
     bounds: Bounds,
     /// Preference of queries without a start, computed on first use.
