@@ -11,10 +11,9 @@ use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
-use crate::objective::{Bounds, Objective, Point};
+use crate::objective::Bounds;
 use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
-use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
 use crate::task::{Aims, CheckedTask, Goals, Target, TargetRow};
@@ -182,16 +181,6 @@ impl<'a> SolveContext<'a> {
             }),
             _ => Ok(()),
         }
-    }
-
-    /// Caller's start, or the indexed configuration nearest to the target.
-    pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
-        if let Some(start) = start {
-            return Point::from_slice(start);
-        }
-        let mut x0 = Point::from_elem(0.0, self.robot().dof());
-        problem.propose_start(0, &self.bounds, rng, &mut x0);
-        x0
     }
 }
 

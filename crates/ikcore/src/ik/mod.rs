@@ -33,7 +33,7 @@ pub use checked_tasks::tip_errors;
 pub(crate) use checked_tasks::{checked_tasks, reduce};
 pub(crate) use context::{Query, SolveContext};
 pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
-pub use solution::{Nearest, Solution};
+pub use solution::{Nearest, Solution, SolveReport};
 pub use solutions::{SolutionView, Solutions};
 pub(crate) use solve::solve_query;
 pub use solve::{solve, solve_tips};
