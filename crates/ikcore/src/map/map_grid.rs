@@ -96,7 +96,7 @@ impl MapGrid {
 
     /// Number of bytes for the bits of one voxel.
     pub fn bytes(&self) -> usize {
-        self.orientations.len().div_ceil(8)
+        self.orientations.count().div_ceil(8)
     }
 
     /// Pose of orientation `i` at `place` (m), rotated to `azimuth` (rad) about z.

@@ -99,7 +99,7 @@ fn walk_on(
         let there = walk.here();
         let chord = difference(&there.q, &from.q);
         let length = norm(&chord);
-        arcs.look(&from, there, length);
+        arcs.add_step(&from, there, length);
         passed.push((from.q, chord));
         let since = limits.apart(&there.q, &begin.q);
         // Overlap of begin and end, so that no part of the curve is missed.
