@@ -95,12 +95,14 @@ lint-python: $(VENV)/with-test
 	$(BIN)/mypy
 	$(BIN)/python tools/stub_docstrings.py --check
 
-bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison with other libraries in target/compare/
+bench: $(BIN)/maturin  ## criterion benchmarks of the core, then the comparison with other libraries in target/compare/
 	cargo bench --locked
+	rm -rf target/bench
+	$(BIN)/maturin build --release --interpreter $(BIN)/python --out target/bench
 	$(PYTHON) -m venv .venv-bench
 	echo '*' > .venv-bench/.gitignore
-	.venv-bench/bin/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl
-	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt dist/*.whl
+	.venv-bench/bin/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps target/bench/*.whl
+	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt target/bench/*.whl
 	.venv-bench/bin/python benches/compare.py --out target/compare
 
 # `cargo install cargo-tarpaulin --locked` installs the coverage tool for Rust.
@@ -137,10 +139,10 @@ $(VENV)/python:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-# The wheel as released, installed without its dependencies: the extras below install them.
+# The profile `quick` compiles on all cores. The wheel is installed without its dependencies: the extras below install them.
 $(VENV)/wheel: $(SOURCES) | $(BIN)/maturin
 	rm -rf dist
-	$(BIN)/maturin build --release --interpreter $(BIN)/python --out dist
+	$(BIN)/maturin build --profile quick --interpreter $(BIN)/python --out dist
 	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl
 	@touch $@
 

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::Scene;
+use ikcore::obstacle::{Scene, Surroundings};
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::robot::Robot;
 use ikcore::shape::Shape;
@@ -43,7 +43,7 @@ fn panda(c: &mut Criterion) {
     ] {
         let options = PointToPointOptions {
             limits: limits(&arm, None, 10.0),
-            obstacles: vec![obstacle.clone()].into(),
+            surroundings: Surroundings::among(vec![obstacle.clone()]),
             ..Default::default()
         };
         group.bench_function(name, |b| {

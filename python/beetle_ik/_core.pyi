@@ -607,7 +607,7 @@ class Status(IntEnum):
     """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
 
     - `SOLVED`: Within the tolerances.
-    - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached `value_below`.
+    - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached the value asked for.
     - `CAPPED`: A step of a track that is neither within the tolerance nor nearer than the step before; the best configuration found is kept.
     - `STALLED`: The solver's own rule ended the search: no further progress from here.
     - `BUDGET_SPENT`: The evaluation or iteration budget is spent.

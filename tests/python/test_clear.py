@@ -130,7 +130,7 @@ def test_an_arm_stands_on_a_floor_that_its_foot_may_touch() -> None:
     assert refused.status == bik.Status.IN_COLLISION
     assert (
         "link 'link_1' is 0.06000 m inside obstacle 0 (HalfSpace) whatever the arm does; if the robot stands there, "
-        'give the obstacle touch=["link_1"]: ' in refused.message
+        "put 'link_1' into the obstacle's touch: " in refused.message
     )
     others = ARM.with_capsules([body for body in ARM.capsules if body[0] != "link_1"])
     for solution in (
@@ -147,7 +147,7 @@ def test_an_arm_stands_on_a_floor_that_its_foot_may_touch() -> None:
     plan = bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=allowed)
     assert plan.success
     assert plan.clearance >= 1e-3
-    with pytest.raises(bik.InvalidInputError, match=r"start: link 'link_1' is .* the obstacle touch=\[\"link_1\"\]$"):
+    with pytest.raises(bik.InvalidInputError, match=r"start: link 'link_1' is .* into the obstacle's touch$"):
         bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=[floor()])
 
 

@@ -334,3 +334,22 @@ def test_every_command_has_help(command: str) -> None:
     result = run(*command.split(), "--help")
     assert result.exit_code == 0
     assert "Usage: " in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (
+            "track ur5e --curve circle --dt 0.1 --ease",
+            "--ease is an approach under acceleration or jerk limits, and there are none: give --acceleration-limit",
+        ),
+        ("solve panda --position 0.4 0 0.5 --margin 0.1", "--margin needs --scene"),
+        (
+            "plan along-path planar5 --curve circle --method tpbso --velocity-limit 1 --jerk-limit 9",
+            "--method tpbso cannot honour jerk limits: leave them out, and add them with `beetle-ik plan retime`",
+        ),
+    ],
+)
+def test_messages_name_options_instead_of_keywords(command: str, message: str) -> None:
+    refused = CliRunner().invoke(app, command.split())
+    assert (refused.exit_code, refused.stderr.strip()) == (2, f"Error: {message}")

@@ -138,7 +138,7 @@ def test_ease_from_the_command_line() -> None:
     command = "track ur5e --curve circle --duration 5 --dt 0.01 --acceleration-limit 5 --json"
     plain = CliRunner().invoke(app, command.split())
     assert plain.exit_code == 1
-    assert "ease=True (--ease)" in json.loads(plain.stdout)["message"]
+    assert "at rest: --ease begins with an approach" in json.loads(plain.stdout)["message"]
     eased = CliRunner().invoke(app, [*command.split(), "--ease"])
     summary: dict[str, Any] = json.loads(eased.stdout)
     assert (eased.exit_code, summary["success"]) == (0, True), summary["message"]

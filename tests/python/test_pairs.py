@@ -79,6 +79,8 @@ def test_what_is_grasped_collides_with_what_is_around() -> None:
     carrying = PANDA.with_attached("flange", part, touch=["link_6"], name="stick")
     assert carrying.all_link_names[-1] == "stick"
     assert ("link_6", "stick") not in carrying.collision_pairs
+    same = bik.obstacles.Box((0, 0, 0.15), (0.04, 0.04, 0.3), touch=["link_6"])
+    assert PANDA.with_attached("flange", same, name="stick").collision_pairs == carrying.collision_pairs
     end = carrying.fk(READY, link="stick") @ [0, 0, 0.3, 1]
     ball = bik.obstacles.Sphere(end[:3], 0.02)
     assert bik.obstacles.clearance(PANDA, READY, [ball]) > 0.1 > 0 > bik.obstacles.clearance(carrying, READY, [ball])

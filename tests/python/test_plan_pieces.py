@@ -213,12 +213,12 @@ WRONG: list[Case] = [
     (
         lambda: to(end=GRASPS[0], approach=bik.StraightLine(0.01, touch={0: ["link_7"]})),
         Invalid,
-        "end cannot be reached: no straight line for approach=0.01000: at its other end link 'link_7' is",
+        "end cannot be reached: no straight approach of 0.01000 m: at its other end link 'link_7' is",
     ),
     (
         lambda: to(end=GRASPS[0], approach=bik.StraightLine(2.0, touch={0: ["link_7"]})),
         Invalid,
-        "end cannot be reached: no straight line for approach=2.000: ",
+        "end cannot be reached: no straight approach of 2.000 m: ",
     ),
 ]  # fmt: skip
 

@@ -194,17 +194,17 @@ def test_robots_with_several_tips_are_drawn() -> None:
 REFUSED = "takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as tip="
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 CALLS: dict[str, Callable[[], object]] = {
-    "solver=": lambda: bik.track(PAIR, {"left_tool": LINE}, Q[0], dt=0.1, solver=bik.papers.BAS()),
+    "a given solver": lambda: bik.track(PAIR, {"left_tool": LINE}, Q[0], dt=0.1, solver=bik.papers.BAS()),
     "WeightedPseudoInverse": lambda: bik.Tracker(PAIR, Q[0], dt=0.1, solver=bik.WeightedPseudoInverse()),
     "KinematicPlant": lambda: bik.KinematicPlant(PAIR),
     "plan_along_path": lambda: bik.plan_along_path(PAIR, LINE),
-    "approach=, retreat= or free_start= of plan_point_to_point": lambda: bik.plan_point_to_point(
+    "plan_point_to_point with approach, retreat or free_start": lambda: bik.plan_point_to_point(
         PAIR, start_q=Q[0], end_q=Q[1], approach=0.1
     ),
     'method="tpbso" of plan_point_to_point': lambda: bik.plan_point_to_point(
         PAIR, start_q=Q[0], end_q=Q[1], method="tpbso"
     ),
-    'objective="tip_travel" of plan_point_to_point': lambda: bik.plan_point_to_point(
+    "the objective 'tip_travel' of plan_point_to_point": lambda: bik.plan_point_to_point(
         PAIR, start_q=Q[0], end_q=Q[1], objective="tip_travel"
     ),
     "MujocoPlant": lambda: sim.MujocoPlant(PAIR),

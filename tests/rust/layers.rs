@@ -1,19 +1,20 @@
 //! Layers of the core: a file uses its own module and lower ones, files do not import one another in circles, and a name is
 //! declared once.
 
-mod imports;
+pub mod imports;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["message", "error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Modules that each module may use, besides itself and those of [`FOUNDATION`]. Solvers do not depend on robots, nor robots on
 /// solvers.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("error", &[]),
+    ("message", &[]),
+    ("error", &["message"]),
     ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
@@ -23,14 +24,15 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("shape", &[]),
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
-    ("robot", &["kinematics", "starts", "closed_form", "shape"]),
+    ("bodies", &["kinematics", "shape"]),
+    ("robot", &["kinematics", "starts", "closed_form", "shape", "bodies"]),
     ("load", &["kinematics", "shape", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
     ("motion", &["limits", "trajectory", "objective"]),
-    ("obstacle", &["kinematics", "robot", "objective", "shape"]),
+    ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
     ("solver", &["objective"]),
@@ -173,7 +175,17 @@ fn files_import_one_another_in_no_circle() {
 }
 
 #[test]
-fn no_two_types_fraction_a_name() {
+fn tests_stand_in_the_rooms_of_the_core() {
+    let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
+    for file in tests.files() {
+        let room = room_of(file);
+        let known = ["main", "common", "layers"].contains(&&*room) || LAYERS.iter().any(|(name, _)| *name == room);
+        assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
+    }
+}
+
+#[test]
+fn no_two_types_share_a_name() {
     let core = core();
     let mut places: BTreeMap<&str, BTreeSet<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -186,7 +198,7 @@ fn no_two_types_fraction_a_name() {
 }
 
 #[test]
-fn no_three_files_fraction_a_name() {
+fn no_three_files_share_a_name() {
     let core = core();
     let mut places: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
     for file in core.files() {
@@ -244,7 +256,7 @@ fn circles_are_found_through_re_exports() {
 /// Lines of `file` that violate its rule, each as `file:line: rule`.
 fn faults_of(file: &SourceFile) -> Vec<String> {
     let place = file.path.display();
-    let module = file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "");
+    let module = room_of(file);
     if module == "lib" {
         return Vec::new(); // its contents and re-exports
     }
@@ -255,11 +267,17 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
         .into_iter()
         .filter(|(_, used)| {
             let used = used.as_str();
-            let foundation = FOUNDATION.contains(&used) && (used == "error" || !FOUNDATION.contains(&module.as_str()));
+            let foundation = FOUNDATION.contains(&used)
+                && (["message", "error"].contains(&used) || !FOUNDATION.contains(&module.as_str()));
             used != module && !foundation && !allowed.contains(&used)
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))
         .collect()
+}
+
+/// The folder or file of the crate's root that `file` belongs to.
+fn room_of(file: &SourceFile) -> String {
+    file.path.components().next().expect("a file").as_os_str().to_string_lossy().replace(".rs", "")
 }
 
 /// Top-level modules named after `crate::`, with their lines. Names in capitals are re-exports of the root, not modules.

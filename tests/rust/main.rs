@@ -1,61 +1,113 @@
-//! Tests of the core through its public interface. One binary holds all files, so that shared code is compiled and linked once.
+//! Tests of the core through its public interface, in the rooms of `crates/ikcore/src`. One binary holds all files, so that shared
+//! code is compiled and linked once.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on should say so")]
 
 mod common;
-
-mod along_path_clear;
-mod along_path_reach;
-mod along_path_timed;
-mod along_path_tolerance;
-mod apps_paper;
-mod batch;
-mod best_posture;
-mod choice;
-mod circle_posture;
-mod clear;
-mod closed_form;
-mod contract;
-mod ease;
-mod end_pieces;
-mod ends;
-mod first_branch;
-mod ik;
-mod jump;
-mod kinematics;
+mod interface;
 mod layers;
-mod manipulability;
-mod map;
-mod messages;
+mod plain_words;
+mod promised_errors;
+
+mod along_path {
+    mod clear;
+    mod reach;
+    mod timed;
+    mod tolerance;
+}
+mod approach_retreat {
+    mod straight_ends;
+}
+mod batch {
+    mod plan_batch;
+    mod solve_batch;
+}
+mod closed_form {
+    mod branches;
+}
+mod error;
+mod free_path {
+    mod ends;
+    mod point_to_point;
+}
+mod ik {
+    mod choice;
+    mod clear;
+    mod first_branch;
+    mod round_poses;
+    mod self_motion;
+    mod solve;
+    pub mod tips;
+}
+mod kinematics {
+    mod chains;
+}
+mod load {
+    mod catalog;
+    mod damaged_files;
+    mod mesh_loader;
+    mod urdf;
+}
+mod manipulability {
+    mod index;
+}
+mod map {
+    mod reach;
+}
+mod math {
+    mod polynomial;
+}
 mod minimize;
-mod mobile_base;
-mod model_free;
-mod motion;
-mod obstacle;
-mod pairs;
-mod path;
-mod plan_batch;
-mod planning;
-mod point_to_point;
-mod polynomial;
-mod readers;
-mod redundancy;
-mod region;
-mod resolved_rate;
-mod retime;
-mod robots;
-mod round_poses;
-mod seed_index;
-mod state_to_state;
-mod tasks;
-mod time_optimal;
-mod tips;
-mod touch;
-mod track_clear;
-mod track_tips;
-mod tracking;
-mod tracking_paper;
-mod trajectory;
-mod tree;
-mod urdf;
-mod znnbas;
+mod motion {
+    mod state_to_state;
+}
+mod obstacle {
+    mod allowed_contacts;
+    mod scene;
+}
+mod path {
+    mod curves;
+}
+mod posture {
+    mod best_posture;
+    mod circle;
+}
+mod robot {
+    mod mobile_base;
+    mod off_chain;
+    mod pairs;
+}
+mod solver {
+    mod contract;
+    mod yuan_2016;
+}
+mod starts {
+    mod index;
+}
+mod task {
+    mod kinds;
+    mod region;
+}
+mod timing {
+    mod retime;
+    mod time_optimal;
+}
+mod tpbso {
+    mod wang_2019;
+}
+mod tracking {
+    mod cheng_2020;
+    mod clear;
+    mod ease;
+    mod jump;
+    mod khan_2022;
+    mod model_free;
+    mod resolved_rate;
+    mod streams;
+    mod tips;
+    mod track;
+    mod work;
+}
+mod trajectory {
+    mod piecewise;
+}

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::message::{Message, Setting, message};
+
 /// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -19,17 +21,17 @@ pub enum Error {
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {
         /// Name of the argument, for example "joint angles".
-        what: String,
+        what: Message,
         /// Name of the entry, for example "entry 2" or "joint 'elbow'".
         place: String,
         /// The offending number.
         value: f64,
     },
-    /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
+    /// An array has the wrong length.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
         /// Name of the argument and its robot, for example "joint angles of robot 'iiwa14'".
-        what: String,
+        what: Message,
         /// Expected length, for example "7 joints".
         expected: String,
         /// The value that was given.
@@ -39,9 +41,9 @@ pub enum Error {
     #[error("{what} must be {requirement}, got {value}")]
     OutOfRange {
         /// The name of the argument.
-        what: String,
+        what: Message,
         /// Allowed range in words, for example "positive".
-        requirement: String,
+        requirement: Message,
         /// The offending number.
         value: f64,
     },
@@ -90,12 +92,14 @@ pub enum Error {
         known: String,
     },
     /// A call that takes robots with one tip got one with several.
-    #[error("{call} takes robots with one tip; this one has {tips}: load the robot with one of them as tip=")]
+    #[error("{call} takes robots with one tip; this one has {tips}: {remedy}")]
     SeveralTips {
         /// Name of the call.
-        call: String,
+        call: Message,
         /// Names of the tips.
         tips: String,
+        /// The remedy.
+        remedy: Message,
     },
     /// No joint that the robot holds has this name.
     #[error("robot '{robot}' holds no joint '{name}'{problem}; joints that it holds: {}", if .held.is_empty() { "none" } else { .held })]
@@ -125,7 +129,7 @@ pub enum Error {
         /// The robot's name.
         robot: String,
         /// Description of the problem, with advice.
-        problem: String,
+        problem: Message,
     },
     /// A URDF that cannot be read.
     #[error("URDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
@@ -133,7 +137,7 @@ pub enum Error {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
         /// Description of the problem, with advice.
-        problem: String,
+        problem: Message,
     },
     /// An SRDF that cannot be read, or one of another robot.
     #[error("SRDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
@@ -141,7 +145,7 @@ pub enum Error {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
         /// Description of the problem, with advice.
-        problem: String,
+        problem: Message,
     },
     /// A file that cannot be read.
     #[error("cannot read '{path}': {problem}")]
@@ -197,7 +201,7 @@ pub enum Error {
         /// Name of the end, for example "start".
         what: String,
         /// Shortfall, with advice.
-        problem: String,
+        problem: Message,
     },
     /// A search found nothing, which does not prove that nothing exists.
     #[error("{what} was not found: {problem}")]
@@ -205,7 +209,7 @@ pub enum Error {
         /// Object of the search, for example "a motion past point 3 of the path".
         what: String,
         /// Distance by which the search failed, and advice.
-        problem: String,
+        problem: Message,
     },
     /// Several ends were given for a motion, and none of them is usable.
     #[error("none of the {count} ends can be reached: {problems}")]
@@ -213,7 +217,7 @@ pub enum Error {
         /// The number of ends.
         count: usize,
         /// Problem of each end, separated by semicolons.
-        problems: String,
+        problems: Message,
     },
     /// A limit is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
@@ -233,15 +237,15 @@ pub enum Error {
         /// Field of the limits, for example "acceleration".
         field: String,
         /// Method that rejects the limit.
-        method: String,
+        method: Message,
         /// Advice to the caller.
-        remedy: String,
+        remedy: Message,
     },
     /// No motion satisfies the request.
     #[error("infeasible: {problem}")]
     Infeasible {
         /// The conflicting requirements.
-        problem: String,
+        problem: Message,
     },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
@@ -261,7 +265,7 @@ pub enum Error {
     #[error("{problem}")]
     Contradiction {
         /// Contradictory options, with advice.
-        problem: String,
+        problem: Message,
     },
     /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
@@ -277,7 +281,7 @@ pub enum Error {
         /// Description of the problem, with advice.
         problem: String,
         /// Advice on adding capsules to the robot.
-        remedy: String,
+        remedy: Message,
     },
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}{remedy}")]
@@ -291,16 +295,17 @@ pub enum Error {
         /// Penetration depth, for example "0.02 m inside".
         depth: String,
         /// Advice on allowing the contact, after a semicolon; empty if a joint moves the link.
-        remedy: String,
+        remedy: Message,
     },
     /// A joint with neither a velocity nor an acceleration limit.
     #[error(
-        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
-         limits=Limits(velocity=...)"
+        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: {remedy}"
     )]
     NoPace {
         /// The joint's name.
         joint: String,
+        /// The remedy.
+        remedy: Message,
     },
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
@@ -343,7 +348,7 @@ pub enum Error {
         error: Box<Error>,
     },
     /// The operating system cannot start this many threads.
-    #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
+    #[error("cannot start {threads} threads ({problem}): ask for fewer; a single one needs none")]
     NoThreads {
         /// The number of threads requested.
         threads: usize,
@@ -381,14 +386,52 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
+    /// Creates an [`Error::NoPace`].
+    pub(crate) fn no_pace(joint: &str) -> Self {
+        Self::NoPace { joint: joint.into(), remedy: message!["give ", Setting::Limit("velocity")] }
+    }
+
+    /// Returns the error with these words in place of the plain ones of each setting in its messages.
+    pub fn worded(mut self, words: impl Fn(&Setting) -> String + Copy) -> Self {
+        if let Self::InRow { error, .. } | Self::InProblem { error, .. } = &mut self {
+            **error = error.clone().worded(words);
+        }
+        for message in self.messages() {
+            *message = message.worded(words).into();
+        }
+        self
+    }
+
+    /// Returns the parts that may name settings.
+    fn messages(&mut self) -> Vec<&mut Message> {
+        match self {
+            Self::NotFinite { what, .. } | Self::WrongLength { what, .. } => vec![what],
+            Self::OutOfRange { what, requirement, .. } => vec![what, requirement],
+            Self::SeveralTips { call, remedy, .. } => vec![call, remedy],
+            Self::UnsupportedLimit { method, remedy, .. } => vec![method, remedy],
+            Self::NoCapsules { remedy, .. } | Self::InCollision { remedy, .. } | Self::NoPace { remedy, .. } => {
+                vec![remedy]
+            }
+            Self::InvalidRobot { problem, .. }
+            | Self::Urdf { problem, .. }
+            | Self::Srdf { problem, .. }
+            | Self::Unreachable { problem, .. }
+            | Self::NotFound { problem, .. }
+            | Self::NoUsableEnd { problems: problem, .. }
+            | Self::Infeasible { problem }
+            | Self::Contradiction { problem } => vec![problem],
+            _ => vec![],
+        }
+    }
+
     /// Creates an [`Error::OutOfRange`].
-    pub(crate) fn out_of_range(what: impl Into<String>, requirement: &str, value: f64) -> Self {
+    pub(crate) fn out_of_range(what: impl Into<Message>, requirement: impl Into<Message>, value: f64) -> Self {
         Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
     }
 }
 
 /// Checks that every entry is finite; `name(i)` names the offending entry.
-pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
+pub(crate) fn require_finite(what: impl Into<Message>, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(i) => Err(Error::NotFinite { what: what.into(), place: name(i), value: values[i] }),

@@ -46,9 +46,9 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
+//! | 0 | [`message`], [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`starts`], `closed_form` |
+//! | 2 | [`starts`], `closed_form`, `bodies` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`motion`], [`task`], [`solver`] |
@@ -69,6 +69,7 @@ compile_error!("ikcore needs a little-endian processor: stored bytes and the lan
 mod along_path;
 mod approach_retreat;
 pub mod batch;
+mod bodies;
 mod closed_form;
 pub mod error;
 mod free_path;
@@ -80,6 +81,7 @@ pub mod load;
 pub mod manipulability;
 pub mod map;
 pub mod math;
+pub mod message;
 pub mod minimize;
 pub mod motion;
 pub mod objective;

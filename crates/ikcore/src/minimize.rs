@@ -6,6 +6,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite};
+use crate::message::{Message, Setting, message};
 use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop, Stopwatch};
@@ -47,19 +48,21 @@ pub struct Minimum {
 
 impl Minimum {
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {
-            return format!("the function had no finite value in {evaluations} evaluations: try another box or start");
+            return format!("the function had no finite value in {evaluations} evaluations: try another box or start")
+                .into();
         }
         let found = format!("best value {value:.6e} after {evaluations} evaluations");
-        match self.status {
-            Status::Solved => format!("{found}, below the requested value"),
-            Status::Stalled => format!("{found}, no further progress: try another start or seed, or MultiStart"),
-            Status::BudgetSpent => format!("{found}, when the budget was spent: raise it in stop=Stop(...)"),
-            Status::TimeUp => format!("{found}, when the time was up: raise max_time"),
-            _ => format!("{found}, when it was stopped: run again to finish"),
-        }
+        let end = match self.status {
+            Status::Solved => "below the requested value".into(),
+            Status::Stalled => "no further progress: try another start or seed, or MultiStart".into(),
+            Status::BudgetSpent => message!["when all were spent: raise the ", Setting::Budget],
+            Status::TimeUp => "when the time was up: raise max_time".into(),
+            _ => "when it was stopped: run again to finish".into(),
+        };
+        message![found, ", ", end]
     }
 }
 

@@ -24,6 +24,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
 /// batches.
@@ -139,7 +140,7 @@ impl PyBatchSolution {
 
 impl PyBatchSolution {
     fn new(py: Python<'_>, batch: Batch, limits: Py<PyLimits>, tips: TipErrors) -> PyResult<Self> {
-        let message = batch.message();
+        let message = said(&batch.message());
         let Batch { dof, q, items, elapsed } = batch;
         Ok(Self {
             dof,
@@ -173,7 +174,7 @@ impl PyBatchSolution {
 #[pyo3(name = "_batch_message")]
 #[allow(clippy::needless_pass_by_value)]
 pub fn batch_message(counts: Vec<usize>) -> String {
-    batch::message_of_counts(&counts)
+    said(&batch::message_of_counts(&counts))
 }
 
 fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveReport) -> T) -> Py<PyArray1<T>> {
@@ -286,7 +287,7 @@ pub fn solve_batch(
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };
     let batch = watched(py, progress, |watcher| batch::solve_batch(arm, targets, &options, watcher))?;
-    python_calls::log(py, format!("solve_batch: {}", batch.message()))?;
+    python_calls::log(py, "solve_batch", &said(&batch.message()))?;
     let tips = tip_errors(robot, &asked, |row| targets.read(row), &options.each, &batch.q)?;
     PyBatchSolution::new(py, batch, in_force, tips)
 }

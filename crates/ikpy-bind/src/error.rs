@@ -8,6 +8,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
+use crate::wording::spelt;
+
 /// Exception classes, created once. Several have two bases, which pyo3's macro does not support.
 struct Classes {
     base: Py<PyType>,
@@ -116,7 +118,9 @@ pub fn raise(error: Error) -> PyErr {
             Err(failure) => return failure,
         };
         let class = classes.of(&error);
-        PyErr::from_type(class.bind(py).clone(), format!("{error}{}", remedy(&error)))
+        let class = class.bind(py).clone();
+        let remedy = remedy(&error);
+        PyErr::from_type(class, format!("{}{remedy}", error.worded(spelt)))
     })
 }
 

@@ -95,7 +95,7 @@ impl PySolution {
     /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        self.whole().nearest.as_ref()?.bodies.clone().map(PyNearest::from)
+        self.whole().nearest.as_ref()?.clearance.nearest.clone().map(PyNearest::from)
     }
 
     /// Iterations over all starts.
@@ -111,7 +111,7 @@ impl PySolution {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Solution {}: {}>", self.core.status.name(), self.whole().message())
+        format!("<Solution {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

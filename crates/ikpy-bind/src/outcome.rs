@@ -31,7 +31,7 @@ macro_rules! outcome {
             #[getter]
             fn message(&self) -> String {
                 let $result = self;
-                $message
+                $crate::wording::said(&$message)
             }
 
             $(#[$evaluations_note])*

@@ -109,7 +109,7 @@ impl PyPlanarPosture {
     }
 
     fn __repr__(&self) -> String {
-        format!("<PlanarPosture {}: {}>", self.core.status.name(), self.core.message())
+        format!("<PlanarPosture {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

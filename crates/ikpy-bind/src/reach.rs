@@ -4,7 +4,6 @@ use ikcore::batch;
 use ikcore::interrupt::checkpoint_at;
 use ikcore::map::{self, MapLayout, MapOptions};
 use ikcore::math::{Frame, Pose, pose};
-use ikcore::obstacle::Surroundings;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -14,7 +13,7 @@ use crate::convert::{
 };
 use crate::error::{invalid, raise};
 use crate::monitor::{long_call, watched};
-use crate::obstacle::GivenObstacles;
+use crate::obstacle::read_surroundings;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::task::read_task;
@@ -52,7 +51,7 @@ impl PyMapGrid {
             rolls: count("rolls", rolls)?,
             region: region.map(|region| corners("region", region)).transpose()?,
         };
-        let surroundings = surroundings(obstacles, margin, self_collision)?;
+        let surroundings = read_surroundings(obstacles, margin, self_collision)?;
         let options = MapOptions { task: read_task(task)?, surroundings, ..MapOptions::default() };
         Ok(Self { core: map::MapGrid::new(&robot.core, &layout, &options).map_err(raise)? })
     }
@@ -187,15 +186,6 @@ fn read_poses<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'p
     }
 }
 
-fn surroundings(
-    obstacles: Option<&Bound<'_, PyAny>>,
-    margin: Option<f64>,
-    self_collision: Option<bool>,
-) -> PyResult<Surroundings> {
-    let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
-    Ok(Surroundings { obstacles, margin, self_collision })
-}
-
 /// Results of a chunk: bits (x, y, z, bytes), and manipulability and clearance (x, y, z) or None.
 type ChunkArrays<'py> =
     (Bound<'py, PyArrayDyn<u8>>, Option<Bound<'py, PyArrayDyn<f32>>>, Option<Bound<'py, PyArrayDyn<f32>>>);
@@ -234,7 +224,7 @@ pub fn map_chunks<'py>(
     let chunks = chunks.into_iter().map(|number| count("chunks", number)).collect::<PyResult<Vec<usize>>>()?;
     let options = MapOptions {
         task: read_task(task)?,
-        surroundings: surroundings(obstacles, margin, self_collision)?,
+        surroundings: read_surroundings(obstacles, margin, self_collision)?,
         evaluations: count("evaluations", evaluations)?,
         quality,
     };

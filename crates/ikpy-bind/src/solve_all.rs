@@ -126,7 +126,7 @@ impl PySolutionSet {
     }
 
     fn __repr__(&self) -> String {
-        format!("<SolutionSet: {}>", self.core.message())
+        format!("<SolutionSet: {}>", self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

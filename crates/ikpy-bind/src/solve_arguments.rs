@@ -2,14 +2,13 @@
 
 use ikcore::ik::SolveOptions;
 use ikcore::limits::Limits;
-use ikcore::obstacle::Surroundings;
 use ikcore::solver::Stop;
 use pyo3::prelude::*;
 
 use crate::convert::count;
 use crate::error::raise;
 use crate::goal::read_goals;
-use crate::obstacle::GivenObstacles;
+use crate::obstacle::read_surroundings;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
 use crate::tips::{Asked, TaskArguments, ToleranceArgument};
@@ -51,11 +50,7 @@ impl SolveArguments<'_, '_> {
             prefer: self.prefer.parse().map_err(raise)?,
             start,
             limits,
-            surroundings: Surroundings {
-                obstacles: self.obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?,
-                margin: self.margin,
-                self_collision: self.self_collision,
-            },
+            surroundings: read_surroundings(self.obstacles, self.margin, self.self_collision)?,
             stop: self.stop.map_or(Stop::default(), PyStop::core),
             seed: count("seed", self.seed)?,
             ..SolveOptions::default()

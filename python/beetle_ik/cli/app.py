@@ -17,6 +17,7 @@ from .robots import robots
 from .solve import solve
 from .track import track
 from .view import view
+from .wording import in_options
 
 _WRONG_INPUT = 2
 _INTERRUPTED = 130  # the convention of shells: 128 + SIGINT
@@ -39,7 +40,7 @@ class _Commands(TyperGroup):
         except BrokenPipeError:
             raise  # the reader of our output has closed the pipe: Typer exits silently
         except BeetleIkError as error:
-            typer.echo(f"Error: {error}", err=True)
+            typer.echo(f"Error: {in_options(error)}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
         except OSError as error:
             where = "" if error.filename is None else f"'{error.filename}': "

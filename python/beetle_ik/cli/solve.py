@@ -25,6 +25,7 @@ from .options import (
     numbers,
 )
 from .show import as_argument, print_json, print_pairs
+from .wording import in_options
 
 
 def solve(
@@ -106,13 +107,11 @@ def _placed(point: list[float], rpy: list[float] | None) -> Any:
 
 def _show_all(robot: Robot, found: SolutionSet, as_json: bool) -> None:
     if as_json:
-        fields = ("q", "success", "message", "complete", "singular", "evaluations", "elapsed")
-        print_json(
-            {"robot": robot.name, "status": found.status.name} | {field: getattr(found, field) for field in fields}
-        )
+        fields = ("q", "success", "complete", "singular", "evaluations", "elapsed")
+        print_json(_beginning(robot, found) | {field: getattr(found, field) for field in fields})
         return
     print_pairs(
-        f"{robot.name}: {found.message}",
+        f"{robot.name}: {in_options(found.message)}",
         [
             ("closed form", robot.closed_form),
             ("complete", "yes" if found.complete else "not proven"),
@@ -124,12 +123,15 @@ def _show_all(robot: Robot, found: SolutionSet, as_json: bool) -> None:
         typer.echo(f"q [rad, m]: {as_argument(q)}")
 
 
+def _beginning(robot: Robot, result: Solution | SolutionSet) -> dict[str, Any]:
+    return {"robot": robot.name, "status": result.status.name, "message": in_options(result.message)}
+
+
 def _show(robot: Robot, solution: Solution, as_json: bool) -> None:
     if as_json:
         fields = (
             "q",
             "success",
-            "message",
             "position_error",
             "rotation_error",
             "clearance",
@@ -137,14 +139,14 @@ def _show(robot: Robot, solution: Solution, as_json: bool) -> None:
             "restarts",
             "evaluations",
         )
-        status = {"robot": robot.name, "status": solution.status.name, "elapsed": solution.elapsed}
+        status = _beginning(robot, solution) | {"elapsed": solution.elapsed}
         if len(robot.tips) > 1:
             status["errors"] = solution.errors
         print_json(status | {field: getattr(solution, field) for field in fields})
         return
     clearance = [] if math.isnan(solution.clearance) else [("clearance [m]", f"{solution.clearance:.3g}")]
     print_pairs(
-        f"{robot.name}: {solution.message}",
+        f"{robot.name}: {in_options(solution.message)}",
         [
             *(pair for tip, errors in solution.errors.items() for pair in _errors(robot, tip, *errors)),
             *clearance,

@@ -8,9 +8,10 @@ import typer
 from numpy.typing import NDArray
 
 from .. import TrackResult
-from .._text import counted
+from ..calls.text import counted
 from .files import print_files
 from .show import listed, print_pairs
+from .wording import in_options
 
 
 def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_from: str | None) -> dict[str, Any]:
@@ -26,7 +27,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
         "steps": len(result.time) - 1,
         "success": result.success,
         "status": result.status.name,
-        "message": result.message,
+        "message": in_options(result.message),
         "position_tolerance": result.position_tolerance,
         "position_error": {
             "mean": error[1:].mean(),

@@ -1,7 +1,9 @@
-//! Shared test helpers: robots, targets, generated chains with a reference twin, error messages.
+//! Shared test helpers: robots, targets, arms, generated chains with a reference twin, error messages.
 
+pub mod arms;
 pub mod chains;
 pub mod circles;
+pub mod executed_curve;
 
 use ikcore::objective::{LeastSquares, Linearization};
 use ikcore::problem::Problem;
@@ -53,6 +55,18 @@ pub fn bits(values: &[f64]) -> Vec<u64> {
 pub fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let flat = robot.random_configurations(count, &mut rng::stream(11, 0)).unwrap();
     flat.chunks_exact(robot.dof()).map(<[f64]>::to_vec).collect()
+}
+
+/// Targets in tick `tick` of an arm whose tip is at `from`, of five kinds: none can be followed.
+pub fn hostile(kind: usize, tick: usize, from: [f64; 3], draws: &mut rng::LazyRng) -> [f64; 3] {
+    let mut shifted = |size: f64| from.map(|x| x + size * draws.uniform_in(-1.0, 1.0));
+    match (kind, tick % 97) {
+        (0, 0) | (1, 0..20) => shifted(1.5),
+        (2, _) => shifted(0.003),
+        (3, phase) => [from[0] + if phase < 40 { 3.0 } else { -3.0 }, from[1], from[2]],
+        (4, _) => [0.0, 0.0, 0.333],
+        _ => from,
+    }
 }
 
 /// Compares the columns of `linearize` with central differences of its residual.

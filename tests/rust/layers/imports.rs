@@ -42,6 +42,34 @@ impl Sources {
         self.0.values()
     }
 
+    pub fn modules(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// The module of this path, if there is one.
+    pub fn known(&self, module: &str) -> Option<&str> {
+        self.0.get_key_value(module).map(|(module, _)| module.as_str())
+    }
+
+    pub fn code(&self, module: &str) -> &str {
+        &self.0[module].code
+    }
+
+    /// The names that a module re-exports to everyone, each with the module that declares it.
+    pub fn public_re_exports(&self, module: &str) -> Vec<(&str, String)> {
+        let statements = self.code(module).split(';').map(str::trim_start);
+        let statements = statements.filter(|statement| statement.starts_with("pub use "));
+        let exported = statements.flat_map(|statement| re_exports(&format!("{statement};")));
+        let origin = |path: Segments| {
+            let name = path.last()?.clone();
+            let start = if path[0] == "crate" { vec![] } else { vec!["self".to_owned()] };
+            let child = if module.is_empty() { path[0].clone() } else { format!("{module}::{}", path[0]) };
+            self.known(&child).filter(|_| path.len() > 1).or_else(|| (path[0] == "crate").then_some(module))?;
+            Some((self.resolve(module, &[start, path].concat())?, name))
+        };
+        exported.filter_map(origin).collect()
+    }
+
     /// Groups of files that import one another in a circle, each as paths in alphabetical order.
     pub fn circles(&self) -> Vec<Vec<String>> {
         let imports: BTreeMap<&str, BTreeSet<&str>> =
@@ -126,7 +154,7 @@ fn reached<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>, from: &str) -> BT
 
 /// Removes the comments of `text`, and the unit tests at its end. Lines keep their numbers.
 pub fn code_of(text: &str) -> String {
-    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     code.lines().map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 
@@ -208,7 +236,7 @@ fn re_exported(statement: &str) -> Option<&str> {
 }
 
 /// Files with the ending `.rs` below `folder`, in order.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a readable folder").map(|entry| entry.expect("an entry").path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let mut all: Vec<_> = files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "rs")).collect();

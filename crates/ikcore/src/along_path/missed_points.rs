@@ -97,7 +97,7 @@ fn options(tip_path: &TipPath, seed: u64) -> SolveOptions {
 
 fn unreachable(what: String, farthest: &TipError) -> Error {
     let problem = format!("the nearest configurations found within the limits stay up to {farthest} away");
-    Error::Unreachable { what, problem }
+    Error::Unreachable { what, problem: problem.into() }
 }
 
 fn not_found(what: &str, farthest: &TipError) -> Error {
@@ -106,7 +106,7 @@ fn not_found(what: &str, farthest: &TipError) -> Error {
         "the nearest of {evaluations} evaluations from many starts stay up to {farthest} away, which proves nothing: try another seed, or \
          solve it with a larger budget"
     );
-    Error::NotFound { what: format!("a configuration for {what}"), problem }
+    Error::NotFound { what: format!("a configuration for {what}"), problem: problem.into() }
 }
 
 /// The ranges in words: "point 3", "points 3 to 5 and 9".

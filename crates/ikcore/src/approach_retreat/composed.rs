@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use super::line_candidates::{LineSearch, Side};
 use super::out_of_contact::{LEEWAY, way_out};
-use super::piece_space::PieceSpace;
 use super::straight_tip::StraightTip;
 use crate::error::{Error, Result};
 use crate::free_path;
-use crate::obstacle::{ClearanceSweep, kept_margin};
+use crate::message::Setting;
+use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
-    EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at, joined,
-    nearest_at, no_usable_end, refuse_collision,
+    EndName, Endpoint, Freed, Plan, PointToPointOptions, RESERVE, StraightLine, configuration_at, joined,
+    least_clearance, no_usable_end, refuse_collision,
 };
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stop, Stopwatch};
@@ -27,21 +27,22 @@ const LINES_OF_EACH: usize = 2;
 /// Lines that take longer than the quickest by this factor are left out.
 const SLOWEST: f64 = 2.0;
 
-const METHOD: &str = "method=\"minmax\"";
+const METHOD: Setting = Setting::Method("minmax");
 
 /// Plans with the pieces that the options ask for.
 pub(crate) fn composed(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     free_path::require_pace(robot, &limits)?;
-    let space = PieceSpace::new(robot, options)?;
-    let mut pieces = Pieces { robot, options, limits: &limits, space: space.as_ref(), evaluations: 0 };
+    let narrowed = space.map(|space| space.narrowed(RESERVE));
+    let mut pieces = Pieces { robot, options, limits: &limits, space, narrowed: narrowed.as_ref(), evaluations: 0 };
     let way_out = if options.free_start { pieces.way_out(start)? } else { None };
     let freed = way_out.as_ref().map(|(out, _)| end_of(out)).transpose()?;
     let start = freed.as_ref().unwrap_or(start);
@@ -55,7 +56,7 @@ pub(crate) fn composed(
     let meeting = |(_, line): &(usize, Trajectory)| configuration_at(line, 0.0).map(Endpoint::Configuration);
     let meetings = approaches.as_ref().map(|each| each.iter().map(meeting).collect::<Result<Vec<_>>>()).transpose()?;
     let rest = pieces.rest(stopwatch);
-    let mut plan = free_path::point_to_point(robot, start, meetings.as_deref().unwrap_or(ends), &rest, monitor)?;
+    let mut plan = free_path::point_to_point(robot, start, meetings.as_deref().unwrap_or(ends), space, &rest, monitor)?;
     plan.evaluations += pieces.evaluations;
     let mut last = None;
     if let (Some(mut approaches), Some(taken)) = (approaches, plan.chosen_end) {
@@ -79,7 +80,9 @@ struct Pieces<'a> {
     robot: &'a Robot,
     options: &'a PointToPointOptions,
     limits: &'a MotionLimits,
-    space: Option<&'a PieceSpace>,
+    /// What the motion keeps clear of, if anything, and what its pieces do: with the reserve of ends.
+    space: Option<&'a ClearSpace<'a>>,
+    narrowed: Option<&'a ClearSpace<'a>>,
     evaluations: usize,
 }
 
@@ -87,15 +90,14 @@ impl<'a> Pieces<'a> {
     /// The way out of a contact at the start; `None` if the start is clear or not given.
     fn way_out(&self, start: &Endpoint) -> Result<Option<(Trajectory, Freed)>> {
         let Endpoint::Configuration(q) = start else { return Ok(None) };
-        let around = self.around_start();
-        let Some(space) = around.as_ref().map_or(Ok(None), PieceSpace::clear)? else { return Ok(None) };
+        let Some(space) = self.around_start()? else { return Ok(None) };
         if space.holds(q) {
             return Ok(None);
         }
-        let clearance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
+        let clearance = space.clearance(q).distance;
         let Some(out) = way_out(&space, self.limits, q)? else {
             // Names the two bodies.
-            refuse_collision("start", space.scene(), q, space.margin() - RESERVE)?;
+            refuse_collision("start", &space.narrowed(-RESERVE), q)?;
             return Ok(None);
         };
         let freed = Freed { clearance, until: out.duration() };
@@ -103,10 +105,10 @@ impl<'a> Pieces<'a> {
     }
 
     /// What the way out of a contact keeps clear of: contacts that the retreat allows are none.
-    fn around_start(&self) -> Option<PieceSpace> {
+    fn around_start(&self) -> Result<Option<ClearSpace<'a>>> {
         match &self.options.retreat {
             Some(line) => self.along_line(line),
-            None => self.space.cloned(),
+            None => Ok(self.narrowed.cloned()),
         }
     }
 
@@ -133,64 +135,63 @@ impl<'a> Pieces<'a> {
         lines: [Option<&Trajectory>; 2],
     ) -> Result<()> {
         let Some(space) = self.space else { return Ok(()) };
-        let margin = kept_margin(self.options.margin)?;
+        let margin = space.margin();
         let asked = [&self.options.retreat, &self.options.approach];
         let touches = asked.iter().any(|line| line.as_ref().is_some_and(|line| !line.touch.is_empty()));
-        if plan.surroundings.is_some() && plan.nearest.is_none() && way_out.is_none() && !touches {
-            plan.clearance = plan.clearance.map(|clearance| clearance.min(margin));
+        let is_bound = plan.clearance.as_ref().is_none_or(|clearance| clearance.nearest.is_none());
+        if plan.surroundings.is_some() && is_bound && way_out.is_none() && !touches {
+            let at_least = |clearance: Clearance| Clearance::at_least(clearance.distance.min(margin));
+            plan.clearance = plan.clearance.take().map(at_least);
             return Ok(());
         }
-        let mut least = plan.least_distance(self.robot)?;
-        let mut offer = |motion: &Trajectory, space: &PieceSpace, kept: f64| -> Result<()> {
-            let Some(clear) = space.clear()? else { return Ok(()) };
-            let whole = [0.0, motion.duration()];
-            let Some(near) = ClearanceSweep::new(clear.scene()).smallest(&TimedMotion::new(motion), whole) else {
-                return Ok(());
-            };
-            let distance = near.contact.distance.max(kept);
-            if least.as_ref().is_none_or(|(least, _)| distance < *least) {
-                least = Some((distance, nearest_at(clear.scene(), motion, near.at)?));
+        let mut least = plan.least_clearance(self.robot)?;
+        let mut offer = |motion: &Trajectory, space: Option<ClearSpace<'_>>, kept: f64| -> Result<()> {
+            let Some(space) = space else { return Ok(()) };
+            let found = least_clearance(&mut ClearanceSweep::new(space.scene()), motion, Some(kept))?;
+            let is_less =
+                |(found, _): &(Clearance, _)| least.as_ref().is_none_or(|least| found.distance < least.distance);
+            if let Some((clearance, _)) = found.filter(is_less) {
+                least = Some(clearance);
             }
             Ok(())
         };
         for (line, motion) in asked.into_iter().zip(lines) {
             if let (Some(line), Some(motion)) = (line, motion) {
-                offer(motion, &space.among(line.obstacles(&self.options.obstacles)), margin)?;
+                offer(motion, self.along_line(line)?, margin)?;
             }
         }
-        if let (Some((out, freed)), Some(space)) = (way_out, self.around_start()) {
+        if let Some((out, freed)) = way_out {
             let lines = out.knots().len() - 1;
-            offer(out, &space, freed.clearance - lines as f64 * LEEWAY)?;
+            offer(out, self.around_start()?, freed.clearance - lines as f64 * LEEWAY)?;
         }
-        (plan.clearance, plan.nearest) = least.map_or((None, None), |(least, nearest)| (Some(least), nearest));
+        plan.clearance = least;
         plan.surroundings = None;
         Ok(())
     }
 
     /// What a straight line keeps clear of.
-    fn along_line(&self, line: &StraightLine) -> Option<PieceSpace> {
-        self.space.map(|space| space.among(line.obstacles(&self.options.obstacles)))
+    fn along_line(&self, line: &StraightLine) -> Result<Option<ClearSpace<'a>>> {
+        self.narrowed.map(|space| space.among(line.obstacles(space.obstacles()))).transpose()
     }
 
     fn search<'s>(
         &self,
         line: &'s StraightLine,
         side: Side,
-        along_line: Option<&'s PieceSpace>,
+        along_line: Option<&'s ClearSpace<'s>>,
         near: Option<Vec<f64>>,
     ) -> Result<LineSearch<'s>>
     where
         'a: 's,
     {
-        let clear = along_line.map_or(Ok(None), PieceSpace::clear)?;
         Ok(LineSearch {
             options: self.options,
             line,
             side,
             tip: StraightTip::new(self.robot, self.limits, self.options.task)?,
             position_limits: self.limits.position_limits(self.robot)?,
-            along_line: along_line.zip(clear),
-            beyond: self.space.map_or(Ok(None), PieceSpace::clear)?,
+            along_line,
+            beyond: self.narrowed,
             near,
             evaluations: 0,
         })
@@ -198,7 +199,7 @@ impl<'a> Pieces<'a> {
 
     /// A straight line from the start, and where it ends.
     fn retreat(&mut self, line: &StraightLine, start: &Endpoint, monitor: &mut dyn Monitor) -> Result<Trajectory> {
-        let along_line = self.along_line(line);
+        let along_line = self.along_line(line)?;
         let mut search = self.search(line, Side::Retreat, along_line.as_ref(), None)?;
         let found = search.lines(EndName::Start, start, 1, monitor)?;
         let evaluations = search.evaluations;
@@ -215,7 +216,7 @@ impl<'a> Pieces<'a> {
         monitor: &mut dyn Monitor,
     ) -> Result<Vec<(usize, Trajectory)>> {
         let near = if let Endpoint::Configuration(q) = start { Some(q.clone()) } else { None };
-        let along_line = self.along_line(line);
+        let along_line = self.along_line(line)?;
         let mut search = self.search(line, Side::Approach, along_line.as_ref(), near)?;
         let count = LINES.div_ceil(ends.len()).max(LINES_OF_EACH);
         let (mut found, mut problems) = (vec![], vec![]);

@@ -1,12 +1,11 @@
 //! Configurations of an end of a motion from which the tip moves along a straight line.
 
-use super::piece_space::PieceSpace;
 use super::straight_tip::{Hindrance, StraightTip};
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
-use crate::obstacle::{ClearSpace, ClearanceSweep, Contact, NearestContact};
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, TimedMotion, configuration_at};
+use crate::obstacle::{ClearSpace, ClearanceSweep, NearestContact};
+use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, StraightLine, certify, configuration_at};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -26,8 +25,8 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// The argument.
-    pub(super) fn argument(self) -> &'static str {
+    /// The name of the line.
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Retreat => "retreat",
             Self::Approach => "approach",
@@ -50,10 +49,10 @@ pub(super) struct LineSearch<'a> {
     pub side: Side,
     pub tip: StraightTip<'a>,
     pub position_limits: Limits,
-    /// What the line keeps clear of, and the configurations that do; `None` if nothing can collide.
-    pub along_line: Option<(&'a PieceSpace, ClearSpace<'a>)>,
+    /// What the line keeps clear of; `None` if nothing can collide.
+    pub along_line: Option<&'a ClearSpace<'a>>,
     /// Where the line meets the rest of the motion no contact is allowed.
-    pub beyond: Option<ClearSpace<'a>>,
+    pub beyond: Option<&'a ClearSpace<'a>>,
     /// Configurations of the targets near this one come first (n,).
     pub near: Option<Vec<f64>>,
     /// Evaluations so far.
@@ -88,8 +87,8 @@ impl LineSearch<'_> {
         }
         if found.is_empty() {
             let Some((_, why)) = hindrance else { return Err(Error::Interrupted) };
-            let (what, argument, distance) = (name.of_target(), self.side.argument(), number(self.line.distance));
-            let problem = format!("no straight line for {argument}={distance}: {why}");
+            let (what, side, distance) = (name.of_target(), self.side.name(), number(self.line.distance));
+            let problem = format!("no straight {side} of {distance} m: {why}").into();
             return Err(Error::Unreachable { what, problem });
         }
         Ok(found)
@@ -104,21 +103,21 @@ impl LineSearch<'_> {
             }
             Endpoint::Targets { targets, .. } => &targets[0],
         };
-        let space = self.along_line.as_ref().map(|(space, _)| *space);
+        let space = self.along_line;
         let each = SolveOptions {
             task: self.options.task,
             start: self.near.clone(),
             limits: Some(self.position_limits.clone()),
-            surroundings: space.map(|space| space.surroundings.clone()).unwrap_or_default(),
+            surroundings: space.map(|space| space.surroundings()).unwrap_or_default(),
             seed: self.options.seed,
             ..SolveOptions::default()
         };
         let all = AllOptions { each, limit: Some(TRIED), redundancy: REDUNDANCY, ..AllOptions::default() };
-        let robot = space.map_or(self.tip.bare_robot(), |space| &space.robot);
+        let robot = space.map_or(self.tip.bare_robot(), |space| space.robot());
         let set = solve_all(robot, target, &all, monitor)?;
         self.evaluations += set.evaluations;
         if set.solutions.is_empty() {
-            return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set) });
+            return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set).into() });
         }
         Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())
     }
@@ -135,32 +134,25 @@ impl LineSearch<'_> {
             Ok(motion) => motion,
             Err(why) => return Ok(Err((0.0, why))),
         };
-        let space = self.along_line.as_ref().map(|(_, space)| space);
-        let margin = space.map_or(0.0, |space| space.margin() - RESERVE);
-        let whole = [0.0, outward.duration()];
-        let checked =
-            space.map(|space| ClearanceSweep::new(space.scene()).check(&TimedMotion::new(&outward), whole, margin));
+        let margin = self.along_line.map_or(0.0, |space| space.margin() - RESERVE);
+        let checked = self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
         if let Some(Err(near)) = checked {
             let reached = self.line.distance * near.at / outward.duration();
-            let contact = in_words(&near.contact, margin);
+            let contact = near.contact.in_words(margin);
             let why = if reached > 0.0 { format!("{} m {place} {contact}", number(reached)) } else { contact };
             return Ok(Err((reached, why)));
         }
         let meets = configuration_at(&outward, outward.duration())?;
-        if let Some(beyond) = &self.beyond
-            && let Some(NearestContact { contact, .. }) = beyond.nearest(&meets)
+        if let Some(beyond) = self.beyond
+            && let Some(NearestContact { contact, .. }) = beyond.clearance(&meets).nearest
             && contact.distance < beyond.margin()
         {
-            let (reached, contact) = (self.line.distance, in_words(&contact, beyond.margin()));
+            let (reached, contact) = (self.line.distance, contact.in_words(beyond.margin()));
             let why = format!("at its other end {contact}: give a longer line");
             return Ok(Err((reached, why)));
         }
         Ok(Ok(if self.side == Side::Approach { reversed(&outward)? } else { outward }))
     }
-}
-
-fn in_words(contact: &Contact, margin: f64) -> String {
-    format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other)
 }
 
 /// Why a target has no clear configuration.
@@ -169,7 +161,7 @@ fn why_none(set: &SolutionSet) -> String {
         (Some(obstruction), _) => obstruction.to_string(),
         (None, Some(miss)) if miss.status == Status::InCollision => miss.obstruction.clone(),
         (None, Some(miss)) => format!("the nearest configuration found stays {} away", miss.error),
-        (None, None) => set.message(),
+        (None, None) => set.message().to_string(),
     }
 }
 

@@ -6,12 +6,10 @@
 //! | `straight_tip` | joint motions with a straight line of the tip |
 //! | `line_candidates` | the configurations of an end from which there is a clear one |
 //! | `out_of_contact` | the way out of a contact at the start |
-//! | `piece_space` | what the pieces keep clear of |
 
 mod composed;
 mod line_candidates;
 mod out_of_contact;
-mod piece_space;
 mod straight_tip;
 
 pub(crate) use composed::composed;

@@ -1,7 +1,7 @@
 //! The way out of a contact: from a configuration that is nearer to something than the margin to one that keeps it.
 
 use crate::error::Result;
-use crate::obstacle::{ClearSpace, Edge, RequiredDistance};
+use crate::obstacle::{ClearSpace, Edge, MotionCertificate, NearRows, RequiredDistance};
 use crate::timing::{MotionLimits, scaled};
 use crate::trajectory::Trajectory;
 
@@ -23,8 +23,8 @@ const PART: f64 = 0.01;
 /// down the gradient of the distances.
 pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64]) -> Result<Option<Trajectory>> {
     let Some(descent) = descent(space, limits, from) else { return Ok(None) };
-    let mut near = space.near_rows();
-    space.find_rows(from, space.margin(), &mut near);
+    let mut near = NearRows::new(space.scene());
+    near.find(space.scene(), from, space.margin());
     let kept =
         RequiredDistance { at_rest: near.rows(), tolerance_band: LEEWAY, ..RequiredDistance::constant(space.margin()) };
     let mut motion: Option<Trajectory> = None;
@@ -50,11 +50,11 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &MotionLimits, from: &[f64
 fn comes_no_nearer(space: &ClearSpace<'_>, kept: &RequiredDistance<'_>, [from, to]: [&[f64]; 2]) -> bool {
     let longest = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
     let parts = (longest / PART).ceil().max(1.0) as usize;
-    let mut check = space.motion_certificate();
+    let mut check = MotionCertificate::new(space.scene());
     let at = |i: usize| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + (to - from) * i as f64 / parts as f64).collect()
     };
-    (0..parts).all(|i| space.is_kept_by(&Edge { from: &at(i), to: &at(i + 1) }, 1.0, kept, &mut check))
+    (0..parts).all(|i| check.is_clear(space.scene(), &Edge { from: &at(i), to: &at(i + 1) }, 1.0, kept))
 }
 
 /// Configurations down the gradient of the shortfall, the last one of which keeps the margin and a little more.

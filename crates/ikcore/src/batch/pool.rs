@@ -17,7 +17,7 @@ pub(super) fn thread_count(wanted: Option<usize>) -> Result<usize> {
     match wanted {
         None => Ok(std::thread::available_parallelism().map_or(1, |count| count.get().min(MAX_THREADS))),
         Some(count) if (1..=MAX_THREADS).contains(&count) => Ok(count),
-        Some(count) => Err(Error::out_of_range("threads", &format!("from 1 to {MAX_THREADS}"), count as f64)),
+        Some(count) => Err(Error::out_of_range("threads", format!("from 1 to {MAX_THREADS}"), count as f64)),
     }
 }
 

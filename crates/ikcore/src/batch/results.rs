@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::ik::{Solution, SolveReport};
+use crate::message::{Message, message};
 use crate::objective::Point;
 use crate::solver::Status;
 
@@ -45,7 +46,7 @@ impl Batch {
     }
 
     /// Returns a sentence with the number of solved targets, and advice for the others.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let mut counts = vec![0; Status::ALL.len()];
         self.items.iter().for_each(|item| counts[item.status as usize] += 1);
         message_of_counts(&counts)
@@ -54,17 +55,16 @@ impl Batch {
 
 /// Returns a sentence with the number of solved targets, and advice for the others, where `counts[status as usize]` targets
 /// ended with `status`.
-pub fn message_of_counts(counts: &[usize]) -> String {
+pub fn message_of_counts(counts: &[usize]) -> Message {
     let count = |status: Status| counts.get(status as usize).copied().unwrap_or_default();
     let (solved, total) = (count(Status::Solved), counts.iter().sum::<usize>());
     if total == 0 {
         return "no targets".into();
     }
     if solved == total {
-        return format!("all {total} solved");
+        return format!("all {total} solved").into();
     }
     let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
-    let reasons: Vec<String> =
-        unsolved.map(|(count, status)| format!("{count} {}: {}", status.name(), status.advice())).collect();
-    format!("{solved} of {total} solved; {}", reasons.join("; "))
+    let reasons = unsolved.map(|(count, status)| message![format!("{count} {}: ", status.name()), status.advice()]);
+    message![format!("{solved} of {total} solved; "), Message::joined(reasons, "; ")]
 }

@@ -66,7 +66,7 @@ impl Targets<'_> {
             None => Ok(()),
             Some((i, task)) => {
                 let expected = format!("{} as for the first tip", self.len());
-                Err(Error::WrongLength { what: format!("targets of task {i}"), expected, got: task.len() })
+                Err(Error::WrongLength { what: format!("targets of task {i}").into(), expected, got: task.len() })
             }
         }
     }

@@ -10,7 +10,7 @@ use super::pose_family::{FamilyLimits, PoseFamily};
 use super::redundant::{Parameter, Redundant};
 use super::six::{ClosedForm, Structure};
 use super::structure::are_sharp;
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
@@ -185,7 +185,7 @@ impl ClosedFormArm {
     }
 }
 
-fn scale_of(motion: &StageMotion) -> f64 {
+fn scale_of(motion: &Transmission) -> f64 {
     motion.turn_scale + motion.slide_scale
 }
 

@@ -103,7 +103,7 @@ impl ArmAngle {
 
     /// Prepares the pose with displacement `goal` for any arm angle.
     pub fn pose(&self, goal: &Frame) -> ArmAnglePose {
-        let reached = sub(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
+        let reached = sub(&goal.transform::<Baseline>(&self.wrist), &self.shoulder);
         let (from_elbow, to_shoulder) = (sub(&self.wrist, &self.elbow), sub(&self.shoulder, &self.elbow));
         let square = dot(&reached, &reached);
         let mut q4 = distance_to_point(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);

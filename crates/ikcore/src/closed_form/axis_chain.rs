@@ -40,7 +40,7 @@ impl JointAxis {
     pub fn moved(&self, frame: &Frame) -> Self {
         Self {
             axis: frame.turn::<Baseline>(&self.axis),
-            point: frame.place::<Baseline>(&self.point),
+            point: frame.transform::<Baseline>(&self.point),
             motion: self.motion,
         }
     }

@@ -48,7 +48,7 @@ impl ElbowDistance {
     fn of(chain: &AxisChain<7>, [shoulder, wrist]: [Vector; 2], circle: Orbit, by_first: bool) -> Option<Self> {
         let turns = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
         let elbow = &chain.joints[3];
-        let square = |q: f64| squared_distance(&elbow.displacement(q).place::<Baseline>(&wrist), &shoulder);
+        let square = |q: f64| squared_distance(&elbow.displacement(q).transform::<Baseline>(&wrist), &shoulder);
         turns.then(|| Self { shoulder, wrist, by_joint_4: Wave::of(square), circle, by_first })
     }
 
@@ -59,7 +59,7 @@ impl ElbowDistance {
 
     /// Returns all arm angles of a spherical wrist, or none.
     pub fn arm_angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
-        let square = squared_distance(&goal.place::<Baseline>(&self.wrist), &self.shoulder);
+        let square = squared_distance(&goal.transform::<Baseline>(&self.wrist), &self.shoulder);
         Wave::new(square, 0.0, 0.0).arcs_between(range, self.slack())
     }
 
@@ -67,7 +67,7 @@ impl ElbowDistance {
     pub fn angles(&self, goal: &Frame, range: [f64; 2]) -> ParameterArcs {
         let Orbit { centre, cosine, sine } = &self.circle;
         let other = if self.by_first {
-            goal.place::<Baseline>(&self.wrist)
+            goal.transform::<Baseline>(&self.wrist)
         } else {
             goal.turn_back(&sub(&self.shoulder, &goal.origin))
         };

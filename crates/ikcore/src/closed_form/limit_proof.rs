@@ -156,7 +156,7 @@ impl<'a> Moving<'a> {
         let limits = std::array::from_fn(|k| Arc::between(limits[if arm.reversed { 6 - k } else { k }]).wider(SLACK));
         // Turning the parameter joint forward turns the pose backward for the other joints.
         let back = scaled(&arm.axes[0], -1.0);
-        let centre = Orbit::of(&back, &sub(&goal.place::<Baseline>(&arm.centre), &arm.parameter));
+        let centre = Orbit::of(&back, &sub(&goal.transform::<Baseline>(&arm.centre), &arm.parameter));
         let centre = centre.moved(&sub(&arm.parameter, &arm.root));
         let end_axis = goal.turn::<Baseline>(&arm.axes[6]);
         Self {

@@ -67,12 +67,12 @@ impl<const N: usize> Planar<N> {
         let [first, second, third] = self.turning.map(|k| self.chain.joints[k]);
         let axis = &first.axis;
         let sum = onto_point(axis, &self.mark, &goal.turn::<Baseline>(&self.mark));
-        let moved = sub(&goal.place::<Baseline>(&third.point), &third.point);
+        let moved = sub(&goal.transform::<Baseline>(&third.point), &third.point);
         let slide = self.along * dot(axis, &moved);
         // Projection onto the plane perpendicular to the axes.
         let flat = |v: &Vector| cross(axis, v);
         let links = [flat(&sub(&second.point, &first.point)), flat(&sub(&third.point, &second.point))];
-        let reached = flat(&sub(&goal.place::<Baseline>(&third.point), &first.point));
+        let reached = flat(&sub(&goal.transform::<Baseline>(&third.point), &first.point));
         let square = dot(&reached, &reached);
         let floor = self.floor * norm(&links[0]);
         let mut candidates = Candidates::new();

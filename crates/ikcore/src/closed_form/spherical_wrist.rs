@@ -86,7 +86,7 @@ impl SphericalWrist {
         found: &mut Candidates,
         order: impl Fn(&Three, &Three) -> [Angle; 6],
     ) {
-        let reached = goal.place::<Baseline>(&self.centre);
+        let reached = goal.transform::<Baseline>(&self.centre);
         let arms = match &self.arm {
             Arm::Turning(arm) => arm.reach(&self.centre, &reached, of_arm),
             Arm::Sliding(arm) => arm.reach(&self.centre, &reached),

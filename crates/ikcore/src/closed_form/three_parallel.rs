@@ -122,7 +122,7 @@ impl ThreeParallel {
         let mut wrists = Wrists::NONE;
         let [h1, h, _, _, h5, h6] = &self.axes;
         let [p1, _, _, _, p5, p6] = &self.points;
-        let (n, a) = (goal.turn::<Baseline>(h6), sub(&goal.place::<Baseline>(p6), p1));
+        let (n, a) = (goal.turn::<Baseline>(h6), sub(&goal.transform::<Baseline>(p6), p1));
         let offset = dot(h, &sub(p5, p1));
         match self.last {
             Last::Meet => {
@@ -203,7 +203,7 @@ impl ThreeParallel {
         let from_tip = |v: &Vector| seen(&self.end, &goal.turn_back(v));
         let axes = [from_tip(&x), from_tip(&y), from_tip(&h)];
         // Position of p6: rot1' (H p6 - p1) - (p2 - p1).
-        let (from_p1, second) = (sub(&goal.place::<Baseline>(p6), p1), sub(p2, p1));
+        let (from_p1, second) = (sub(&goal.transform::<Baseline>(p6), p1), sub(p2, p1));
         let offset = [dot(&x, &from_p1) - dot(&self.flat[0], &second), dot(&y, &from_p1) - dot(&self.flat[1], &second)];
         Shoulder { q1, axes, offset }
     }

@@ -10,13 +10,12 @@ use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
-use crate::obstacle::{ClearanceSweep, Scene, kept_margin};
+use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Scene};
 use crate::plan::{
-    Cost, EndName, Endpoint, Improvement, Plan, PointToPointOptions, RESERVE, TimedMotion, as_lines, configuration_at,
-    nearest_at, no_usable_end, refuse_collision, scene, too_near,
+    Cost, EndName, Endpoint, Plan, PointToPointOptions, RESERVE, configuration_at, least_clearance, no_usable_end,
+    refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
-use crate::trajectory::Trajectory;
 
 /// Total number of configurations that all trees may examine: about half a second.
 const BUDGET: usize = 1_000_000;
@@ -32,15 +31,20 @@ const RESERVES: [f64; 5] = [8e-3, 4e-3, 2e-3, 1e-3, 1e-4];
 const SINGLE: f64 = 3e-5;
 
 /// Plans for checked ends and options.
-pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
-    let margin = kept_margin(options.margin)?;
-    let lines = as_lines(search.robot, options)?;
-    let scene = scene(search.robot, lines.as_ref(), options)?;
+pub(super) fn plan(
+    search: &mut PairSearch,
+    space: &ClearSpace<'_>,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let (scene, margin) = (space.scene(), space.margin());
+    // A planar arm without bodies, seen as lines.
+    let is_lines = search.robot.capsules().is_empty();
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
-    let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
+    let is_clear = |q: &[f64]| space.keeps(q, RESERVE);
     let refusal = |name: EndName, end: &Endpoint| match end {
-        Endpoint::Configuration(q) => refuse_collision(&name.of_target(), &scene, q, margin),
+        Endpoint::Configuration(q) => refuse_collision(&name.of_target(), space, q),
         Endpoint::Targets { .. } => Ok(()),
     };
     refusal(EndName::Start, search.start)?;
@@ -57,9 +61,9 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     }
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
-    let most = most_kept(&scene, &open, margin);
-    let mut trees = TreeSearch::new(&scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
-    let mut sweep = ClearanceSweep::new(&scene);
+    let most = most_kept(space, &open);
+    let mut trees = TreeSearch::new(scene, limits, margin + most.min(path_search::RESERVE), budget, search.deadline);
+    let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
         true => Certified::Nothing(Status::Stalled),
@@ -82,26 +86,26 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     search.evaluations += trees.check.examined() + sweep.examined();
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
-            let plan = Plan { history, clearance: Some(margin), ..bare(search, trajectory, options.objective) };
-            if lines.is_some() { with_least_distance(plan, &mut sweep, &scene, margin)? } else { plan }
+            let clearance = Some(Clearance::at_least(margin));
+            let plan = Plan { history, clearance, ..search.plan(trajectory, options.objective) };
+            if is_lines { with_least_clearance(plan, &mut sweep, margin)? } else { plan }
         }
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
-            let trajectory = straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?;
-            let plan = Plan { status, ..bare(search, trajectory, options.objective) };
-            let plan = with_least_distance(plan, &mut sweep, &scene, margin)?;
+            let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
+            let plan = Plan { status, ..search.plan(trajectory, options.objective) };
+            let plan = with_least_clearance(plan, &mut sweep, margin)?;
             let obstruction = if open.is_empty() {
-                no_way::blocked_ends(&scene, &pairs, margin + RESERVE)
+                no_way::blocked_ends(scene, &pairs, margin + RESERVE)
             } else {
-                let straight = plan.nearest.as_ref().map(|nearest| &nearest.contact);
+                let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
+                let straight = nearest.map(|nearest| &nearest.contact);
                 no_way::gap(trees.gap, trees.check.examined(), straight, margin)
             };
             Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), ..plan }
         }
     };
-    if lines.is_none() {
-        plan.surroundings = Some(options.surroundings());
-    }
+    plan.surroundings = (!is_lines).then(|| space.surroundings());
     let last = configuration_at(&plan.trajectory, plan.trajectory.duration())?;
     let distance = |pair: &&EndPair| squared_distance(&pair.end, &last);
     let taken = pairs.iter().chain(&open).min_by(|one, other| distance(one).total_cmp(&distance(other)));
@@ -143,38 +147,23 @@ fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -
 }
 
 /// The most that all ends keep beyond the margin (m), of a few distances.
-fn most_kept(scene: &Scene, open: &[EndPair], margin: f64) -> f64 {
+fn most_kept(space: &ClearSpace<'_>, open: &[EndPair]) -> f64 {
     let keep = |more: f64| {
         let mut ends = open.iter().flat_map(|pair| [&pair.start, &pair.end]);
-        ends.all(|q| scene.is_clear(q, margin + more))
+        ends.all(|q| space.keeps(q, more))
     };
     // Lines to ends that keep none of these are examined with a little less than the margin, for what rounding takes off.
     RESERVES.into_iter().find(|more| keep(*more)).unwrap_or(-SINGLE)
 }
 
-/// A plan of a motion without violations.
-fn bare(search: &PairSearch, trajectory: Trajectory, objective: Cost) -> Plan {
-    let cost = objective.of(search.robot, &trajectory);
-    Plan {
-        history: vec![Improvement { evaluations: search.evaluations, cost }],
-        violations: search.limits.violations(&trajectory),
-        evaluations: search.evaluations,
-        elapsed: search.deadline.elapsed(),
-        ..Plan::of(trajectory, objective, cost)
+/// The plan with its smallest distance, and the violation if that is less than the margin. A bound that it has is certified.
+fn with_least_clearance(mut plan: Plan, sweep: &mut ClearanceSweep, margin: f64) -> Result<Plan> {
+    let certified = plan.clearance.as_ref().map(|_| margin);
+    let Some((least, contact)) = least_clearance(sweep, &plan.trajectory, certified)? else { return Ok(plan) };
+    if least.distance < margin {
+        plan.violations.push(too_near(&contact, margin));
     }
-}
-
-/// The plan with its smallest distance, and the violation if that is less than the margin.
-fn with_least_distance(mut plan: Plan, sweep: &mut ClearanceSweep, scene: &Scene, margin: f64) -> Result<Plan> {
-    let whole = [0.0, plan.trajectory.duration()];
-    let Some(near) = sweep.smallest(&TimedMotion::new(&plan.trajectory), whole) else { return Ok(plan) };
-    plan.nearest = nearest_at(scene, &plan.trajectory, near.at)?;
-    let distance = near.contact.distance;
-    // What is certified may be more than the search for the smallest distance proves.
-    plan.clearance = Some(if plan.clearance.is_some() { distance.max(margin) } else { distance });
-    if plan.clearance.is_some_and(|clearance| clearance < margin) {
-        plan.violations.push(too_near(&near.contact, margin));
-    }
+    plan.clearance = Some(least);
     // A straight line that no search could certify may still keep everything.
     plan.status = match plan.status {
         _ if plan.violations.is_empty() => Status::Solved,

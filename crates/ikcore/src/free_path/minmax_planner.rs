@@ -5,18 +5,21 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::without_obstacles;
 use crate::error::{Error, Result};
 use crate::free_path::{among_obstacles, moving_start};
-use crate::plan::{Deadline, Endpoint, Plan, PointToPointOptions, can_collide};
+use crate::message::Setting;
+use crate::obstacle::ClearSpace;
+use crate::plan::{Deadline, Endpoint, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::timing::MotionLimits;
 
-const METHOD: &str = "method=\"minmax\"";
+const METHOD: Setting = Setting::Method("minmax");
 
-/// Plans from `start` to one of `ends`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
+/// Plans from `start` to one of `ends` in `space`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
 pub(crate) fn point_to_point(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -25,21 +28,20 @@ pub(crate) fn point_to_point(
     require_pace(robot, &limits)?;
     let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
-        match moving_start::begin(&mut search, velocity, options, monitor)? {
+        match moving_start::begin(&mut search, velocity, space, options, monitor)? {
             Beginning::Whole(plan) => return Ok(*plan),
             Beginning::Stop(stop) => {
                 let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };
-                let rest = point_to_point(robot, &at_rest, ends, &options, monitor)?;
-                return moving_start::followed_by(stop, rest, robot, &options);
+                let rest = point_to_point(robot, &at_rest, ends, space, &options, monitor)?;
+                return moving_start::followed_by(stop, rest, robot, space);
             }
             Beginning::Rest => {}
         }
     }
-    if can_collide(robot, options) {
-        among_obstacles::plan(&mut search, options, monitor)
-    } else {
-        without_obstacles(&mut search, options.objective, monitor)
+    match space {
+        Some(space) => among_obstacles::plan(&mut search, space, options, monitor),
+        None => without_obstacles(&mut search, options.objective, monitor),
     }
 }
 
@@ -49,6 +51,6 @@ pub(crate) fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
         |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {
         None => Ok(()),
-        Some(j) => Err(Error::NoPace { joint: limits.joint_name(j).into() }),
+        Some(j) => Err(Error::no_pace(limits.joint_name(j))),
     }
 }

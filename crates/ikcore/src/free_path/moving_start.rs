@@ -5,11 +5,10 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::Limits;
+use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state, stop};
-use crate::obstacle::{ClearanceSweep, kept_margin};
-use crate::plan::{
-    Endpoint, Improvement, Plan, PointToPointOptions, TimedMotion, as_lines, can_collide, joined, nearest_at, scene,
-};
+use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
+use crate::plan::{Endpoint, Plan, PointToPointOptions, certify, joined, least_clearance};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
@@ -35,28 +34,25 @@ pub(super) enum Beginning {
 pub(super) fn begin(
     search: &mut PairSearch,
     velocity: &[f64],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Beginning> {
     let Endpoint::Configuration(q) = search.start else {
         return Err(Error::Contradiction {
-            problem: "start_qd needs the configuration of the start: give start_q".into(),
+            problem: message![
+                Setting::StartVelocity,
+                " needs the configuration of the start: give ",
+                Setting::StartConfiguration
+            ],
         });
     };
     check(search, velocity)?;
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
-    let margin = kept_margin(options.margin)?;
-    let collides = can_collide(search.robot, options);
-    let lines = if collides { as_lines(search.robot, options)? } else { None };
-    let scene = collides.then(|| scene(search.robot, lines.as_ref(), options)).transpose()?;
-    let mut sweep = scene.as_ref().map(ClearanceSweep::new);
-    let mut is_free = |motion: &Trajectory| {
-        let check = |sweep: &mut ClearanceSweep| {
-            sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin).is_ok()
-        };
-        sweep.as_mut().is_none_or(check)
-    };
+    let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
+    let mut is_free =
+        |motion: &Trajectory| sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok());
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
@@ -64,23 +60,14 @@ pub(super) fn begin(
     let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
     motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
     if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
-        let evaluations = search.evaluations;
-        let cost = options.objective.of(search.robot, &trajectory);
-        let closest =
-            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion::new(&trajectory), [0.0, trajectory.duration()]));
-        let nearest = match (&scene, &closest) {
-            (Some(scene), Some(near)) => nearest_at(scene, &trajectory, near.at)?,
-            _ => None,
+        let least = match &mut sweep {
+            Some((sweep, margin)) => least_clearance(sweep, &trajectory, Some(*margin))?,
+            None => None,
         };
         return Ok(Beginning::Whole(Box::new(Plan {
-            history: vec![Improvement { evaluations, cost }],
-            clearance: closest.map(|near| near.contact.distance.max(margin)),
-            nearest,
+            clearance: least.map(|(clearance, _)| clearance),
             chosen_end: Some(chosen),
-            violations: search.limits.violations(&trajectory),
-            evaluations,
-            elapsed: search.deadline.elapsed(),
-            ..Plan::of(trajectory, options.objective, cost)
+            ..search.plan(trajectory, options.objective)
         })));
     }
     if velocity.iter().all(|v| *v == 0.0) {
@@ -90,7 +77,11 @@ pub(super) fn begin(
     if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
     }
-    let problem = "at start_qd the arm cannot stop before it comes nearer to an obstacle than the margin".into();
+    let problem = message![
+        "at ",
+        Setting::StartVelocity,
+        " the arm cannot stop before it comes nearer to an obstacle than the margin"
+    ];
     Err(Error::Infeasible { problem })
 }
 
@@ -99,24 +90,28 @@ fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
     let limits = search.limits;
     if velocity.len() != limits.dof() {
         let expected = format!("{} joints", limits.dof());
-        return Err(Error::WrongLength { what: "start_qd".into(), expected, got: velocity.len() });
+        return Err(Error::WrongLength { what: Setting::StartVelocity.into(), expected, got: velocity.len() });
     }
-    require_finite("start_qd", velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
+    require_finite(Setting::StartVelocity, velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
     let jumps = |j: &usize| limits.acceleration[*j].is_infinite() && limits.jerk[*j].is_infinite();
     if let Some(j) = (0..limits.dof()).find(jumps) {
         return Err(Error::Infeasible {
-            problem: format!(
-                "without an acceleration or jerk limit the velocity of joint '{}' may jump, and start_qd means nothing: \
-                 give limits=Limits(acceleration=...)",
-                limits.joint_name(j)
-            ),
+            problem: message![
+                format!(
+                    "without an acceleration or jerk limit the velocity of joint '{}' may jump, and ",
+                    limits.joint_name(j)
+                ),
+                Setting::StartVelocity,
+                " means nothing: give ",
+                Setting::Limit("acceleration"),
+            ],
         });
     }
     match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j] * (1.0 + ROUNDING)) {
         None => Ok(()),
         Some(j) => {
-            let what = format!("start_qd of joint '{}'", limits.joint_name(j));
-            Err(Error::out_of_range(what, &format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
+            let what = message![Setting::StartVelocity, format!(" of joint '{}'", limits.joint_name(j))];
+            Err(Error::out_of_range(what, format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
         }
     }
 }
@@ -131,10 +126,11 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 }
 
 /// A plan from rest, preceded by the stop that leads to it.
-pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
+pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, space: Option<&ClearSpace<'_>>) -> Result<Plan> {
     // The stop keeps the margin.
-    let margin = kept_margin(options.margin)?;
-    let clearance = rest.clearance.map(|clearance| clearance.min(margin));
+    let at_least =
+        |(rest, space): (&Clearance, &ClearSpace<'_>)| Clearance::at_least(rest.distance.min(space.margin()));
+    let clearance = rest.clearance.as_ref().zip(space).map(at_least);
     let plan = joined(robot, Some(&stop), rest, None)?;
-    Ok(Plan { clearance, nearest: None, ..plan })
+    Ok(Plan { clearance, ..plan })
 }

@@ -14,7 +14,7 @@ pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> Strin
         scene.nearest(q).ok().flatten()
     };
     let clearest = pairs.iter().filter_map(nearest).max_by(|one, other| one.distance.total_cmp(&other.distance));
-    let found = clearest.map_or(String::new(), |contact| format!("; at the clearest one {}", in_words(&contact, kept)));
+    let found = clearest.map_or(String::new(), |contact| format!("; at the clearest one {}", contact.in_words(kept)));
     format!("{name}: no configuration was found that is clear of everything{found}")
 }
 
@@ -27,10 +27,6 @@ pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: 
         "nothing was reached from either end".into()
     };
     let in_the_way =
-        straight.map_or(String::new(), |contact| format!("; on the straight way {}", in_words(contact, kept)));
+        straight.map_or(String::new(), |contact| format!("; on the straight way {}", contact.in_words(kept)));
     format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
-}
-
-fn in_words(contact: &Contact, kept: f64) -> String {
-    format!("link '{}' is {} {}", contact.link, contact.depth(kept), contact.other)
 }

@@ -7,12 +7,13 @@ use crate::free_path::least_displacement;
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::Limits;
 use crate::objective::Point;
-use crate::plan::{Deadline, EndName, Endpoint, PointToPointOptions, no_usable_end};
+use crate::plan::{Cost, Deadline, EndName, Endpoint, Improvement, Plan, PointToPointOptions, no_usable_end};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Target, Task};
 use crate::timing::MotionLimits;
+use crate::trajectory::Trajectory;
 
 /// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
@@ -208,7 +209,7 @@ impl<'a> PairSearch<'a> {
             Status::Solved => Ok(Some(solution.q)),
             _ if attempt == 0 => {
                 let problem = format!("the nearest configuration found stays {} away", solution.error);
-                Err(Error::Unreachable { what: name.of_target(), problem })
+                Err(Error::Unreachable { what: name.of_target(), problem: problem.into() })
             }
             _ => Ok(None),
         }
@@ -244,6 +245,18 @@ impl<'a> PairSearch<'a> {
         }
         let moved = self.pair(moved.start, moved.end, pair.chosen);
         if moved.duration < pair.duration { moved } else { pair }
+    }
+
+    /// Solved plan of a motion, with the limits that it violates.
+    pub(super) fn plan(&self, trajectory: Trajectory, objective: Cost) -> Plan {
+        let cost = objective.of(self.robot, &trajectory);
+        Plan {
+            history: vec![Improvement { evaluations: self.evaluations, cost }],
+            violations: self.limits.violations(&trajectory),
+            evaluations: self.evaluations,
+            elapsed: self.deadline.elapsed(),
+            ..Plan::of(trajectory, objective, cost)
+        }
     }
 }
 

@@ -118,7 +118,7 @@ impl BlendedPath {
     }
 }
 
-/// A path that differs from another one in one place.
+/// A path that differs from another one at one point.
 struct Variation {
     path: JointPolyline,
     /// Points that are not on the other one; none if it only leaves one out.
@@ -185,8 +185,8 @@ impl TreeSearch<'_> {
 fn pulled(beside: &[Vec<f64>], fraction: f64) -> Vec<f64> {
     let (before, corner, after) = (&beside[0], &beside[1], &beside[2]);
     let lengths = [distance(before, corner), distance(corner, after)];
-    let place = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
-    let on_line = |j: usize| before[j] + place * (after[j] - before[j]);
+    let along = lengths[0] / (lengths[0] + lengths[1]).max(f64::MIN_POSITIVE);
+    let on_line = |j: usize| before[j] + along * (after[j] - before[j]);
     corner.iter().enumerate().map(|(j, q)| q + fraction * (on_line(j) - q)).collect()
 }
 

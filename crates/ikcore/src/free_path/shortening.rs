@@ -57,9 +57,9 @@ impl TreeSearch<'_> {
     }
 }
 
-/// The line on which `place` lies (counted in lines), and the point there.
-pub(super) fn along(points: &[Vec<f64>], place: f64) -> (usize, Vec<f64>) {
-    let line = (place as usize).min(points.len() - 2);
-    let fraction = place - line as f64;
+/// The line on which `position` lies (counted in lines), and the point there.
+pub(super) fn along(points: &[Vec<f64>], position: f64) -> (usize, Vec<f64>) {
+    let line = (position as usize).min(points.len() - 2);
+    let fraction = position - line as f64;
     (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + fraction * (b - a)).collect())
 }

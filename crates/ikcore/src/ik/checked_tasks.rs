@@ -5,6 +5,7 @@ use smallvec::{SmallVec, smallvec};
 use super::solve_options::SolveOptions;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
+use crate::message::Setting;
 use crate::robot::Robot;
 use crate::task::{Aims, CheckedTask, NamedTask, Subject, Target, TargetRow, TipError};
 
@@ -16,8 +17,7 @@ pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<Small
         return Ok(smallvec![NamedTask::of_only(options.task, options.tolerance).validated()?]);
     }
     if options.task.is_some() {
-        let problem = "task= of several tips is a dict, such as {tip: tasks.Position()}".into();
-        return Err(Error::Contradiction { problem });
+        return Err(Error::Contradiction { problem: Setting::TaskOfEachTip.into() });
     }
     Ok(checked_tasks(robot, &options.tips)?.into())
 }
@@ -40,7 +40,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<Ch
         }
         if matches!(task.subject, Subject::Pair { .. }) && numbers[0] == numbers[1] {
             let problem = format!("tip '{}' cannot be seen from itself: name two tips", tips[numbers[0]]);
-            return Err(Error::Contradiction { problem });
+            return Err(Error::Contradiction { problem: problem.into() });
         }
         let same = |other: &NamedTask| other.subject == task.subject || other.subject == turned(task.subject);
         if tasks[..i].iter().any(same) {
@@ -49,7 +49,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<Ch
                 Subject::Tip(_) => format!("tip '{of}' has two targets"),
                 Subject::Pair { .. } => format!("the pair of tips '{from}' and '{of}' has two targets: leave one out"),
             };
-            return Err(Error::Contradiction { problem });
+            return Err(Error::Contradiction { problem: problem.into() });
         }
     }
     tasks.iter().map(NamedTask::validated).collect()

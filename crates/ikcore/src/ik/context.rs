@@ -11,6 +11,7 @@ use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
+use crate::message::{Setting, message};
 use crate::objective::Bounds;
 use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
@@ -60,12 +61,13 @@ impl<'a> SolveContext<'a> {
         let space = options.surroundings.clear_space(robot)?.map(Box::new);
         options.goals.iter().try_for_each(|goal| goal.validate(robot, space.is_some()))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
-            return Err(Error::Contradiction {
-                problem: "prefer=\"nearest\" takes no goals: the distance to the start is its goal".into(),
-            });
+            let problem =
+                message![Setting::Prefer("nearest"), " takes no goals: the distance to the start is its goal"];
+            return Err(Error::Contradiction { problem });
         }
         if options.prefer == Prefer::Best && options.goals.is_empty() {
-            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals to compare solutions by".into() });
+            let problem = message![Setting::Prefer("best"), " needs goals to compare solutions by"];
+            return Err(Error::Contradiction { problem });
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.only_task(robot).map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
@@ -170,14 +172,14 @@ impl<'a> SolveContext<'a> {
         self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
-    /// Checks that `prefer="nearest"` comes with a start.
+    /// Checks that the preference for the nearest solution comes with a start.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
     pub(crate) fn require_reference(&self, start: Option<&[f64]>) -> Result<()> {
         match (self.options.prefer, start) {
             (Prefer::Nearest, None) => Err(Error::Contradiction {
-                problem: "prefer=\"nearest\" needs a start to measure distances from".into(),
+                problem: message![Setting::Prefer("nearest"), " needs a start to measure distances from"],
             }),
             _ => Ok(()),
         }

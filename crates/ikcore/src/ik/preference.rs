@@ -88,9 +88,9 @@ impl Preference {
     pub fn choose(&self, configurations: &mut ArmConfigurations) -> Result<Point, Miss> {
         let costs = turn_inside(&self.joints, configurations);
         let mut best = (f64::INFINITY, 0);
-        for (place, cost) in costs[..configurations.len()].iter().enumerate() {
+        for (index, cost) in costs[..configurations.len()].iter().enumerate() {
             if *cost < best.0 {
-                best = (*cost, place);
+                best = (*cost, index);
             }
         }
         if best.0 < f64::INFINITY { Ok(self.inside(configurations, best.1)) } else { Err(self.miss(configurations)) }
@@ -100,18 +100,18 @@ impl Preference {
     /// reference.
     pub fn ordered(&self, configurations: &mut ArmConfigurations) -> SmallVec<[Point; 8]> {
         let costs = turn_inside(&self.joints, configurations);
-        let inside = (0..configurations.len()).filter(|place| costs[*place] < f64::INFINITY);
+        let inside = (0..configurations.len()).filter(|index| costs[*index] < f64::INFINITY);
         let mut inside: SmallVec<[usize; MOST_CONFIGURATIONS]> = inside.collect();
         inside.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
-        inside.iter().map(|place| self.inside(configurations, *place)).collect()
+        inside.iter().map(|index| self.inside(configurations, *index)).collect()
     }
 
     /// Configuration number `place`, clamped to the limits to undo rounding.
     #[inline]
-    fn inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+    fn inside(&self, configurations: &ArmConfigurations, index: usize) -> Point {
         let mut q = Point::new();
         for (joint, values) in self.joints.iter().zip(configurations.columns()) {
-            q.push(joint.inside(values[place]));
+            q.push(joint.inside(values[index]));
         }
         q
     }
@@ -119,9 +119,9 @@ impl Preference {
     /// Classifies the miss of `configurations`, all of which are outside the limits.
     #[cold]
     fn miss(&self, configurations: &ArmConfigurations) -> Miss {
-        let is_near = |place: usize| {
+        let is_near = |index: usize| {
             let mut values = self.joints.iter().zip(configurations.columns());
-            values.all(|(joint, values)| joint.is_near(values[place]))
+            values.all(|(joint, values)| joint.is_near(values[index]))
         };
         if (0..configurations.len()).any(is_near) { Miss::Near } else { Miss::Far }
     }
@@ -130,8 +130,8 @@ impl Preference {
     /// configuration inside. All are brought to whole turns near the limits.
     pub fn misses(&self, configurations: &mut ArmConfigurations, most: f64) -> impl Iterator<Item = (f64, Point)> {
         let outside = turn_near(&self.joints, configurations);
-        let places = (0..configurations.len()).filter(move |place| outside[*place] < most);
-        places.map(move |place| (outside[place], self.moved_inside(configurations, place)))
+        let indices = (0..configurations.len()).filter(move |index| outside[*index] < most);
+        indices.map(move |index| (outside[index], self.moved_inside(configurations, index)))
     }
 
     /// Returns the configuration least outside the limits, moved inside. All are brought to whole turns near the limits.
@@ -141,10 +141,10 @@ impl Preference {
         Some(self.moved_inside(configurations, least)).filter(|q| q.iter().all(|q| q.is_finite()))
     }
 
-    /// Configuration inside the limits nearest to number `place`, which is at whole turns near the limits.
-    fn moved_inside(&self, configurations: &ArmConfigurations, place: usize) -> Point {
+    /// Configuration inside the limits nearest to number `index`, which is at whole turns near the limits.
+    fn moved_inside(&self, configurations: &ArmConfigurations, index: usize) -> Point {
         let joints = self.joints.iter().zip(configurations.columns());
-        joints.map(|(joint, values)| joint.moved_inside(values[place])).collect()
+        joints.map(|(joint, values)| joint.moved_inside(values[index])).collect()
     }
 
     /// Returns the preferred one of `configurations`, all inside the limits and at the whole turns nearest to the reference.

@@ -6,12 +6,12 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::message::{Message, message};
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, NearestContact, Surroundings};
+use crate::obstacle::{ClearSpace, Clearance, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
-use crate::wording::number;
 
 /// Best configuration found, with the report on its search, whose fields are read like those of the solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,11 +44,11 @@ pub struct SolveReport {
     pub elapsed: Duration,
 }
 
-/// Nearest two bodies at a configuration, if collisions were checked.
+/// Clearance of a solution, if collisions were checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nearest {
-    /// Bodies and their distance; `None` if no two can touch.
-    pub bodies: Option<NearestContact>,
+    /// Smallest distance, and the nearest two bodies.
+    pub clearance: Clearance,
     /// First obstacle with an open mesh, whose inside is unknown.
     pub open_mesh: Option<usize>,
 }
@@ -56,12 +56,7 @@ pub struct Nearest {
 impl Nearest {
     /// Nearest two bodies at `q` in `space`.
     pub(super) fn at(space: &ClearSpace<'_>, q: &[f64]) -> Self {
-        Self { bodies: space.nearest(q), open_mesh: space.first_open_mesh() }
-    }
-
-    /// Smallest distance (m); infinite if nothing can touch.
-    pub fn clearance(&self) -> f64 {
-        self.bodies.as_ref().map_or(f64::INFINITY, |bodies| bodies.contact.distance)
+        Self { clearance: space.clearance(q), open_mesh: space.first_open_mesh() }
     }
 }
 
@@ -112,19 +107,21 @@ impl SolveReport {
     /// Smallest distance at the solution (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
     /// checked.
     pub fn clearance(&self) -> f64 {
-        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance())
+        self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance.distance)
     }
 
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let Self { error, obstruction, status, .. } = self;
         if error.position.is_nan() && error.rotation.is_nan() {
-            return format!("not solved: {}", status.advice());
+            return message!["not solved: ", status.advice()];
         }
         let ended = match status {
-            Status::Solved => return format!("solved to {error}{}", self.kept_clear()),
-            Status::InCollision => return format!("reached to {error}, but {obstruction}: {}", status.advice()),
-            Status::Improved => return format!("below the requested value, {error} away"),
+            Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
+            Status::InCollision => {
+                return message![format!("reached to {error}, but {obstruction}: "), status.advice()];
+            }
+            Status::Improved => return format!("below the requested value, {error} away").into(),
             Status::OutOfReach => "as near as possible,",
             Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
@@ -135,19 +132,12 @@ impl SolveReport {
             _ => "stopped,",
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
-        format!("{ended} {error} away{why}: {}", status.advice())
+        message![format!("{ended} {error} away{why}: "), status.advice()]
     }
 
     /// Clearance as the end of a sentence; empty if nothing was checked.
     fn kept_clear(&self) -> String {
-        let Some(nearest) = &self.nearest else { return String::new() };
-        let clear = match nearest.bodies {
-            None => ", with nothing to touch".into(),
-            Some(_) => format!(", {} m clear of everything", number(nearest.clearance())),
-        };
-        match nearest.open_mesh {
-            None => clear,
-            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
-        }
+        let in_words = |nearest: &Nearest| clear_in_words(Some(&nearest.clearance), nearest.open_mesh);
+        self.nearest.as_deref().map_or_else(String::new, in_words)
     }
 }

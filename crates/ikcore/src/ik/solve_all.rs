@@ -13,6 +13,7 @@ use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
 use super::whole_turns::{all_turns, bring_near, count_of_turns};
 use crate::error::{Error, Result, require_at_least_one, require_positive};
+use crate::message::{Message, Setting, message};
 use crate::objective::{Bounds, Point};
 use crate::obstacle::ClearSpace;
 use crate::rng;
@@ -91,18 +92,18 @@ impl SolutionSet {
     }
 
     /// Returns a sentence with the number of solutions, or the reason for having none.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
-            return format!("no solution ({obstruction}): {}", Status::OutOfReach.advice());
+            return message![format!("no solution ({obstruction}): "), Status::OutOfReach.advice()];
         }
         let count = match (self.solutions.len(), &self.miss) {
-            (0, Some(miss)) => return format!("no solution; best miss: {}", miss.message()),
+            (0, Some(miss)) => return message!["no solution; best miss: ", miss.message()],
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
         };
         let complete = if self.complete { ", no others inside the limits" } else { "" };
         let singular = if self.singular { "; the pose is singular: a family counts as one solution" } else { "" };
-        format!("{count}{complete}{singular}")
+        format!("{count}{complete}{singular}").into()
     }
 
     /// Set of these solutions, all other fields empty.
@@ -314,9 +315,10 @@ fn at_all_turns(context: &SolveContext<'_>, solutions: &Solutions) -> Result<Sol
     let count: f64 = solutions.iter().map(|solution| count_of_turns(robot, bounds, solution.q)).sum();
     if count > MOST_TURNED {
         return Err(Error::Contradiction {
-            problem: format!(
-                "turns=True makes {count} configurations; at most {MOST_TURNED} are allowed: narrow the limits"
-            ),
+            problem: message![
+                Setting::AllTurns,
+                format!(" makes {count} configurations; at most {MOST_TURNED} are allowed: narrow the limits"),
+            ],
         });
     }
     let mut turned = Solutions::new(robot.dof());

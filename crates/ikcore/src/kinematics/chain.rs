@@ -12,7 +12,7 @@ use crate::math::{Frame, Pose, pose};
 /// Motion of a stage: a rotation by turn_scale * q\[joint\] + turn_offset (rad) and a translation of the same form (m). One
 /// of the two scales is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StageMotion {
+pub(crate) struct Transmission {
     pub joint: usize,
     pub turn_scale: f64,
     pub turn_offset: f64,
@@ -22,7 +22,7 @@ pub(crate) struct StageMotion {
     pub of_vector: bool,
 }
 
-impl StageMotion {
+impl Transmission {
     const NONE: Self =
         Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0, of_vector: false };
 
@@ -70,7 +70,7 @@ pub(crate) struct Chain {
     /// Constant frames, one per moving element.
     pub stages: Stages,
     /// Motions, one per moving element, then padding that moves nothing.
-    pub motions: Vec<StageMotion>,
+    pub motions: Vec<Transmission>,
     /// Tip frame relative to the last stage.
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
@@ -105,7 +105,7 @@ pub(crate) struct ChainFolder {
     /// Constant transform since the last moving element, from that element's z-aligned frame.
     constant: Pose,
     frames: Vec<Frame>,
-    motions: Vec<StageMotion>,
+    motions: Vec<Transmission>,
     links: Vec<LinkFrame>,
     vector: Option<RotationVector>,
 }
@@ -127,7 +127,7 @@ impl ChainFolder {
     }
 
     /// Appends a motion about or along the unit vector `axis`.
-    pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
+    pub fn moving(&mut self, axis: &Vector3<f64>, motion: Transmission) {
         let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
         self.frames.push(Frame::from(&(self.constant * aligned)));
         self.motions.push(motion);
@@ -139,8 +139,8 @@ impl ChainFolder {
         let start = Frame::from(&self.constant);
         self.vector = Some(RotationVector { first: self.frames.len(), joint, start });
         self.frames.extend(RotationVector::at_zero(&start));
-        self.motions.extend((0..3).map(|entry| StageMotion::vector_entry(joint + entry)));
-        self.motions.push(StageMotion::NONE);
+        self.motions.extend((0..3).map(|entry| Transmission::vector_entry(joint + entry)));
+        self.motions.push(Transmission::NONE);
         self.constant = Pose::identity();
     }
 
@@ -149,7 +149,7 @@ impl ChainFolder {
     pub fn finish(self, tool: &Pose) -> Chain {
         let Self { constant, frames, mut motions, links, vector } = self;
         let moving = frames.len();
-        motions.resize(padded(moving).next_multiple_of(LANES), StageMotion::NONE);
+        motions.resize(padded(moving).next_multiple_of(LANES), Transmission::NONE);
         Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links, vector }
     }
 }

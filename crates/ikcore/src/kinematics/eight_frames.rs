@@ -1,7 +1,7 @@
 //! Single-precision frames of all moving elements at eight configurations, for searches whose results are confirmed in double
 //! precision.
 
-use super::chain::StageMotion;
+use super::chain::Transmission;
 use super::four_forward_pass::RunningFrames;
 use super::rotation_vector::RotationVector;
 use crate::math::Frame;
@@ -23,13 +23,13 @@ struct Stage {
     parent: usize,
     /// Constant frame relative to the parent, z along the axis, in all lanes.
     frame: Frame<F32x8>,
-    motion: StageMotion,
+    motion: Transmission,
 }
 
 impl EightStages {
     /// Builds the stages in the order of their frames, from index 1 on: parent frame, constant frame relative to it, and
     /// motion. `vector` is the rotation vector among them.
-    pub fn new(stages: impl Iterator<Item = (usize, Frame, StageMotion)>, vector: Option<RotationVector>) -> Self {
+    pub fn new(stages: impl Iterator<Item = (usize, Frame, Transmission)>, vector: Option<RotationVector>) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
             origin: frame.origin.map(|x| F32x8::splat(x as f32)),

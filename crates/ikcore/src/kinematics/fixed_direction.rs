@@ -1,6 +1,6 @@
 //! Direction that the tip keeps if all joints rotate about parallel axes, as in planar arms and palletisers.
 
-use super::chain::StageMotion;
+use super::chain::Transmission;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{cross, norm};
@@ -20,7 +20,7 @@ pub struct FixedDirection {
 impl FixedDirection {
     /// Returns the fixed direction of a chain with parallel axes; `None` for other chains. `at_zero` holds the frames of the
     /// moving elements at zero joint angles, z along their axes, followed by the tip frame.
-    pub(super) fn of_chain(at_zero: &[Frame], motions: &[StageMotion]) -> Option<Self> {
+    pub(super) fn of_chain(at_zero: &[Frame], motions: &[Transmission]) -> Option<Self> {
         let (tip, moving) = at_zero.split_last()?;
         let mut axes =
             moving.iter().zip(motions).filter(|(_, motion)| motion.turn_scale != 0.0).map(|(frame, _)| frame.axes[2]);

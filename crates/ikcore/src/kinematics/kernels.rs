@@ -118,7 +118,7 @@ by_instructions! {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chain::{ChainFolder, SIZES, StageMotion};
+    use super::super::chain::{ChainFolder, SIZES, Transmission};
     use super::*;
     use crate::math::arithmetic::Baseline;
     use crate::math::{MAX_DOF, Pose, pose};
@@ -129,7 +129,7 @@ mod tests {
         let mut arm = ChainFolder::new(&Pose::identity());
         for i in 0..joints {
             let x = i as f64;
-            let motion = if i % 3 == 2 { StageMotion::slide } else { StageMotion::turn };
+            let motion = if i % 3 == 2 { Transmission::slide } else { Transmission::turn };
             arm.fixed(&pose::from_rpy([0.3 * x, 0.7 - x, 0.1], [0.1, 0.05 * x, 0.2]));
             arm.moving(&Vector3::new(x.sin(), 0.4, x.cos()).normalize(), motion(i, 1.0, 0.01 * x));
         }

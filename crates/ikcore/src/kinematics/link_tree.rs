@@ -5,11 +5,15 @@
 //! Frame 0 is the base and frame i is moved by stage i - 1 of the chain; the stages of the branches follow.
 
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 
-use super::chain::{Chain, LinkFrame, StageMotion, basis_with_z_along};
+use super::chain::{Chain, LinkFrame, Transmission, basis_with_z_along};
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, Pose, STACK_DOF, pose};
+
+/// Frames of all moving elements: STACK_DOF + 1 and a few more on the stack, more of them on the heap.
+pub(crate) type FrameBuffer = SmallVec<[Frame; 36]>;
 
 /// Moving element of a branch.
 #[derive(Debug, Clone)]
@@ -18,7 +22,7 @@ struct BranchStage {
     parent: usize,
     /// Constant frame relative to the parent, z along the axis.
     frame: Frame,
-    motion: StageMotion,
+    motion: Transmission,
 }
 
 impl BranchStage {
@@ -26,7 +30,7 @@ impl BranchStage {
     fn moved(&self, value: f64, parent: &Frame) -> Frame {
         let Self { frame, motion, .. } = self;
         let (sine, cosine) = (motion.turn_scale * value + motion.turn_offset).sin_cos();
-        let origin = frame.place::<NoFma>(&[0.0, 0.0, motion.slide_scale * value + motion.slide_offset]);
+        let origin = frame.transform::<NoFma>(&[0.0, 0.0, motion.slide_scale * value + motion.slide_offset]);
         parent.then::<NoFma>(&Frame { origin, ..frame.turned::<NoFma>(sine, cosine) })
     }
 }
@@ -78,7 +82,7 @@ impl LinkTree {
         chain: &'a Chain,
         frame: usize,
         below: usize,
-    ) -> impl Iterator<Item = (usize, &'a StageMotion)> + use<'a> {
+    ) -> impl Iterator<Item = (usize, &'a Transmission)> + use<'a> {
         let mut at = frame;
         std::iter::from_fn(move || {
             let moved = (at > below).then_some(at)?;
@@ -93,7 +97,7 @@ impl LinkTree {
 
     /// Iterates over all moving elements, in the order of their frames from index 1 on: parent frame, constant frame relative
     /// to it, and motion.
-    pub fn stages<'a>(&'a self, chain: &'a Chain) -> impl Iterator<Item = (usize, Frame, StageMotion)> + use<'a> {
+    pub fn stages<'a>(&'a self, chain: &'a Chain) -> impl Iterator<Item = (usize, Frame, Transmission)> + use<'a> {
         let of_chain = chain.moving_frames().zip(&chain.motions).enumerate();
         let of_chain = of_chain.map(|(parent, (frame, motion))| (parent, frame, *motion));
         of_chain.chain(self.branches.iter().map(|stage| (stage.parent, stage.frame, stage.motion)))
@@ -164,7 +168,7 @@ impl LinkTreeFolder {
     }
 
     /// Appends a motion about or along the unit vector `axis`.
-    pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
+    pub fn moving(&mut self, axis: &Vector3<f64>, motion: Transmission) {
         let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
         let (parent, constant) = self.at;
         self.tree.branches.push(BranchStage { parent, frame: Frame::from(&(constant * aligned)), motion });

@@ -16,7 +16,8 @@ fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) 
         let moved = turned.unwrap_or_else(|| {
             let (sine, cosine) = (motion.turn_scale * q[motion.joint] + motion.turn_offset).sin_cos();
             let stage = chain.stages.frame(i);
-            let origin = stage.place::<NoFma>(&[0.0, 0.0, motion.slide_scale * q[motion.joint] + motion.slide_offset]);
+            let origin =
+                stage.transform::<NoFma>(&[0.0, 0.0, motion.slide_scale * q[motion.joint] + motion.slide_offset]);
             Frame { origin, ..stage.turned::<NoFma>(sine, cosine) }
         });
         frame = frame.then::<NoFma>(&moved);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::chain::{Chain, StageMotion};
+use super::chain::{Chain, Transmission};
 use super::fixed_direction::FixedDirection;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -113,7 +113,7 @@ impl Reach {
             0.0 => (height, x.hypot(y)),
             _ => (0.0, norm(&[x, y, height])),
         };
-        let center = chain.stages.frame(0).place::<NoFma>(&[0.0, 0.0, on_axis]);
+        let center = chain.stages.frame(0).transform::<NoFma>(&[0.0, 0.0, on_axis]);
         Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, fixed_direction }
     }
 
@@ -136,7 +136,7 @@ impl Reach {
     }
 }
 
-fn longest_slide(motion: &StageMotion, lower: &[f64], upper: &[f64]) -> f64 {
+fn longest_slide(motion: &Transmission, lower: &[f64], upper: &[f64]) -> f64 {
     if motion.slide_scale == 0.0 {
         return 0.0;
     }

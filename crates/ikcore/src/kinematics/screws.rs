@@ -1,6 +1,6 @@
 //! Screws of a chain at a configuration: the velocity that each moving element imparts to everything after it.
 
-use super::chain::{Chain, StageMotion};
+use super::chain::{Chain, Transmission};
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::math::{Frame, MAX_DOF};
@@ -62,13 +62,13 @@ impl Screws {
                 turn: axis.map(|entry| motion.turn_scale * entry),
                 slide: axis.map(|entry| motion.slide_scale * entry),
                 origin,
-                end: reached[i + 1].place::<NoFma>(&end),
+                end: reached[i + 1].transform::<NoFma>(&end),
             };
         }
         screws
     }
 }
 
-fn moves(motion: &StageMotion) -> bool {
+fn moves(motion: &Transmission) -> bool {
     motion.turn_scale != 0.0 || motion.slide_scale != 0.0
 }

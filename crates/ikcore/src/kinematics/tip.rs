@@ -20,7 +20,7 @@ pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain:
     for i in (0..N).rev() {
         // Rotating the frame instead of the point keeps the rotation off the critical path from point to point.
         let stage = chain.stages.frame(i).turned::<A>(sines[i], cosines[i]);
-        point = stage.place::<A>(&[point[0], point[1], point[2] + slides[i]]);
+        point = stage.transform::<A>(&[point[0], point[1], point[2] + slides[i]]);
     }
     point
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Field, Profile};
 use crate::error::{Error, Result};
+use crate::message::Message;
 use crate::objective::Bounds;
 use crate::robot::{Joint, Robot};
 
@@ -70,7 +71,7 @@ impl Limits {
         }
         if profiles.len() != n {
             let expected = format!("one number, or {n} (one per joint)");
-            return Err(Error::WrongLength { what: format!("{field} limit"), expected, got: profiles.len() });
+            return Err(Error::WrongLength { what: format!("{field} limit").into(), expected, got: profiles.len() });
         }
         for (profile, joint) in profiles.iter().zip(&self.joints) {
             profile.validate(&format!("{field} limit of joint '{joint}'"))?;
@@ -165,12 +166,12 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
-    pub(crate) fn constants(&self, field: Field, method: &str, remedy: &str) -> Result<Vec<f64>> {
+    pub(crate) fn constants(&self, field: Field, method: impl Into<Message> + Clone, remedy: &str) -> Result<Vec<f64>> {
         let constant = |profile: &Profile| match profile {
             Profile::Constant(value) => Ok(*value),
             _ => Err(Error::UnsupportedLimit {
                 field: format!("time-varying {field}"),
-                method: method.into(),
+                method: method.clone().into(),
                 remedy: remedy.into(),
             }),
         };
@@ -226,7 +227,7 @@ impl Limits {
             return Ok(());
         }
         let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
-        Err(Error::WrongLength { what, expected, got: self.joints.len() })
+        Err(Error::WrongLength { what: what.into(), expected, got: self.joints.len() })
     }
 
     /// Checks that `q` is within the position limits at time `t` (s); `what` names it in the error.

@@ -106,7 +106,7 @@ impl DhTable {
         ];
         if let Some((column, got)) = lengths.into_iter().find(|(_, length)| *length != n) {
             let what = format!("{column} in the DH table of robot '{robot}'");
-            return Err(Error::WrongLength { what, expected: format!("{n} entries, as in a"), got });
+            return Err(Error::WrongLength { what: what.into(), expected: format!("{n} entries, as in a"), got });
         }
         for (column, values) in [("a", &self.a), ("alpha", &self.alpha), ("d", &self.d), ("theta", &self.theta)] {
             let what = format!("{column} in the DH table of robot '{robot}'");

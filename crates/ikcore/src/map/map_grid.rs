@@ -9,6 +9,7 @@ use crate::error::{Error, Result, require_finite, require_positive};
 use crate::kinematics::Reach;
 use crate::math::Frame;
 use crate::math::so3::norm;
+use crate::message::{Setting, message};
 use crate::robot::Robot;
 use crate::task::{Task, TaskKind};
 use crate::wording::number;
@@ -71,7 +72,7 @@ impl MapGrid {
                 std::array::from_fn(|k| reach.center[k] + if plane == Some(k) { 0.0 } else { side * reach.radius })
             }),
             None => {
-                let problem = "a joint slides without limits, so the map needs region=(corner, corner)".into();
+                let problem = message!["a joint slides without limits, so the map needs ", Setting::Region];
                 return Err(Error::Contradiction { problem });
             }
         };
@@ -99,9 +100,9 @@ impl MapGrid {
         self.orientations.count().div_ceil(8)
     }
 
-    /// Pose of orientation `i` at `place` (m), rotated to `azimuth` (rad) about z.
-    pub fn pose(&self, place: [f64; 3], azimuth: f64, i: usize) -> Frame {
-        Frame { axes: turned(&self.orientations.axes(i), azimuth), origin: place }
+    /// Pose of orientation `i` at `point` (m), rotated to `azimuth` (rad) about z.
+    pub fn pose(&self, point: [f64; 3], azimuth: f64, i: usize) -> Frame {
+        Frame { axes: turned(&self.orientations.axes(i), azimuth), origin: point }
     }
 
     /// Returns the voxel that contains a pose, and the nearest orientation there; `None` outside the map.
@@ -148,13 +149,14 @@ fn orientations(robot: &Robot, reach: &Reach, layout: &MapLayout, task: Option<&
         return Ok(set);
     }
     let name = robot.name();
-    let less = if moves >= 5 { "tasks.Pointing() or tasks.Position()" } else { "tasks.Position()" };
-    let remedy = if matches!(kind, TaskKind::Position) { "it has no map".into() } else { format!("give task={less}") };
+    let less = Setting::MapTask { pointing: moves >= 5 };
+    let remedy = if matches!(kind, TaskKind::Position) { "it has no map".into() } else { message!["give ", less] };
     let problem = format!(
         "the tip of robot '{name}' moves in {moves} directions, and a map of task {} needs {needs}, as it reaches hardly \
-         any voxel's centre otherwise: {remedy}",
+         any voxel's centre otherwise: ",
         kind.name()
     );
+    let problem = message![problem, remedy];
     Err(Error::Contradiction { problem })
 }
 
@@ -167,6 +169,6 @@ fn plane_of(robot: &Robot, normal: [f64; 3]) -> Result<usize> {
             "the tip of robot '{name}' moves in a plane across ({x}, {y}, {z}), in which no layer of voxels lies: turn its \
              base by with_base"
         );
-        Error::Contradiction { problem }
+        Error::Contradiction { problem: problem.into() }
     })
 }

@@ -1,6 +1,7 @@
 //! Requirements on the poses of a map, and the budget of each pose.
 
 use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::obstacle::Surroundings;
 use crate::task::{Task, TaskKind};
 
@@ -44,11 +45,11 @@ fn require_mapped(task: Option<&Task>) -> Result<()> {
     let Some(task) = task else { return Ok(()) };
     task.validate()?;
     let problem = if matches!(task.kind, TaskKind::Orientation) {
-        "an orientation task leaves the position free, so all voxels are alike"
+        message!["an orientation task leaves the position free, so all voxels are alike"]
     } else if task.region.is_some() {
-        "the region of a task moves targets; give region= of the map"
+        message!["the region of a task moves targets; give the map ", Setting::Region]
     } else {
         return Ok(());
     };
-    Err(Error::Contradiction { problem: format!("task of a map: {problem}") })
+    Err(Error::Contradiction { problem: message!["task of a map: ", problem] })
 }

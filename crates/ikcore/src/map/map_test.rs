@@ -125,7 +125,7 @@ impl<'a> MapTest<'a> {
 
     /// Whether the reach of the tip includes the position of a ring.
     pub(super) fn may_reach(&self, ring: &Ring) -> bool {
-        self.reach.excess(&ring.place) <= Tolerance::default().position
+        self.reach.excess(&ring.point) <= Tolerance::default().position
     }
 
     /// Result of a ring with nothing reached.
@@ -146,7 +146,7 @@ impl<'a> MapTest<'a> {
         result: &mut RingResult,
         monitor: &mut dyn Monitor,
     ) -> OrientationResult {
-        let pose = self.grid.pose(ring.place, self.azimuth(ring), i);
+        let pose = self.grid.pose(ring.point, self.azimuth(ring), i);
         let mut found = self.found(ring, OrientationResult::default(), result);
         match &self.method {
             Method::Branches => {
@@ -263,8 +263,8 @@ impl OrientationTest<'_, '_> {
             None => self.keep(q, 1),
             Some((axis, _)) => {
                 let range = self.test.ranges[axis.joint];
-                let bit = |(place, azimuth): (usize, &f64)| {
-                    u64::from(range.holds(q[axis.joint] + azimuth * axis.per_turn)) << place
+                let bit = |(index, azimuth): (usize, &f64)| {
+                    u64::from(range.holds(q[axis.joint] + azimuth * axis.per_turn)) << index
                 };
                 self.keep(q, self.azimuths.iter().enumerate().map(bit).sum());
             }
@@ -286,10 +286,11 @@ impl OrientationTest<'_, '_> {
     fn measure(&mut self, q: &[f64], at: u64) {
         let MapTest { own, measure, .. } = self.test;
         let index = measure.index(own.robot(), q);
-        let clearance = own.space().and_then(|space| space.nearest(q)).map_or(f64::NAN, |near| near.contact.distance);
+        let clearance =
+            own.space().and_then(|space| space.clearance(q).nearest).map_or(f64::NAN, |near| near.contact.distance);
         for (all, value) in self.quality.iter_mut().zip([index, clearance]) {
-            for (place, best) in all.iter_mut().enumerate() {
-                if at >> place & 1 == 1 {
+            for (index, best) in all.iter_mut().enumerate() {
+                if at >> index & 1 == 1 {
                     // Takes the larger value, and never NaN if one is a number.
                     *best = best.max(value as f32);
                 }
@@ -308,20 +309,20 @@ impl OrientationTest<'_, '_> {
         };
         let Some(solution) = solved(context, pose, None, stream, monitor) else { return };
         self.take(&solution.q);
-        for place in 0..self.azimuths.len() {
-            if self.seen.reached >> place & 1 == 0
-                && let Some(solution) = solved(own, &axis.turned(pose, self.azimuths[place]), None, stream, monitor)
+        for index in 0..self.azimuths.len() {
+            if self.seen.reached >> index & 1 == 0
+                && let Some(solution) = solved(own, &axis.turned(pose, self.azimuths[index]), None, stream, monitor)
             {
-                self.take_at(place, &solution.q);
+                self.take_at(index, &solution.q);
             }
         }
     }
 
     /// Takes a solution at one azimuth.
-    pub fn take_at(&mut self, place: usize, q: &[f64]) {
+    pub fn take_at(&mut self, index: usize, q: &[f64]) {
         let mut q = q.to_vec();
         if let Some((axis, _)) = &self.test.turning {
-            q[axis.joint] -= self.azimuths[place] * axis.per_turn;
+            q[axis.joint] -= self.azimuths[index] * axis.per_turn;
         }
         self.take(&q);
     }

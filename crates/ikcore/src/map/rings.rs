@@ -9,7 +9,7 @@ const MOST: usize = 64;
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     /// Position of the tip at azimuth 0 (m).
-    pub place: [f64; 3],
+    pub point: [f64; 3],
     /// Azimuth of each voxel (rad).
     pub azimuths: Vec<f64>,
     /// Number of each voxel in the chunk, in C order.
@@ -33,9 +33,9 @@ pub(crate) fn rings_of(grid: &MapGrid, [xs, ys, zs]: [[usize; 2]; 3]) -> Vec<Rin
     let mut rings = vec![];
     if !grid.treats_azimuths_alike() {
         for (z, (_, [x, y])) in (zs[0]..zs[1]).flat_map(|z| by_distance.iter().map(move |column| (z, *column))) {
-            let (voxel, place) = ([x, y, z], voxels.centre([x, y, z]));
+            let (voxel, point) = ([x, y, z], voxels.centre([x, y, z]));
             let azimuths = vec![voxels.azimuth(voxel)];
-            rings.push(Ring { place, azimuths, voxels: vec![number(voxel)], stream: stream(voxel) });
+            rings.push(Ring { point, azimuths, voxels: vec![number(voxel)], stream: stream(voxel) });
         }
         return rings;
     }
@@ -45,7 +45,7 @@ pub(crate) fn rings_of(grid: &MapGrid, [xs, ys, zs]: [[usize; 2]; 3]) -> Vec<Rin
             let of_each = || same.iter().map(|(_, [x, y])| [*x, *y, z]);
             let (square, [x, y]) = same[0];
             rings.push(Ring {
-                place: voxels.place_at(square, z),
+                point: voxels.point_at(square, z),
                 azimuths: of_each().map(|voxel| voxels.azimuth(voxel)).collect(),
                 voxels: of_each().map(number).collect(),
                 stream: stream([x, y, z]),

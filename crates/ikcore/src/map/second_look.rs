@@ -85,7 +85,7 @@ impl NeighbourDescent<'_, '_> {
     /// Descends to the orientation from nearby solutions, and returns its updated results.
     fn at(&self, all: &[OrientationResult], result: &mut RingResult, monitor: &mut dyn Monitor) -> OrientationResult {
         let Self { test, ring, i, .. } = *self;
-        let pose = test.grid.pose(ring.place, test.azimuth(ring), i);
+        let pose = test.grid.pose(ring.point, test.azimuth(ring), i);
         let mut found = test.found(ring, all[i].clone(), result);
         if found.seen.reached == 0 {
             let context = self.second.turning.as_ref().unwrap_or(&self.second.own);
@@ -102,17 +102,17 @@ impl NeighbourDescent<'_, '_> {
         if found.seen.reached == 0 || found.is_everywhere() {
             return found.seen;
         }
-        for (place, azimuth) in ring.azimuths.iter().enumerate() {
+        for (index, azimuth) in ring.azimuths.iter().enumerate() {
             let range = test.ranges[axis.joint];
             let holds = |start: &&Vec<f64>| range.holds(start[axis.joint] + azimuth * axis.per_turn);
             for start in self.starts(all).filter(holds).take(DESCENTS) {
-                if found.seen.reached >> place & 1 == 1 {
+                if found.seen.reached >> index & 1 == 1 {
                     break;
                 }
                 let turned = axis.turned(&pose, *azimuth);
                 let inside = self.inside(start, Some(*azimuth));
                 if let Some(solution) = solved(&self.second.own, &turned, Some(&inside), 0, monitor) {
-                    found.take_at(place, &solution.q);
+                    found.take_at(index, &solution.q);
                 }
             }
         }

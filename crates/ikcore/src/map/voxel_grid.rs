@@ -90,9 +90,9 @@ impl VoxelGrid {
             let requirement = format!("below {}, the number of chunks", across * along * up);
             return Err(Error::out_of_range("chunks", &requirement, number as f64));
         }
-        let place = [number / (along * up), number / up % along, number % up];
+        let cell = [number / (along * up), number / up % along, number % up];
         Ok(std::array::from_fn(|k| {
-            let start = place[k] * self.chunk_shape[k];
+            let start = cell[k] * self.chunk_shape[k];
             [start, (start + self.chunk_shape[k]).min(self.shape[k])]
         }))
     }
@@ -110,7 +110,7 @@ impl VoxelGrid {
 
     /// Point (m) on the x side of the axis, at the height of the voxel `up` layers above the lowest, whose squared distance
     /// from the axis is `square` (half voxels squared).
-    pub(super) fn place_at(&self, square: i64, up: usize) -> [f64; 3] {
+    pub(super) fn point_at(&self, square: i64, up: usize) -> [f64; 3] {
         let [x, y, _] = self.anchor;
         [x + 0.5 * self.voxel * (square as f64).sqrt(), y, self.centre([0, 0, up])[2]]
     }

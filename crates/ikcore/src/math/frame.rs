@@ -75,7 +75,7 @@ impl Frame {
 
     /// Maps a point from this frame into the base: R p + t.
     #[inline(always)]
-    pub(crate) fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn transform<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
         // Two short dependency chains instead of a long one: the latency of this sum determines the cost of a chain of
         // joints.
@@ -86,7 +86,7 @@ impl Frame {
     #[inline(always)]
     pub(crate) fn then<A: Arithmetic>(&self, next: &Self) -> Self {
         let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
-        Self { axes, origin: self.place::<A>(&next.origin) }
+        Self { axes, origin: self.transform::<A>(&next.origin) }
     }
 
     /// Returns the inverse transform.

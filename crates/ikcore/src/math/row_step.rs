@@ -79,6 +79,7 @@ pub struct RowSolver {
     trial: Vec<f64>,
     /// Unconstrained minimum.
     free: Vec<f64>,
+    exchanges: usize,
 }
 
 impl RowStep<'_> {
@@ -126,7 +127,13 @@ impl RowSolver {
             system: Vec::with_capacity(most * most),
             trial: Vec::with_capacity(most),
             free: Vec::with_capacity(n),
+            exchanges: 0,
         }
+    }
+
+    /// Exchanges of the active set so far: each solves for the multipliers anew.
+    pub fn exchanges(&self) -> usize {
+        self.exchanges
     }
 
     /// Writes the point after the step into `out`. Returns whether a row is active.
@@ -228,6 +235,7 @@ impl RowSolver {
 
     /// Sets `trial` to the multipliers with which all active constraints hold exactly.
     fn solve_for_multipliers(&mut self, step: &RowStep<'_>) {
+        self.exchanges += 1;
         let (m, n) = (self.active.len(), step.start.len());
         self.system.clear();
         self.system.resize(m * m, 0.0);

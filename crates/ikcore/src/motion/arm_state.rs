@@ -29,9 +29,9 @@ impl ArmState {
                     1 => "1 joint".into(),
                     n => format!("{n} joints"),
                 };
-                return Err(Error::WrongLength { what: format!("{what}{end}"), expected, got: values.len() });
+                return Err(Error::WrongLength { what: format!("{what}{end}").into(), expected, got: values.len() });
             }
-            require_finite(&format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
+            require_finite(format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
         }
         Ok(())
     }

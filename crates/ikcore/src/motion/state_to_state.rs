@@ -55,7 +55,7 @@ fn too_long(motion: &Synchronised) -> Error {
         "the motion would take {duration} s, and times that long do not resolve its shortest phases: give limits of more \
          similar size"
     );
-    Error::Infeasible { problem }
+    Error::Infeasible { problem: problem.into() }
 }
 
 /// Returns a motion from one state to another that lasts `duration` (s); `None` if there is none within constant
@@ -112,7 +112,7 @@ fn rates(limits: &Limits) -> Result<Vec<Rates>> {
     let unlimited = |j: &usize| [velocity[*j], acceleration[*j], jerk[*j]].iter().all(|limit| limit.is_infinite());
     match (0..joints.len()).find(unlimited) {
         None => Ok((0..joints.len()).map(of_joint).collect()),
-        Some(j) => Err(Error::NoPace { joint: joints[j].clone() }),
+        Some(j) => Err(Error::no_pace(&joints[j])),
     }
 }
 
@@ -129,7 +129,7 @@ fn require_reachable(joint: &str, to: &MotionState, rates: &Rates) -> Result<()>
     let refuse = |quantity: &str, value: f64, limit: f64| {
         let (value, limit) = (number(value), number(limit));
         let problem = format!("the final {quantity} of joint '{joint}' is {value}, its limit {limit}");
-        Err(Error::Infeasible { problem })
+        Err(Error::Infeasible { problem: problem.into() })
     };
     if rates.acceleration.is_infinite() && rates.jerk.is_infinite() {
         return Ok(());
@@ -150,7 +150,7 @@ fn require_reachable(joint: &str, to: &MotionState, rates: &Rates) -> Result<()>
             "to end with its velocity and acceleration (qd1, qdd1), joint '{joint}' would need a velocity of {before} \
              shortly before; its limit is {limit}"
         );
-        return Err(Error::Infeasible { problem });
+        return Err(Error::Infeasible { problem: problem.into() });
     }
     Ok(())
 }
@@ -170,7 +170,7 @@ fn require_room(limits: &Limits, motion: &Synchronised) -> Result<()> {
                     "joint '{joint}' would get to {position}, beyond its {side} limit {limit}: begin or end it slower, \
                      or farther from its limit"
                 );
-                return Err(Error::Infeasible { problem });
+                return Err(Error::Infeasible { problem: problem.into() });
             }
         }
     }

@@ -29,7 +29,7 @@ impl Bounds {
         }
         match lower.iter().zip(upper).position(|(l, u)| l.is_nan() || u.is_nan() || l > u) {
             Some(i) => {
-                Err(Error::out_of_range(format!("lower[{i}]"), &format!("at most upper[{i}] = {}", upper[i]), lower[i]))
+                Err(Error::out_of_range(format!("lower[{i}]"), format!("at most upper[{i}] = {}", upper[i]), lower[i]))
             }
             None => Ok(Self { lower: lower.into(), upper: upper.into() }),
         }

@@ -1,8 +1,9 @@
-//! Which bodies may touch which obstacles.
+//! Allowed contacts of bodies and obstacles.
 
 use super::obstacles::Obstacles;
+use crate::bodies::CarriedBody;
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::robot::{Carried, Robot};
+use crate::robot::Robot;
 use crate::wording::listed;
 
 /// Pairs of an obstacle and a body that are not compared, such as a floor and the base that stands on it.
@@ -13,20 +14,19 @@ pub(super) struct AllowedContacts {
 }
 
 impl AllowedContacts {
-    /// Those that the obstacles name ([`Shape::touch`]), of the `bodies` of `robot`.
+    /// Contacts of `bodies` of `robot` that the obstacles name ([`Obstacle::touch`](super::Obstacle::touch)).
     ///
     /// # Errors
     /// [`Error::InvalidObstacle`] for the name of no link, or of a link without a body.
-    pub fn new(robot: &Robot, bodies: &[Carried], obstacles: &Obstacles) -> Result<Self> {
+    pub fn new(robot: &Robot, bodies: &[CarriedBody], obstacles: &Obstacles) -> Result<Self> {
         let mut pairs = vec![];
-        for &obstacle in obstacles.touched() {
-            let shape = &obstacles[obstacle];
-            for link in shape.touch() {
+        for (obstacle, entry) in obstacles.iter().enumerate() {
+            for link in entry.touch() {
                 let before = pairs.len();
                 let of_link = (0..bodies.len()).filter(|body| bodies[*body].link == *link);
                 pairs.extend(of_link.map(|body| [obstacle, body]));
                 if pairs.len() == before {
-                    return Err(no_body(robot, bodies, link, &format!("obstacle {obstacle} ({})", shape.name())));
+                    return Err(no_body(robot, bodies, link, &format!("obstacle {obstacle} ({})", entry.shape.name())));
                 }
             }
         }
@@ -47,11 +47,11 @@ impl AllowedContacts {
     }
 }
 
-fn no_body(robot: &Robot, bodies: &[Carried], link: &str, obstacle: &str) -> Error {
+fn no_body(robot: &Robot, bodies: &[CarriedBody], link: &str, obstacle: &str) -> Error {
     let mut known: Vec<&str> = bodies.iter().map(|body| body.link.as_str()).collect();
     known.dedup();
     let (name, meant) = (shortened(link), suggestion(link, known.iter().copied()));
-    let lacks = match robot.place_of_link(link) {
+    let lacks = match robot.carrier_of_link(link) {
         Some(_) => format!("link '{name}' of robot '{}' has no body", robot.name()),
         None => format!("robot '{}' has no link '{name}'{meant}", robot.name()),
     };

@@ -1,40 +1,68 @@
-//! The configurations at which a robot keeps a margin from everything.
+//! Free configurations: those at which a robot keeps a margin from everything.
 
-use std::sync::Arc;
-
-use super::coming_rows::{Coming, ComingRows};
-use super::contact::{Contact, NearestContact};
-use super::joint_motion::JointMotion;
-use super::motion_certificate::MotionCertificate;
-use super::near_rows::NearRows;
-use super::required_distance::RequiredDistance;
-use super::scene::Scene;
+use super::clear_groups::OtherBodies;
+use super::clearance::Clearance;
+use super::contact::Contact;
+use super::obstacles::Obstacles;
+use super::scene::{Scene, SceneRobot};
+use super::surroundings::Surroundings;
+use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::robot::Robot;
 
-/// A contact that no motion of the arm alone ends.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Blocked {
-    /// Of an obstacle and a body that no joint moves.
-    Base(Contact),
-    /// Of a body that is fixed to the tip.
-    Hand(Contact),
-}
-
-/// A scene and a margin. Configurations are checked by the caller: one finite entry per joint.
+/// Free configurations of a scene: those at which everything keeps the margin. Callers check configurations: one finite entry per
+/// joint.
 #[derive(Debug, Clone)]
 pub struct ClearSpace<'a> {
     scene: Scene<'a>,
     margin: f64,
 }
 
+/// A contact that no motion of the arm alone ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Blocked {
+    /// Contact of an obstacle and a body that no joint moves.
+    Base(Contact),
+    /// Contact of a body that is fixed to the tip.
+    Hand(Contact),
+}
+
+impl Surroundings {
+    /// The free configurations of `robot`; `None` if nothing is to be checked.
+    ///
+    /// # Errors
+    /// Those of [`Scene::new`]; [`Error::OutOfRange`] for a margin that is negative or not finite; [`Error::Contradiction`] for a
+    /// margin without anything to keep it from.
+    pub fn clear_space<'a>(&self, robot: impl Into<SceneRobot<'a>>) -> Result<Option<ClearSpace<'a>>> {
+        let margin = self.kept_margin()?;
+        if !self.is_given() {
+            let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
+            return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
+        }
+        let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;
+        let scene = if self.self_collision == Some(false) { scene.without_self_collision() } else { scene };
+        Ok(Some(ClearSpace { scene, margin }))
+    }
+}
+
 impl<'a> ClearSpace<'a> {
-    pub(super) fn new(scene: Scene<'a>, margin: f64) -> Self {
-        Self { scene, margin }
+    /// The space in which everything keeps `more` (m) beyond the margin.
+    pub(crate) fn narrowed(&self, more: f64) -> Self {
+        Self { scene: self.scene.clone(), margin: self.margin + more }
     }
 
-    /// The same space with obstacles of its own, and `robot`, an equal one.
-    pub(crate) fn with_shared(self, robot: &Arc<Robot>) -> ClearSpace<'static> {
-        ClearSpace { scene: self.scene.with_shared(robot), margin: self.margin }
+    /// The space of the same robot among other obstacles.
+    ///
+    /// # Errors
+    /// Those of [`Scene::new`].
+    pub(crate) fn among(&self, obstacles: Obstacles) -> Result<Self> {
+        Ok(Self { scene: self.scene.among(obstacles)?, margin: self.margin })
+    }
+
+    /// Surroundings that leave this space.
+    pub(crate) fn surroundings(&self) -> Surroundings {
+        let OtherBodies { obstacles, itself, .. } = &self.scene.others;
+        Surroundings { obstacles: Some(obstacles.clone()), margin: Some(self.margin), self_collision: Some(*itself) }
     }
 
     /// The distance to keep (m).
@@ -52,73 +80,47 @@ impl<'a> ClearSpace<'a> {
         self.scene.is_clear(q, self.margin + more)
     }
 
+    /// The robot.
+    pub(crate) fn robot(&self) -> &Robot {
+        self.scene.robot()
+    }
+
+    /// The obstacles.
+    pub(crate) fn obstacles(&self) -> &Obstacles {
+        &self.scene.others.obstacles
+    }
+
     /// The robot and what is around it.
-    pub(crate) fn scene(&self) -> &Scene<'a> {
+    pub fn scene(&self) -> &Scene<'a> {
         &self.scene
     }
 
     /// The first obstacle that is a mesh which is not closed.
     pub fn first_open_mesh(&self) -> Option<usize> {
-        self.scene.others.obstacles.first_open_mesh()
+        self.obstacles().first_open_mesh()
     }
 
-    /// The nearest two bodies at `q` (n,); `None` if nothing can touch.
-    pub fn nearest(&self, q: &[f64]) -> Option<NearestContact> {
-        self.scene.nearest_contact(q).ok().flatten()
+    /// The clearance at `q` (n,).
+    pub fn clearance(&self, q: &[f64]) -> Clearance {
+        self.scene.nearest_contact(q).ok().flatten().into()
     }
 
-    /// What makes every configuration unclear that has the frames of these numbers, those of tips, where `q` (n,) has them: a body
-    /// that no joint moves, or one that is fixed to a tip, is nearer than the margin to something that does not move either.
+    /// Names a blocked body if every configuration with the frames `hands` of the tips where `q` (n,) has them collides: a body that no
+    /// joint moves, or one that is fixed to a tip, is nearer than the margin to something that does not move either.
     pub(crate) fn blocked_at(&self, q: &[f64], hands: &[usize]) -> Option<Blocked> {
         self.blocked_anywhere(q).or_else(|| self.scene.contact_of_hands(q, hands, self.margin).map(Blocked::Hand))
     }
 
-    /// What makes every configuration unclear: a body that no joint moves is nearer to an obstacle than the margin.
-    /// `q` (n,) is any configuration.
+    /// Names a body that no joint moves and that is nearer to an obstacle than the margin: then every configuration collides. `q` (n,)
+    /// is any configuration.
     pub(crate) fn blocked_anywhere(&self, q: &[f64]) -> Option<Blocked> {
         self.scene.contact_at_rest(q, self.margin).map(Blocked::Base)
-    }
-
-    /// Scratch of [`find_rows`](Self::find_rows).
-    pub(crate) fn near_rows(&self) -> NearRows {
-        NearRows::new(&self.scene)
-    }
-
-    /// Scratch of [`find_coming`](Self::find_coming).
-    pub(crate) fn coming_rows(&self) -> ComingRows {
-        ComingRows::new(&self.scene)
-    }
-
-    /// Finds what comes too near to an arm that stays at `q`.
-    pub(crate) fn find_coming(&self, q: &[f64], coming: &Coming<'_>, rows: &mut ComingRows) {
-        rows.find(&self.scene, q, coming);
-    }
-
-    /// Scratch of [`is_kept_by`](Self::is_kept_by).
-    pub(crate) fn motion_certificate(&self) -> MotionCertificate {
-        MotionCertificate::new(&self.scene)
-    }
-
-    /// Finds the pairs that are nearer than `up_to` (m) at `q`, without bodies that no joint moves.
-    pub(crate) fn find_rows(&self, q: &[f64], up_to: f64, rows: &mut NearRows) {
-        rows.find(&self.scene, q, up_to);
-    }
-
-    /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too; of bodies that no joint moves none is asked.
-    pub(crate) fn is_kept_by(
-        &self,
-        motion: &impl JointMotion,
-        end: f64,
-        kept: &RequiredDistance<'_>,
-        check: &mut MotionCertificate,
-    ) -> bool {
-        check.is_clear(&self.scene, motion, end, kept)
     }
 
     /// The sum of (margin - d)^2 (m^2) over all pairs of bodies whose distance d is below the margin, but for those that no joint moves.
     pub fn squared_shortfall(&self, q: &[f64]) -> f64 {
         let mut sum = 0.0;
-        self.scene.for_each_within(self.margin, &self.scene.place(q), |_, distance| {
+        self.scene.for_each_within(self.margin, &self.scene.poses(q), |_, distance| {
             sum += (self.margin - distance) * (self.margin - distance);
         });
         sum
@@ -127,12 +129,12 @@ impl<'a> ClearSpace<'a> {
     /// The sum of ((up_to - d) / up_to)^2 over all pairs of bodies whose distance d is below `up_to` (m). Adds `weight` times its
     /// derivative by the joints to `gradient`.
     pub fn nearness(&self, q: &[f64], up_to: f64, weight: f64, gradient: &mut [f64]) -> f64 {
-        let placement = self.scene.place(q);
+        let poses = self.scene.poses(q);
         let mut sum = 0.0;
-        self.scene.for_each_within(up_to, &placement, |pair, distance| {
+        self.scene.for_each_within(up_to, &poses, |pair, distance| {
             let short = (up_to - distance) / up_to;
             sum += short * short;
-            self.scene.add_gradient(pair, &placement, -2.0 * weight * short / up_to, gradient);
+            self.scene.add_gradient(pair, &poses, -2.0 * weight * short / up_to, gradient);
         });
         sum
     }

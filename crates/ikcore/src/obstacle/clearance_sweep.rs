@@ -4,14 +4,13 @@
 //! that may come near; few do. Those are certified in double precision. No step width has to be chosen, and no collision can be
 //! missed between two samples.
 
-use super::body_model::BodyPair;
 use super::contact::Contact;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::joint_motion::JointMotion;
 use super::motion_certificate::MotionCertificate;
-use super::placement::Placement;
 use super::required_distance::RequiredDistance;
 use super::scene::Scene;
+use crate::bodies::{BodyPair, BodyPoses};
 use crate::math::MAX_DOF;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::objective::Point;
@@ -21,7 +20,7 @@ use crate::objective::Point;
 pub struct TooNear {
     /// The motion's parameter.
     pub at: f64,
-    /// What comes too near.
+    /// The two bodies.
     pub contact: Contact,
 }
 
@@ -43,7 +42,7 @@ pub struct ClearanceSweep<'a> {
     /// Pairs that may be near in a part, and the eighths of it in which they may.
     near: Vec<(BodyPair, u32)>,
     pending: Vec<BodyPair>,
-    placement: Placement,
+    poses: BodyPoses,
     examined: usize,
 }
 
@@ -52,7 +51,7 @@ struct Part {
     /// Configurations at both ends.
     from: Point,
     to: Point,
-    /// By how much each joint gets off the straight line.
+    /// Deviation of each joint from the straight line.
     off_line: Point,
 }
 
@@ -65,7 +64,7 @@ impl Part {
         Self { from, to, off_line }
     }
 
-    /// How far each joint is from the middle of the nearest eighth of the straight line at most.
+    /// Largest distance of each joint from the middle of the nearest eighth of the straight line.
     fn reach(&self) -> Point {
         let along = self.from.iter().zip(&self.to).map(|(from, to)| (to - from).abs() / 16.0);
         along.zip(&self.off_line).map(|(along, off_line)| along + off_line).collect()
@@ -87,9 +86,14 @@ impl<'a> ClearanceSweep<'a> {
             chords: MotionCertificate::new(scene),
             near: vec![],
             pending: vec![],
-            placement: Placement::of(scene.robot(), scene.bodies.carried.len()),
+            poses: scene.pose_buffer(),
             examined: 0,
         }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene<'a> {
+        self.scene
     }
 
     /// Number of configurations examined.
@@ -139,8 +143,8 @@ impl<'a> ClearanceSweep<'a> {
             let pairs = self.near.iter().filter(|(_, lanes)| lanes & (1 << eighth) != 0).map(|(pair, _)| *pair);
             let checked = self.chords.check(self.scene, motion, [at(eighth), at(eighth + 1)], pairs, &kept);
             if let Err(blocker) = checked {
-                self.place(motion, blocker.at, blocker.at);
-                let distance = self.scene.distance(blocker.pair, &self.placement, f64::INFINITY);
+                self.pose(motion, blocker.at, blocker.at);
+                let distance = self.scene.distance(blocker.pair, &self.poses, f64::INFINITY);
                 let contact = self.scene.contact(blocker.pair, distance);
                 return Err(Box::new(TooNear { at: blocker.at, contact }));
             }
@@ -152,7 +156,7 @@ impl<'a> ClearanceSweep<'a> {
     #[inline(always)]
     fn find_near<A: Arithmetic>(&mut self, part: &Part, reach: &[f64], margin: f64) {
         let fraction = |lane: usize| (lane as f32 + 0.5) / 8.0;
-        self.eight.place::<A>([&part.from, &part.to], std::array::from_fn(fraction));
+        self.eight.pose_along::<A>([&part.from, &part.to], std::array::from_fn(fraction));
         self.examined += 8;
         let rounding = self.eight.rounding(part.largest());
         self.eight.each_near::<A>(margin + rounding, reach, &mut All(&mut self.near));
@@ -171,10 +175,10 @@ impl<'a> ClearanceSweep<'a> {
         // A good first guess makes most of the motion quick to rule out.
         for i in 0..=FIRST_SAMPLES {
             let t = from + (to - from) * i as f64 / FIRST_SAMPLES as f64;
-            self.place(motion, t, t);
+            self.pose(motion, t, t);
             for i in 0..self.pending.len() {
                 let pair = self.pending[i];
-                best.offer(self.scene.distance(pair, &self.placement, best.seen), t, pair);
+                best.offer(self.scene.distance(pair, &self.poses, best.seen), t, pair);
             }
         }
         self.narrow(motion, [from, to], &mut best, self.pending.len());
@@ -183,13 +187,13 @@ impl<'a> ClearanceSweep<'a> {
     }
 
     fn narrow(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], best: &mut Best, count: usize) {
-        let reach = self.place(motion, from, to);
+        let reach = self.pose(motion, from, to);
         let middle = 0.5 * (from + to);
         let mut left = 0;
         for i in 0..count {
             let pair = self.pending[i];
-            let change = self.scene.change(pair, &self.placement, &reach);
-            let distance = self.scene.distance(pair, &self.placement, best.seen + change);
+            let change = self.scene.change(pair, &self.poses, &reach);
+            let distance = self.scene.distance(pair, &self.poses, best.seen + change);
             best.offer(distance, middle, pair);
             let bound = distance - change;
             if bound >= best.seen - best.slack() {
@@ -205,12 +209,12 @@ impl<'a> ClearanceSweep<'a> {
         }
     }
 
-    /// Places everything in the middle of an interval; returns how far each joint is from there at most.
-    fn place(&mut self, motion: &impl JointMotion, from: f64, to: f64) -> Point {
+    /// Poses everything in the middle of an interval; returns how far each joint is from there at most.
+    fn pose(&mut self, motion: &impl JointMotion, from: f64, to: f64) -> Point {
         let n = self.scene.robot().dof();
         let mut middle = [0.0; MAX_DOF];
         motion.write(0.5 * (from + to), &mut middle[..n]);
-        self.scene.place_into(&middle[..n], &mut self.placement);
+        self.scene.write_poses(&middle[..n], &mut self.poses);
         self.examined += 1;
         let part = Part::of(motion, [from, to], n);
         // The middle may be off the straight line too.
@@ -254,7 +258,7 @@ impl Best {
         }
     }
 
-    /// By how much the answer may lie below the truth (m).
+    /// Tolerance of the answer: it may lie below the truth by this (m).
     fn slack(&self) -> f64 {
         1e-4_f64.max(0.01 * self.seen.abs())
     }

@@ -1,4 +1,4 @@
-//! Obstacles that come: how near each body of an arm at rest will be to them, and how that changes with the joints.
+//! Closest approaches of moving obstacles to an arm at rest, and their derivatives by the joints.
 //!
 //! The distance of convex bodies is convex in time while one of them moves straight on, so that a search by sections finds the closest
 //! approach; of others it finds one of several. There the normal is at right angles to the motion: it leads out of the way, not ahead of
@@ -6,10 +6,10 @@
 
 use nalgebra::Vector3;
 
-use super::placement::Placement;
 use super::scene::Scene;
+use crate::bodies::BodyPoses;
 use crate::math::MAX_DOF;
-use crate::shape::PlacedBody;
+use crate::shape::PosedBody;
 
 /// Sections of the search; each leaves 0.62 of the interval.
 const SECTIONS: usize = 12;
@@ -17,7 +17,7 @@ const SECTIONS: usize = 12;
 /// The fraction of an interval that a section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// What falls short by less than this, a negative shortfall (m), is no row.
+/// Smallest shortfall (m) that makes a row; negative: some that will pass just clear count too.
 const FAR: f64 = -0.05;
 
 /// Rows of one configuration.
@@ -26,7 +26,7 @@ pub(crate) const MOST_COMING: usize = 8;
 /// The closest approach of an obstacle to a body, linearised at a configuration.
 #[derive(Debug, Clone)]
 pub(crate) struct ComingRow {
-    /// By how much the distance then is too small (m); negative if it is not.
+    /// Shortfall of the distance then (m); negative if it is large enough.
     pub short: f64,
     /// Derivative of the distance by the joints (m/rad, m/m).
     pub gradient: [f64; MAX_DOF],
@@ -36,17 +36,17 @@ pub(crate) struct ComingRow {
 #[derive(Debug)]
 pub(crate) struct ComingRows {
     rows: Vec<ComingRow>,
-    placement: Placement,
+    poses: BodyPoses,
 }
 
-/// What counts as coming too near: a distance at the closest approach below `margin` - `pace` * the time until then.
+/// Criterion of coming too near: a distance at the closest approach below `margin` - `pace` * the time until then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coming<'a> {
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub velocities: &'a [[f64; 3]],
     /// Time since they were where they are said to be (s).
     pub since: f64,
-    /// How far ahead is looked (s).
+    /// Horizon of the prediction (s).
     pub horizon: f64,
     /// Distance to keep (m).
     pub margin: f64,
@@ -55,10 +55,10 @@ pub(crate) struct Coming<'a> {
 }
 
 impl ComingRows {
-    /// For configurations in `scene`.
-    pub(super) fn new(scene: &Scene<'_>) -> Self {
+    /// Scratch for configurations in `scene`.
+    pub fn new(scene: &Scene<'_>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
-        Self { rows: Vec::with_capacity(MOST_COMING + 1), placement: scene.place(&rest) }
+        Self { rows: Vec::with_capacity(MOST_COMING + 1), poses: scene.poses(&rest) }
     }
 
     /// The rows found last, the most urgent first.
@@ -67,17 +67,17 @@ impl ComingRows {
     }
 
     /// Finds what comes too near to an arm that stays at `q`.
-    pub(super) fn find(&mut self, scene: &Scene<'_>, q: &[f64], coming: &Coming<'_>) {
-        let Self { rows, placement } = self;
+    pub fn find(&mut self, scene: &Scene<'_>, q: &[f64], coming: &Coming<'_>) {
+        let Self { rows, poses } = self;
         rows.clear();
         let moving = |velocity: &[f64; 3]| *velocity != [0.0; 3];
         if !coming.velocities.iter().any(moving) {
             return;
         }
-        scene.place_into(q, placement);
+        scene.write_poses(q, poses);
         for (obstacle, velocity) in coming.velocities.iter().enumerate().filter(|(_, velocity)| moving(velocity)) {
-            for body in 0..placement.segments.len() {
-                let passing = Passing { scene, placement, body, obstacle, velocity: Vector3::from(*velocity), coming };
+            for body in 0..poses.segments.len() {
+                let passing = Passing { scene, poses, body, obstacle, velocity: Vector3::from(*velocity), coming };
                 if let Some(row) = passing.row() {
                     let at = rows.partition_point(|other| other.short >= row.short);
                     rows.insert(at, row);
@@ -91,7 +91,7 @@ impl ComingRows {
 /// An obstacle that passes a body at rest.
 struct Passing<'a> {
     scene: &'a Scene<'a>,
-    placement: &'a Placement,
+    poses: &'a BodyPoses,
     body: usize,
     obstacle: usize,
     velocity: Vector3<f64>,
@@ -111,7 +111,7 @@ impl Passing<'_> {
         (short > FAR).then(|| ComingRow { short, gradient: self.gradient(time) })
     }
 
-    /// How far the obstacle is from where it was said to be, after `time` (s).
+    /// Displacement of the obstacle from its given position, after `time` (s).
     fn way(&self, time: f64) -> Vector3<f64> {
         (self.coming.since + time) * self.velocity
     }
@@ -119,7 +119,7 @@ impl Passing<'_> {
     /// Whether the balls around both come too near.
     fn balls_meet(&self) -> bool {
         let (center, radius) = self.scene.others.obstacles.ball(self.obstacle);
-        let [from, to] = self.placement.segments[self.body];
+        let [from, to] = self.poses.segments[self.body];
         let apart = 0.5 * (from + to) - center;
         let nearest = apart.dot(&self.velocity) / self.velocity.norm_squared() - self.coming.since;
         let left = (apart - self.way(nearest.clamp(0.0, self.coming.horizon))).norm() - radius;
@@ -127,18 +127,18 @@ impl Passing<'_> {
     }
 
     /// The body as the obstacle sees it after `time` (s): moved instead of the obstacle.
-    fn seen<T>(&self, time: f64, look: impl FnOnce(&PlacedBody<'_>) -> T) -> T {
+    fn seen<T>(&self, time: f64, look: impl FnOnce(&PosedBody<'_>) -> T) -> T {
         let way = self.way(time);
         let carried = &self.scene.bodies.carried[self.body];
-        let axis = self.placement.segments[self.body].map(|end| end - way);
-        let mut frame = self.placement.frames[carried.stages];
+        let axis = self.poses.segments[self.body].map(|end| end - way);
+        let mut frame = self.poses.frames[carried.stages];
         (0..3).for_each(|k| frame.origin[k] -= way[k]);
-        look(&carried.placed(&axis, &frame))
+        look(&carried.posed(&axis, &frame))
     }
 
     /// Time (s) and distance (m) of the closest approach; `None` if the obstacle moves away.
     fn closest(&self) -> Option<(f64, f64)> {
-        let shape = &self.scene.others.obstacles[self.obstacle];
+        let shape = &self.scene.others.obstacles[self.obstacle].shape;
         let distance = |time: f64| self.seen(time, |body| shape.distance_to_body(body, f64::INFINITY));
         let [mut low, mut high] = [0.0, self.coming.horizon];
         let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
@@ -160,12 +160,12 @@ impl Passing<'_> {
 
     /// The derivative by the joints of the distance after `time` (s).
     fn gradient(&self, time: f64) -> [f64; MAX_DOF] {
-        let shape = &self.scene.others.obstacles[self.obstacle];
+        let shape = &self.scene.others.obstacles[self.obstacle].shape;
         let (point, slope) = self.seen(time, |body| shape.nearest_to_body(body));
         let point = point + self.way(time);
         let mut gradient = [0.0; MAX_DOF];
         for (moved, motion) in self.scene.robot().carriers(self.scene.bodies.carried[self.body].stages, 0) {
-            let velocity = motion.velocity(&self.placement.frames[moved], &point.into());
+            let velocity = motion.velocity(&self.poses.frames[moved], &point.into());
             gradient[motion.joint] += slope.dot(&Vector3::from(velocity));
         }
         gradient

@@ -1,4 +1,4 @@
-//! What a robot is near to.
+//! Contacts: two bodies and their distance.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub struct Contact {
     pub distance: f64,
 }
 
-/// A contact with its place, in the frame of the robot's base.
+/// A contact, its nearest point in the frame of the robot's base, and its gradient.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NearestContact {
     /// The two bodies and their distance.
@@ -41,8 +41,8 @@ pub struct NearestContact {
 }
 
 impl Contact {
-    /// How deep the link is in the other body, or how little of `kept` (m) is left: "0.01 m inside", "only 0.1 m (of a margin of
-    /// 0.2 m) from".
+    /// Words for the depth of the link in the other body, or for the distance and the margin `kept` (m): "0.01 m inside", "only 0.1 m
+    /// (of a margin of 0.2 m) from".
     pub(crate) fn depth(&self, kept: f64) -> String {
         if self.distance == f64::NEG_INFINITY {
             return "perhaps (its numbers are too large to tell) inside".into();
@@ -53,9 +53,14 @@ impl Contact {
         format!("only {} m (of a margin of {} m) from", number(self.distance), number(kept))
     }
 
-    /// How to allow it, where the robot stands on the other body.
+    /// Words for the contact, of which `kept` (m) is to be kept: "link 'a' is only 0.1 m (of a margin of 0.2 m) from link 'b'".
+    pub(crate) fn in_words(&self, kept: f64) -> String {
+        format!("link '{}' is {} {}", self.link, self.depth(kept), self.other)
+    }
+
+    /// Advice to allow the contact, where the robot stands on the other body.
     pub(crate) fn remedy(&self) -> String {
-        format!("if the robot stands there, give the obstacle touch=[\"{}\"]", self.link)
+        format!("if the robot stands there, put '{}' into the obstacle's touch", self.link)
     }
 }
 

@@ -1,30 +1,29 @@
-//! Which pairs of bodies are near each other at eight configurations, in single precision?
+//! Conservative collision test of eight configurations, in single precision: lists the near pairs of bodies.
 
-use super::body_model::BodyPair;
-use super::eight_bodies::EightPlacement;
 use super::scene::Scene;
 use super::travel_bounds::{CarriedBall, MovingElements, TravelBounds};
+use crate::bodies::{BodyPair, EightPoses};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f32x8::F32x8;
 use crate::math::real::{Eight, Real};
 use crate::shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, below_square};
 
-/// What single precision may take off a distance, for coordinates of 1 m and angles of a few rad (m): a few units in the last place
+/// Rounding of distances in single precision, for coordinates of 1 m and angles of a few rad (m): a few units in the last place
 /// for each of the operations that lead to it.
 const ROUNDING: f64 = 2e-6;
 
 /// Two groups with bodies that must not touch.
 #[derive(Debug)]
-struct GroupPair {
+struct NearGroups {
     groups: [usize; 2],
-    /// How far joints move them towards each other.
+    /// Bounds on the motion of one relative to the other.
     levers: TravelBounds,
     /// Bodies of the first group, and the pairs of each.
     rows: Vec<(usize, Vec<BodyPair>)>,
 }
 
-impl GroupPair {
+impl NearGroups {
     fn new(groups: [usize; 2], levers: TravelBounds, pairs: &[BodyPair]) -> Self {
         let mut rows: Vec<(usize, Vec<BodyPair>)> = vec![];
         for pair in pairs {
@@ -45,12 +44,12 @@ pub(super) struct EightScene<'a> {
     obstacles: Vec<EightShape>,
     /// The groups that a joint moves, and how far.
     groups: Vec<(usize, TravelBounds)>,
-    pairs: Vec<GroupPair>,
+    pairs: Vec<NearGroups>,
     /// The joint values for which the levers hold.
     ranges: Vec<(f64, f64)>,
     /// Largest coordinates and levers (m).
     extent: f64,
-    placement: EightPlacement,
+    poses: EightPoses,
     qs: Vec<F32x8>,
 }
 
@@ -74,7 +73,7 @@ impl<'a> EightScene<'a> {
         let pairs = pairs.map(|(number, groups)| {
             let [one, other] = groups.map(|group| bodies.groups.frame_of(group));
             let levers = levers(&groups, robot.meeting_frame(one, other));
-            GroupPair::new(groups, levers, bodies.pairs_between(number))
+            NearGroups::new(groups, levers, bodies.pairs_between(number))
         });
         let pairs = pairs.collect();
         let levers = groups.iter().map(|(_, levers)| levers.sum()).fold(0.0, f64::max);
@@ -85,12 +84,12 @@ impl<'a> EightScene<'a> {
         });
         Self {
             scene,
-            obstacles: scene.others.obstacles.iter().map(EightShape::new).collect(),
+            obstacles: scene.others.obstacles.iter().map(|obstacle| EightShape::new(&obstacle.shape)).collect(),
             groups,
             pairs,
             ranges: (0..robot.dof()).map(|j| elements.range(robot, j)).collect(),
             extent: levers.max(reach) + obstacles.filter(|far| *far <= LARGEST_IN_SINGLE).fold(1.0, f64::max),
-            placement: bodies.eight.placement(),
+            poses: bodies.eight.buffer(),
             qs: vec![F32x8::ZERO; robot.dof()],
         }
     }
@@ -101,7 +100,7 @@ impl<'a> EightScene<'a> {
         joints.all(|((lower, upper), (q, off_line))| *lower <= q - off_line && q + off_line <= *upper)
     }
 
-    /// What rounding may take off a distance (m), for joint values of up to `largest` (rad, m). Not a number, which makes everything
+    /// Rounding of a distance (m), for joint values of up to `largest` (rad, m). Not a number, which makes everything
     /// near, if coordinates are too large for single precision.
     pub fn rounding(&self, largest: f64) -> f64 {
         let rounding = ROUNDING * self.extent * (1.0 + 0.1 * largest);
@@ -114,36 +113,36 @@ impl<'a> EightScene<'a> {
         self.groups.iter().map(|(_, levers)| levers.travel(reach)).fold(0.0, f64::max)
     }
 
-    /// Places everything at these shares of the straight line between two configurations.
+    /// Poses everything at these fractions of the straight line between two configurations.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], fractions: [f32; 8]) {
+    pub fn pose_along<A: Arithmetic>(&mut self, [from, to]: [&[f64]; 2], fractions: [f32; 8]) {
         let fractions = Eight::<A>::of(F32x8(fractions));
-        self.place_at::<A>(|j| fractions.mul_add(Eight::splat(to[j] - from[j]), Eight::splat(from[j])).stored());
+        self.pose_at::<A>(|j| fractions.mul_add(Eight::splat(to[j] - from[j]), Eight::splat(from[j])).stored());
     }
 
-    /// Places everything at configurations of which `values` returns the values of a joint.
+    /// Poses everything at configurations of which `values` returns the values of a joint.
     #[inline(always)]
-    pub fn place_at<A: Arithmetic>(&mut self, values: impl Fn(usize) -> F32x8) {
+    pub fn pose_at<A: Arithmetic>(&mut self, values: impl Fn(usize) -> F32x8) {
         self.qs.iter_mut().enumerate().for_each(|(joint, q)| *q = values(joint));
-        self.scene.bodies.eight.place::<A>(&self.qs, &mut self.placement);
+        self.scene.bodies.eight.update::<A>(&self.qs, &mut self.poses);
     }
 
     /// Shows `visitor` all pairs that may come nearer than `margin` (m) while the joints move by `reach` (rad, m) from the
     /// configurations, and the lanes in which they may. False if it wants no more.
     #[inline(always)]
     pub fn each_near<A: Arithmetic>(&mut self, margin: f64, reach: &[f64], visitor: &mut impl Visitor) -> bool {
-        let Self { scene, obstacles, groups, pairs, placement, .. } = self;
+        let Self { scene, obstacles, groups, pairs, poses, .. } = self;
         let (eight, others) = (&scene.bodies.eight, &scene.others);
-        let mut near = Near { scene, obstacles, placement };
+        let mut near = Near { scene, obstacles, poses };
         for (group, levers) in groups.iter() {
             let enough = Eight::splat(margin + levers.travel(reach));
-            let ball = eight.ball::<A>(*group, near.placement);
+            let ball = eight.ball::<A>(*group, near.poses);
             for (obstacle, shape) in obstacles.iter().enumerate() {
                 if shape.near(&ball, enough) == 0 {
                     continue;
                 }
                 for &body in scene.bodies.groups.bodies_of(*group) {
-                    let lanes = shape.near(&eight.body::<A>(body, near.placement), enough);
+                    let lanes = shape.near(&eight.body::<A>(body, near.poses), enough);
                     if lanes == 0 || others.allowed.allow(body, obstacle) {
                         continue;
                     }
@@ -153,20 +152,20 @@ impl<'a> EightScene<'a> {
                 }
             }
         }
-        for GroupPair { groups: [one, other], levers, rows } in pairs.iter() {
+        for NearGroups { groups: [one, other], levers, rows } in pairs.iter() {
             let enough = Eight::splat(margin + levers.travel(reach));
-            let [a, b] = [eight.ball::<A>(*one, near.placement), eight.ball::<A>(*other, near.placement)];
+            let [a, b] = [eight.ball::<A>(*one, near.poses), eight.ball::<A>(*other, near.poses)];
             if near_each_other(&a, &b, enough) == 0 {
                 continue;
             }
             for (body, row) in rows {
-                let own = eight.body::<A>(*body, near.placement);
+                let own = eight.body::<A>(*body, near.poses);
                 if near_each_other(&own, &b, enough) == 0 {
                     continue;
                 }
                 for &pair in row {
                     let BodyPair::Bodies { far, .. } = pair else { continue };
-                    let lanes = near_each_other(&own, &eight.body::<A>(far, near.placement), enough);
+                    let lanes = near_each_other(&own, &eight.body::<A>(far, near.poses), enough);
                     if lanes != 0 && !visitor.goes_on::<A>(&mut near, pair, lanes) {
                         return false;
                     }
@@ -179,22 +178,22 @@ impl<'a> EightScene<'a> {
     /// Whether a pair is nearer than `margin` (m) at any of the configurations.
     #[inline(always)]
     pub fn meet<A: Arithmetic>(&mut self, pair: BodyPair, margin: f64) -> bool {
-        let Self { scene, obstacles, placement, .. } = self;
-        Near { scene, obstacles, placement }.meet::<A>(pair, margin)
+        let Self { scene, obstacles, poses, .. } = self;
+        Near { scene, obstacles, poses }.meet::<A>(pair, margin)
     }
 }
 
-/// Is shown near pairs. No closure: that would be compiled without the instructions of the calling kernel.
+/// Visitor of near pairs. No closure: that would be compiled without the instructions of the calling kernel.
 pub(super) trait Visitor {
     /// Takes a pair and the lanes in which it may be near; returns whether it wants more.
     fn goes_on<A: Arithmetic>(&mut self, near: &mut Near<'_, '_>, pair: BodyPair, lanes: u32) -> bool;
 }
 
-/// Everything at eight configurations.
+/// Bodies and obstacles at eight configurations.
 pub(super) struct Near<'s, 'a> {
     scene: &'s Scene<'a>,
     obstacles: &'s [EightShape],
-    placement: &'s mut EightPlacement,
+    poses: &'s mut EightPoses,
 }
 
 impl Near<'_, '_> {
@@ -205,10 +204,10 @@ impl Near<'_, '_> {
         let enough = Eight::splat(margin);
         let lanes = match pair {
             BodyPair::Obstacle { body, obstacle } => {
-                self.obstacles[obstacle].near(&eight.body::<A>(body, self.placement), enough)
+                self.obstacles[obstacle].near(&eight.body::<A>(body, self.poses), enough)
             }
             BodyPair::Bodies { near, far, .. } => {
-                let (a, b) = (eight.body::<A>(near, self.placement), eight.body::<A>(far, self.placement));
+                let (a, b) = (eight.body::<A>(near, self.poses), eight.body::<A>(far, self.poses));
                 near_each_other(&a, &b, enough)
             }
         };
@@ -225,7 +224,7 @@ impl Near<'_, '_> {
         };
         is_exact
             || (0..8).filter(|lane| lanes & (1 << lane) != 0).any(|lane| {
-                let frames: Vec<Frame> = self.placement.frames.iter().map(|frame| frame.lane(lane)).collect();
+                let frames: Vec<Frame> = self.poses.frames.iter().map(|frame| frame.lane(lane)).collect();
                 self.scene.distance_at(pair, &frames, margin) < margin
             })
     }

@@ -10,7 +10,7 @@ pub trait JointMotion {
     /// to its control points.
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]);
 
-    /// Where to divide an interval; `None` if it is not to be divided.
+    /// Point at which an interval is divided; `None` if it is not to be divided.
     fn middle(&self, from: f64, to: f64) -> Option<f64> {
         let middle = 0.5 * (from + to);
         (from < middle && middle < to).then_some(middle)
@@ -26,9 +26,9 @@ pub trait JointMotion {
 /// A straight line in joint space; its parameter runs from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Edge<'a> {
-    /// Where it begins (n,).
+    /// Start (n,).
     pub from: &'a [f64],
-    /// Where it ends (n,).
+    /// End (n,).
     pub to: &'a [f64],
 }
 

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use crate::kinematics::chain::StageMotion;
+use crate::kinematics::chain::Transmission;
 use crate::math::Frame;
 use crate::robot::Robot;
-use crate::shape::PlacedBody;
+use crate::shape::PosedBody;
 
 /// A bound (m) on how much the distance of `body`, carried by frame number `frame` of `robot`, from anything fixed to frame number
 /// `below` can change, while each joint changes by up to `reach` (rad, m) from the configuration of `frames` and `body`. Of a
@@ -17,7 +17,7 @@ use crate::shape::PlacedBody;
 pub(super) fn displacement(
     robot: &Robot,
     frames: &[Frame],
-    body: &PlacedBody,
+    body: &PosedBody,
     [below, frame]: [usize; 2],
     reach: &[f64],
 ) -> f64 {
@@ -44,7 +44,7 @@ pub(super) fn displacement(
 pub(super) fn sagitta(
     robot: &Robot,
     frames: &[Frame],
-    body: &PlacedBody,
+    body: &PosedBody,
     frame: usize,
     [change, off_line]: [&[f64]; 2],
 ) -> f64 {
@@ -64,7 +64,7 @@ pub(super) fn sagitta(
 }
 
 /// The distance of `point` from the axis of an element at `frame`; from its origin if the axis moves with the joint.
-fn lever(motion: &StageMotion, frame: &Frame, point: &Vector3<f64>) -> f64 {
+fn lever(motion: &Transmission, frame: &Frame, point: &Vector3<f64>) -> f64 {
     let from_origin = point - Vector3::from(frame.origin);
     if motion.of_vector { from_origin.norm() } else { from_origin.cross(&Vector3::from(frame.axes[2])).norm() }
 }
@@ -95,7 +95,7 @@ mod tests {
             let axis = ends.map(|end| place(&frames[last], &end));
             let ball = Shape::sphere([0.0; 3], 1.0).unwrap();
             let bound = |solid| {
-                let body = PlacedBody { axis: &axis, radius: 0.1, solid };
+                let body = PosedBody { axis: &axis, radius: 0.1, solid };
                 displacement(&robot, &frames, &body, [0, last], &reach)
             };
             // A body that is no capsule may turn: points beside the axis move too.
@@ -118,7 +118,7 @@ mod tests {
             let mut between = robot.frame_buffer();
             robot.write_frames(&halfway, &mut between);
             for (points, solid) in [(&ends[..], None), (&beside[..], Some((&ball, Frame::IDENTITY)))] {
-                let body = PlacedBody { axis: &axis, radius: 0.1, solid };
+                let body = PosedBody { axis: &axis, radius: 0.1, solid };
                 let bound = sagitta(&robot, &frames, &body, last, [&change, &off_line]);
                 for point in points {
                     let [from, to] = [&frames, &moved].map(|frames| place(&frames[last], point));
@@ -127,7 +127,7 @@ mod tests {
                     tightest = tightest.min(bound / way.max(1e-12));
                 }
             }
-            let still = PlacedBody { axis: &axis, radius: 0.1, solid: None };
+            let still = PosedBody { axis: &axis, radius: 0.1, solid: None };
             assert_eq!(displacement(&robot, &frames, &still, [0, last], &vec![0.0; last]), 0.0);
         }
         assert!(tightest < 2.5, "{tightest}"); // a bound that any value keeps would prove nothing

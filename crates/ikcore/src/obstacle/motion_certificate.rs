@@ -1,19 +1,19 @@
-//! A motion certified to keep its distances at every instant.
+//! Certificate that a motion keeps its distances at every instant.
 //!
 //! Distances are computed at both ends of an interval of the motion. A pair is clear in between if neither end lets it come near
-//! enough on the way, or if a plane parts both bodies at either end by more than they leave the straight lines between their places.
+//! enough on the way, or if a plane parts both bodies at either end by more than they leave the straight lines between both ends.
 //! Such a plane costs almost no clearance, even along a wall. What is not clear so is examined again in both halves.
 
-use super::body_model::BodyPair;
 use super::joint_motion::JointMotion;
 use super::link_displacement::{displacement, sagitta};
 use super::near_rows::MOST_RESERVED;
 use super::required_distance::RequiredDistance;
 use super::scene::Scene;
+use crate::bodies::BodyPair;
+use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
 use crate::objective::Point;
-use crate::robot::FrameBuffer;
-use crate::shape::PlacedBody;
+use crate::shape::PosedBody;
 
 /// Intervals examined before a motion counts as not clear.
 const MOST_INTERVALS: usize = 120;
@@ -21,33 +21,35 @@ const MOST_INTERVALS: usize = 120;
 /// Largest weight of a control point outside of an interval in a uniform cubic B-spline.
 const OUTSIDE: f64 = 1.0 / 6.0;
 
-/// Places for which room is set aside; a deeper bisection takes more.
+/// Samples for which room is reserved; a deeper bisection takes more.
 const MOST_DEPTHS: usize = 32;
 
 /// Checks motions; owns its scratch.
 #[derive(Debug)]
 pub(crate) struct MotionCertificate {
     /// Configurations by depth of the bisection; both ends of the motion first.
-    places: Vec<Place>,
-    /// Of a spline: the control points just outside of an interval.
-    outside: Vec<Place>,
+    samples: Vec<Sample>,
+    /// Control points of a spline just outside of an interval.
+    outside: Vec<Sample>,
     pending: Vec<BodyPair>,
+    /// Intervals examined so far, and from how many on this motion is divided no further.
     intervals: usize,
-    /// By how much the joints change between the control points of an interval, and get off the straight lines between them.
+    most: usize,
+    /// Change of the joints between the control points of an interval, and their deviation from the straight lines between them.
     change: Point,
     off_line: Point,
-    /// How far a joint gets aside of the straight line between the ends, and from the nearer end.
+    /// Deviation of each joint from the straight line between the ends, and its distance from the nearer end.
     aside: Point,
     halfway: Point,
 }
 
 #[derive(Debug)]
-struct Place {
+struct Sample {
     q: Point,
     frames: FrameBuffer,
 }
 
-/// An interval of the motion, and the places of its ends.
+/// An interval of the motion, and the samples at its ends.
 #[derive(Debug, Clone, Copy)]
 struct Interval {
     from: f64,
@@ -63,7 +65,7 @@ pub(super) struct Blocker {
     pub pair: BodyPair,
 }
 
-/// What is known of a pair in an interval.
+/// Outcome for a pair in an interval.
 enum Verdict {
     Clear,
     Open,
@@ -72,16 +74,21 @@ enum Verdict {
 }
 
 impl MotionCertificate {
-    /// For motions in `scene`.
-    pub(super) fn new(scene: &Scene<'_>) -> Self {
+    /// Scratch for motions in `scene`.
+    pub fn new(scene: &Scene<'_>) -> Self {
         let pending = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
         let [change, off_line, aside, halfway] = [(); 4].map(|()| Point::new());
-        let (places, outside) = (Vec::with_capacity(MOST_DEPTHS), Vec::with_capacity(2));
-        Self { places, outside, pending, intervals: 0, change, off_line, aside, halfway }
+        let (samples, outside) = (Vec::with_capacity(MOST_DEPTHS), Vec::with_capacity(2));
+        Self { samples, outside, pending, intervals: 0, most: 0, change, off_line, aside, halfway }
+    }
+
+    /// Number of intervals examined so far.
+    pub fn intervals(&self) -> usize {
+        self.intervals
     }
 
     /// Whether `motion` from 0 to `end` keeps these distances for certain, between ticks too. Bodies that no joint moves are left out.
-    pub(super) fn is_clear(
+    pub fn is_clear(
         &mut self,
         scene: &Scene<'_>,
         motion: &impl JointMotion,
@@ -110,12 +117,12 @@ impl MotionCertificate {
         self.clear_in(scene, motion, kept, whole, count)
     }
 
-    /// Places the arm at both ends of a motion.
+    /// Samples the arm at both ends of a motion.
     fn begin(&mut self, scene: &Scene<'_>, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Interval {
-        self.intervals = 0;
+        self.most = self.intervals + MOST_INTERVALS;
         self.outside.clear();
-        place(&mut self.places, 0, scene, (motion, from));
-        place(&mut self.places, 1, scene, (motion, to));
+        sample(&mut self.samples, 0, scene, (motion, from));
+        sample(&mut self.samples, 1, scene, (motion, to));
         let whole = Interval { from, to, ends: [0, 1], depth: 0 };
         self.measure(motion, &whole);
         whole
@@ -123,8 +130,8 @@ impl MotionCertificate {
 
     /// Finds how far the joints move in an interval.
     fn measure(&mut self, motion: &impl JointMotion, interval: &Interval) {
-        let Self { places, change, off_line, aside, halfway, .. } = self;
-        let [from, to] = interval.ends.map(|end| &places[end].q);
+        let Self { samples, change, off_line, aside, halfway, .. } = self;
+        let [from, to] = interval.ends.map(|end| &samples[end].q);
         change.clear();
         change.extend(from.iter().zip(to).map(|(from, to)| (to - from).abs()));
         off_line.clear();
@@ -148,14 +155,14 @@ impl MotionCertificate {
 
     /// Lists the pairs that may come too near in the whole motion, by balls around groups of bodies.
     fn collect_pending(&mut self, scene: &Scene<'_>, whole: &Interval, kept: &RequiredDistance<'_>) {
-        let Self { places, pending, change, aside, halfway, .. } = self;
+        let Self { samples, pending, change, aside, halfway, .. } = self;
         pending.clear();
         let (groups, robot) = (&scene.bodies.groups, scene.robot());
-        let [first, last] = whole.ends.map(|end| &places[end].frames);
+        let [first, last] = whole.ends.map(|end| &samples[end].frames);
         let most = kept.most_wanted(whole.to);
         for group in (0..groups.count()).filter(|group| groups.is_moving(*group)) {
             let [(from, radius), (to, _)] = [first, last].map(|frames| groups.ball(group, frames));
-            let ball = PlacedBody { axis: &[from; 2], radius, solid: None };
+            let ball = PosedBody { axis: &[from; 2], radius, solid: None };
             let beside = sagitta(robot, first, &ball, groups.frame_of(group), [change, aside]);
             let reach = radius + beside;
             let bodies = groups.bodies_of(group);
@@ -163,7 +170,7 @@ impl MotionCertificate {
             scene.others.obstacles.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
                 // What is not a number is near.
-                if !(scene.others.obstacles[obstacle].distance_to_segment(&[from, to], needed + reach)
+                if !(scene.others.obstacles[obstacle].shape.distance_to_segment(&[from, to], needed + reach)
                     >= needed + reach)
                 {
                     let tested = bodies.iter().filter(|body| !scene.others.allowed.allow(**body, obstacle));
@@ -182,7 +189,7 @@ impl MotionCertificate {
                 let [(one, radius), (other, other_radius)] = of.map(|group| groups.ball(group, frames));
                 let gap = (one - other).norm() - radius - other_radius - needed;
                 let moved = |center, frame: usize| {
-                    let ball = PlacedBody { axis: &[center; 2], radius: 0.0, solid: None };
+                    let ball = PosedBody { axis: &[center; 2], radius: 0.0, solid: None };
                     displacement(robot, frames, &ball, [below, frame], halfway)
                 };
                 gap > 0.0 && gap >= moved(one, frames_of[0]) + moved(other, frames_of[1])
@@ -204,8 +211,8 @@ impl MotionCertificate {
     ) -> Result<(), Blocker> {
         self.intervals += 1;
         if motion.is_spline() && count > 0 {
-            place(&mut self.outside, 0, scene, (motion, interval.from - 1.0));
-            place(&mut self.outside, 1, scene, (motion, interval.to + 1.0));
+            sample(&mut self.outside, 0, scene, (motion, interval.from - 1.0));
+            sample(&mut self.outside, 1, scene, (motion, interval.to + 1.0));
         }
         let mut open = 0;
         for i in 0..count {
@@ -223,10 +230,10 @@ impl MotionCertificate {
             return Ok(());
         }
         let Interval { from, to, ends: [first, last], depth } = interval;
-        let middle = motion.middle(from, to).filter(|_| self.intervals <= MOST_INTERVALS);
+        let middle = motion.middle(from, to).filter(|_| self.intervals <= self.most);
         let Some(middle) = middle else { return Err(Blocker { at: 0.5 * (from + to), pair: self.pending[0] }) };
         let slot = depth + 2;
-        place(&mut self.places, slot, scene, (motion, middle));
+        sample(&mut self.samples, slot, scene, (motion, middle));
         [(from, middle, [first, slot]), (middle, to, [slot, last])].into_iter().try_for_each(|(from, to, ends)| {
             let half = Interval { from, to, ends, depth: depth + 1 };
             self.measure(motion, &half);
@@ -235,7 +242,7 @@ impl MotionCertificate {
     }
 
     fn verdict(&self, scene: &Scene<'_>, pair: BodyPair, interval: &Interval, kept: &RequiredDistance<'_>) -> Verdict {
-        let [first, last] = interval.ends.map(|end| &self.places[end].frames);
+        let [first, last] = interval.ends.map(|end| &self.samples[end].frames);
         let [needed_first, needed] = [interval.from, interval.to].map(|tick| kept.needed(pair, tick));
         let (change_first, change_last) =
             (scene.change_at(pair, first, &self.halfway), scene.change_at(pair, last, &self.halfway));
@@ -260,7 +267,8 @@ impl MotionCertificate {
         }
     }
 
-    /// By how much a plane parts a body from an obstacle in the whole interval (m); `None` for links, and if there is no such plane.
+    /// Gap (m) between a body and an obstacle on both sides of one plane in the whole interval; `None` for links, and without such a
+    /// plane.
     fn parted(
         &self,
         scene: &Scene<'_>,
@@ -269,23 +277,23 @@ impl MotionCertificate {
         [first, last]: [&FrameBuffer; 2],
     ) -> Option<f64> {
         let BodyPair::Obstacle { body, obstacle } = pair else { return None };
-        let (shape, carried, frames) = (&scene.others.obstacles[obstacle], &scene.bodies.carried[body], first);
+        let (shape, carried, frames) = (&scene.others.obstacles[obstacle].shape, &scene.bodies.carried[body], first);
         let at = |frames: &FrameBuffer| frames[carried.stages];
-        let (_, slope) = shape.nearest_to_body(&carried.placed(&carried.axis_at(&at(nearer)), &at(nearer)));
+        let (_, slope) = shape.nearest_to_body(&carried.posed(&carried.axis_at(&at(nearer)), &at(nearer)));
         let normal = slope.normalize();
         let end = shape.farthest_along(&normal)?;
         let least = |frames: &FrameBuffer| {
             let frame = at(frames);
-            carried.placed(&carried.axis_at(&frame), &frame).least_along(&normal)
+            carried.posed(&carried.axis_at(&frame), &frame).least_along(&normal)
         };
         let (axis, frame) = (carried.axis_at(&at(first)), at(first));
-        let body = carried.placed(&axis, &frame);
+        let body = carried.posed(&axis, &frame);
         let beside = sagitta(scene.robot(), frames, &body, carried.stages, [&self.change, &self.off_line]);
         let ends = [least(first), least(last)];
         if self.outside.is_empty() {
             return Some(least_between(ends, beside) - end);
         }
-        let control_points = self.outside.iter().map(|place| least(&place.frames));
+        let control_points = self.outside.iter().map(|sample| least(&sample.frames));
         Some(control_points.fold(ends[0].min(ends[1]), f64::min) - beside - end)
     }
 }
@@ -300,14 +308,14 @@ fn least_between([first, last]: [f64; 2], beside: f64) -> f64 {
     first.min(last) - (4.0 * beside - rise).powi(2) / (16.0 * beside)
 }
 
-/// Places the robot at a tick of the motion.
-fn place(places: &mut Vec<Place>, slot: usize, scene: &Scene<'_>, (motion, tick): (&impl JointMotion, f64)) {
+/// Computes the arm at a tick of the motion.
+fn sample(samples: &mut Vec<Sample>, slot: usize, scene: &Scene<'_>, (motion, tick): (&impl JointMotion, f64)) {
     let robot = scene.robot();
-    if places.len() <= slot {
+    if samples.len() <= slot {
         let q = Point::from_elem(0.0, robot.dof());
-        places.resize_with(slot + 1, || Place { q: q.clone(), frames: robot.frame_buffer() });
+        samples.resize_with(slot + 1, || Sample { q: q.clone(), frames: robot.frame_buffer() });
     }
-    let Place { q, frames } = &mut places[slot];
+    let Sample { q, frames } = &mut samples[slot];
     motion.write(tick, q);
     robot.write_frames(q, frames);
 }

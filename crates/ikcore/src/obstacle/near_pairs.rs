@@ -3,10 +3,9 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use super::body_groups::Balls;
-use super::body_model::BodyPair;
-use super::placement::Placement;
+use super::clear_groups::{near_bodies, near_groups};
 use super::scene::Scene;
+use crate::bodies::{Balls, BodyPair, BodyPoses};
 
 /// Distances that differ by less (m) are equal but for rounding.
 const EQUALLY_NEAR: f64 = 1e-9;
@@ -17,7 +16,7 @@ const LOOKED_WITHIN: [f64; 3] = [0.1, 1.0, f64::INFINITY];
 /// A ball around a group, or an obstacle.
 type Ball = (Vector3<f64>, f64);
 
-/// The balls around all groups at a placement: one by one, and in the lanes of the registers.
+/// The balls around all groups at a poses: one by one, and in the lanes of the registers.
 struct GroupBalls {
     each: SmallVec<[Ball; 16]>,
     lanes: Balls,
@@ -25,11 +24,11 @@ struct GroupBalls {
 
 impl Scene<'_> {
     /// The nearest pair, and its distance (m); of those that are equally near the first.
-    pub(super) fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
+    pub(super) fn nearest_pair(&self, poses: &BodyPoses) -> Option<(f64, BodyPair)> {
         let mut least = self.fixed().map_or(f64::INFINITY, |(distance, _)| distance);
         let mut nearest: SmallVec<[(f64, BodyPair); 8]> = SmallVec::new();
-        self.for_each_near(least + EQUALLY_NEAR, placement, |pair| {
-            let distance = self.distance(pair, placement, least + EQUALLY_NEAR);
+        self.for_each_near(least + EQUALLY_NEAR, poses, |pair| {
+            let distance = self.distance(pair, poses, least + EQUALLY_NEAR);
             if distance <= least + EQUALLY_NEAR {
                 least = least.min(distance);
                 nearest.push((distance, pair));
@@ -50,7 +49,7 @@ impl Scene<'_> {
         found.flatten().next()
     }
 
-    /// The same where it is nearer than `reach` (m); otherwise any, or none.
+    /// [`nearest_fixed`](Self::nearest_fixed) where it is nearer than `reach` (m); otherwise any pair, or none.
     fn nearest_fixed_within(&self, reach: f64) -> Option<(f64, BodyPair)> {
         let (rest, obstacles) = (&self.bodies.rest, &self.others.obstacles);
         let mut nearest = (f64::INFINITY, None);
@@ -73,9 +72,9 @@ impl Scene<'_> {
     }
 
     /// Calls `visit` with each pair that is nearer than `up_to` (m), and its distance; not with bodies that no joint moves.
-    pub(super) fn for_each_within(&self, up_to: f64, placement: &Placement, mut visit: impl FnMut(BodyPair, f64)) {
-        self.for_each_near(up_to, placement, |pair| {
-            let distance = self.distance(pair, placement, up_to);
+    pub(super) fn for_each_within(&self, up_to: f64, poses: &BodyPoses, mut visit: impl FnMut(BodyPair, f64)) {
+        self.for_each_near(up_to, poses, |pair| {
+            let distance = self.distance(pair, poses, up_to);
             if distance < up_to {
                 visit(pair, distance);
             }
@@ -84,12 +83,12 @@ impl Scene<'_> {
     }
 
     /// Calls `visit` with all pairs that are nearer than `up_to` (m), and some others; it returns the next `up_to`.
-    fn for_each_near(&self, up_to: f64, placement: &Placement, mut visit: impl FnMut(BodyPair) -> f64) {
+    fn for_each_near(&self, up_to: f64, poses: &BodyPoses, mut visit: impl FnMut(BodyPair) -> f64) {
         let groups = &self.bodies.groups;
-        let each = (0..groups.count()).map(|group| groups.ball(group, &placement.frames)).collect();
-        let balls = GroupBalls { each, lanes: groups.balls(&placement.frames) };
+        let each = (0..groups.count()).map(|group| groups.ball(group, &poses.frames)).collect();
+        let balls = GroupBalls { each, lanes: groups.balls(&poses.frames) };
         let up_to = self.for_each_near_link(up_to, &balls, &mut visit);
-        self.for_each_near_obstacle(up_to, &balls, placement, &mut visit);
+        self.for_each_near_obstacle(up_to, &balls, poses, &mut visit);
     }
 
     /// The pairs of two links.
@@ -116,20 +115,21 @@ impl Scene<'_> {
         &self,
         mut up_to: f64,
         balls: &GroupBalls,
-        placement: &Placement,
+        poses: &BodyPoses,
         visit: &mut impl FnMut(BodyPair) -> f64,
     ) {
         let groups = &self.bodies.groups;
         for obstacle in self.obstacles_near(balls, up_to) {
-            let shape = &self.others.obstacles[obstacle];
+            let shape = &self.others.obstacles[obstacle].shape;
             let mut visit = |body: usize, up_to: f64| {
                 let may_touch = self.others.allowed.allow(body, obstacle);
                 if may_touch { up_to } else { visit(BodyPair::Obstacle { body, obstacle }) }
             };
             if shape.has_lanes() && (0.0..f64::INFINITY).contains(&up_to) {
-                for group in groups.near_groups(&balls.lanes, shape, up_to) {
+                for group in near_groups(groups, &balls.lanes, shape, up_to) {
+                    let group = &groups.groups[group];
                     // Below zero once a body has been found that overlaps.
-                    for body in groups.near_bodies(group, &placement.frames, shape, up_to.max(0.0)) {
+                    for body in near_bodies(group, &poses.frames[group.stages], shape, up_to.max(0.0)) {
                         up_to = visit(body, up_to);
                     }
                 }
@@ -143,7 +143,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Those obstacles that may be nearer than `up_to` (m) to a group that moves, and some others, in order.
+    /// Obstacles that may be nearer than `up_to` (m) to a group that moves, and some others, in order.
     fn obstacles_near(&self, balls: &GroupBalls, up_to: f64) -> impl Iterator<Item = usize> + use<> {
         let obstacles = &self.others.obstacles;
         let mut near: SmallVec<[usize; 64]> = SmallVec::new();
@@ -166,7 +166,7 @@ impl Scene<'_> {
             return false;
         }
         // The obstacle itself is farther away than the ball around it.
-        let distance = || self.others.obstacles[obstacle].distance_to_segment(&[center, center], up_to + radius);
+        let distance = || self.others.obstacles[obstacle].shape.distance_to_segment(&[center, center], up_to + radius);
         count == 1 || unless_inside(distance() - radius) <= up_to
     }
 }

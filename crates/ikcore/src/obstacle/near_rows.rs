@@ -2,9 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::body_model::BodyPair;
-use super::placement::Placement;
 use super::scene::Scene;
+use crate::bodies::{BodyPair, BodyPoses};
 use crate::math::MAX_DOF;
 
 /// A pair that is near, linearised at a configuration.
@@ -35,21 +34,21 @@ pub(crate) struct NearRows {
     rows: Vec<NearRow>,
     /// Near pairs and their distances (m), before the nearest are chosen.
     pairs: Vec<(f64, BodyPair)>,
-    placement: Placement,
+    poses: BodyPoses,
 }
 
 /// Rows of one configuration; pairs farther than these do not count.
 pub(crate) const MOST_ROWS: usize = 24;
 
-/// Room for near pairs that is set aside; more take it when they come.
+/// Near pairs for which room is reserved; more are allocated when they come.
 pub(super) const MOST_RESERVED: usize = 4096;
 
 impl NearRows {
-    /// For configurations in `scene`.
-    pub(super) fn new(scene: &Scene<'_>) -> Self {
+    /// Scratch for configurations in `scene`.
+    pub fn new(scene: &Scene<'_>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
         let pairs = Vec::with_capacity(scene.pairs().take(MOST_RESERVED).count());
-        Self { rows: Vec::with_capacity(MOST_ROWS), pairs, placement: scene.place(&rest) }
+        Self { rows: Vec::with_capacity(MOST_ROWS), pairs, poses: scene.poses(&rest) }
     }
 
     /// The rows found last, the nearest first.
@@ -58,19 +57,19 @@ impl NearRows {
     }
 
     /// Finds the pairs that are nearer than `up_to` (m) at `q`.
-    pub(super) fn find(&mut self, scene: &Scene<'_>, q: &[f64], up_to: f64) {
-        let Self { rows, pairs, placement } = self;
+    pub fn find(&mut self, scene: &Scene<'_>, q: &[f64], up_to: f64) {
+        let Self { rows, pairs, poses } = self;
         rows.clear();
         pairs.clear();
-        scene.place_into(q, placement);
-        scene.for_each_within(up_to, placement, |pair, distance| pairs.push((distance, pair)));
+        scene.write_poses(q, poses);
+        scene.for_each_within(up_to, poses, |pair, distance| pairs.push((distance, pair)));
         let order = |(one, pair): &(f64, BodyPair), (other, with): &(f64, BodyPair)| {
             one.total_cmp(other).then_with(|| pair.order().cmp(&with.order()))
         };
         pairs.sort_unstable_by(order);
         for (distance, pair) in pairs.iter().take(MOST_ROWS) {
             let mut gradient = [0.0; MAX_DOF];
-            let [_, normal] = scene.add_gradient(*pair, placement, 1.0, &mut gradient);
+            let [_, normal] = scene.add_gradient(*pair, poses, 1.0, &mut gradient);
             rows.push(NearRow { pair: *pair, distance: *distance, normal, gradient });
         }
     }

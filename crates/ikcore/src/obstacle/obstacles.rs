@@ -1,34 +1,73 @@
-//! Obstacles, prepared once for any number of calls and robots.
+//! Obstacles: shapes and the links that may touch them, prepared once for any number of calls and robots.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::shape::{BoundingBall, Shape, ShapeIndex};
 
-/// What the distance of two balls may lose to rounding (m).
+/// Absolute rounding of the distance of two balls (m).
 const ROUNDING: f64 = 1e-9;
 
-/// What it may lose relative to the coordinates and radius of one.
+/// Rounding of this distance, relative to coordinates and radius of one.
 const RELATIVE_ROUNDING: f64 = 1e-12;
 
-/// Shapes to keep clear of, with a ball around each and, where there are many, a tree to find the near ones. Clones share all of it.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(from = "Vec<Shape>", into = "Vec<Shape>")]
+/// A shape to keep clear of, and the links that may touch it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "(Shape, Vec<String>)", into = "(Shape, Vec<String>)")]
+pub struct Obstacle {
+    /// The shape, in the frame of the robot's base.
+    pub shape: Shape,
+    /// Sorted names; `None`: no link.
+    touch: Option<Arc<[String]>>,
+}
+
+/// Obstacles with a bounding ball each and, where there are many, a tree to find the near ones. Clones share all of it.
+#[derive(Debug, Clone)]
 pub struct Obstacles(Arc<Prepared>);
 
 #[derive(Debug)]
 struct Prepared {
-    shapes: Vec<Shape>,
+    list: Vec<Obstacle>,
     /// Centre and radius, infinite for a half-space and for what is too large for squares.
     balls: Vec<(Vector3<f64>, f64)>,
     index: Option<ShapeIndex>,
-    /// Those that some links may touch.
-    touched: Vec<usize>,
     first_flat: Option<usize>,
     first_open_mesh: Option<usize>,
+}
+
+impl Obstacle {
+    /// An obstacle that the links of these names may touch.
+    pub fn new(shape: Shape, mut touch: Vec<String>) -> Self {
+        touch.sort_unstable();
+        touch.dedup();
+        Self { shape, touch: (!touch.is_empty()).then(|| touch.into()) }
+    }
+
+    /// Names of the links that may touch it, sorted.
+    pub fn touch(&self) -> &[String] {
+        self.touch.as_deref().unwrap_or_default()
+    }
+}
+
+impl From<(Shape, Vec<String>)> for Obstacle {
+    fn from((shape, touch): (Shape, Vec<String>)) -> Self {
+        Self::new(shape, touch)
+    }
+}
+
+impl From<Obstacle> for (Shape, Vec<String>) {
+    fn from(Obstacle { shape, touch }: Obstacle) -> Self {
+        (shape, touch.as_deref().unwrap_or_default().to_vec())
+    }
+}
+
+impl From<Shape> for Obstacle {
+    fn from(shape: Shape) -> Self {
+        Self { shape, touch: None }
+    }
 }
 
 impl Obstacles {
@@ -57,11 +96,6 @@ impl Obstacles {
         }
     }
 
-    /// Those that some links may touch ([`Shape::touch`]).
-    pub(super) fn touched(&self) -> &[usize] {
-        &self.0.touched
-    }
-
     /// The first that lies in the plane z = 0.
     pub(super) fn first_flat(&self) -> Option<usize> {
         self.0.first_flat
@@ -73,22 +107,29 @@ impl Obstacles {
     }
 }
 
-impl From<Vec<Shape>> for Obstacles {
-    fn from(shapes: Vec<Shape>) -> Self {
-        let ball = |shape: &Shape| {
+impl<T: Into<Obstacle>> FromIterator<T> for Obstacles {
+    fn from_iter<I: IntoIterator<Item = T>>(obstacles: I) -> Self {
+        let list: Vec<Obstacle> = obstacles.into_iter().map(Into::into).collect();
+        let ball = |Obstacle { shape, .. }: &Obstacle| {
             let BoundingBall { center, radius } = shape.bounding_ball();
             let center = Vector3::from(center);
             let radius = if shape.is_huge() { f64::INFINITY } else { radius };
             (center, radius + RELATIVE_ROUNDING * (radius + center.amax()))
         };
+        let first = |is_so: fn(&Shape) -> bool| list.iter().position(|obstacle| is_so(&obstacle.shape));
         Self(Arc::new(Prepared {
-            balls: shapes.iter().map(ball).collect(),
-            index: ShapeIndex::of_many(&shapes),
-            touched: (0..shapes.len()).filter(|i| !shapes[*i].touch().is_empty()).collect(),
-            first_flat: shapes.iter().position(Shape::is_flat),
-            first_open_mesh: shapes.iter().position(Shape::is_open_mesh),
-            shapes,
+            balls: list.iter().map(ball).collect(),
+            index: ShapeIndex::of_many(list.iter().map(|obstacle| &obstacle.shape)),
+            first_flat: first(Shape::is_flat),
+            first_open_mesh: first(Shape::is_open_mesh),
+            list,
         }))
+    }
+}
+
+impl From<Vec<Shape>> for Obstacles {
+    fn from(shapes: Vec<Shape>) -> Self {
+        shapes.into_iter().collect()
     }
 }
 
@@ -116,35 +157,35 @@ impl From<&Obstacles> for Obstacles {
     }
 }
 
-impl From<Obstacles> for Vec<Shape> {
-    fn from(obstacles: Obstacles) -> Self {
-        obstacles.to_vec()
+impl Serialize for Obstacles {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.list.serialize(serializer)
     }
 }
 
-impl FromIterator<Shape> for Obstacles {
-    fn from_iter<I: IntoIterator<Item = Shape>>(shapes: I) -> Self {
-        Vec::from_iter(shapes).into()
+impl<'de> Deserialize<'de> for Obstacles {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::<Obstacle>::deserialize(deserializer).map(Self::from_iter)
     }
 }
 
 impl Default for Obstacles {
     fn default() -> Self {
-        Vec::new().into()
+        Self::from(vec![])
     }
 }
 
 impl PartialEq for Obstacles {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0) || self.0.shapes == other.0.shapes
+        Arc::ptr_eq(&self.0, &other.0) || self.0.list == other.0.list
     }
 }
 
 impl Deref for Obstacles {
-    type Target = [Shape];
+    type Target = [Obstacle];
 
     #[inline]
-    fn deref(&self) -> &[Shape] {
-        &self.0.shapes
+    fn deref(&self) -> &[Obstacle] {
+        &self.0.list
     }
 }

@@ -1,7 +1,7 @@
-//! How far each pair has to stay apart during a motion.
+//! Required distances of pairs during a motion.
 
-use super::body_model::BodyPair;
 use super::near_rows::NearRow;
+use crate::bodies::BodyPair;
 
 /// The distances to keep. Obstacles count as moved, in any direction, by as far as their speed takes them.
 #[derive(Debug, Clone, Copy)]
@@ -17,33 +17,33 @@ pub(crate) struct RequiredDistance<'a> {
     /// Near pairs where the arm would come to rest if it braked now, the nearest first. A pair that is nearer than it should be even
     /// there need only not come nearer: a motion may end no worse than the stop.
     pub at_rest: &'a [NearRow],
-    /// By how much it may (m), since a motion outwards must be certified too.
+    /// Slack of these (m), since a motion outwards must be certified too.
     pub tolerance_band: f64,
     /// Bodies that overlap at rest need only end no deeper in each other than the deepest of them are there, whatever is in between.
     pub only_parts: bool,
 }
 
 impl RequiredDistance<'static> {
-    /// The same distance (m) from everything, all of it at rest.
+    /// One distance (m) from everything, all of it at rest.
     pub fn constant(margin: f64) -> Self {
         Self { margin, speeds: &[], since: 0.0, dt: 0.0, at_rest: &[], tolerance_band: 0.0, only_parts: false }
     }
 }
 
 impl RequiredDistance<'_> {
-    /// How far an obstacle, or another link, should be at a tick (m).
+    /// Distance wanted from an obstacle, or from another link, at a tick (m).
     pub fn wanted(&self, obstacle: Option<usize>, tick: f64) -> f64 {
         let speed = obstacle.and_then(|i| self.speeds.get(i)).copied().unwrap_or(0.0);
         if speed == 0.0 { self.margin } else { self.margin + speed * (self.since + tick * self.dt) }
     }
 
-    /// The largest of them.
+    /// The largest distance wanted from anything.
     pub(super) fn most_wanted(&self, tick: f64) -> f64 {
         let fastest = self.speeds.iter().copied().fold(0.0, f64::max);
         self.margin + if fastest == 0.0 { 0.0 } else { fastest * (self.since + tick * self.dt) }
     }
 
-    /// How far a pair must be apart at a tick (m).
+    /// Distance that a pair must keep at a tick (m).
     pub(super) fn needed(&self, pair: BodyPair, tick: f64) -> f64 {
         let obstacle = if let BodyPair::Obstacle { obstacle, .. } = pair { Some(obstacle) } else { None };
         let wanted = self.wanted(obstacle, tick);

@@ -1,18 +1,18 @@
-//! "Is a straight line in joint space clear?" at closely spaced configurations, eight of them in the registers: for searches, whose
-//! results are certified afterwards.
+//! Collision check of straight lines in joint space at closely spaced configurations, eight of them in the registers: for searches,
+//! whose results are certified afterwards.
 //!
 //! The first eight span the whole line. They list the pairs of bodies that may meet anywhere on it; the others test only these.
 
-use super::body_model::BodyPair;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::scene::Scene;
+use crate::bodies::BodyPair;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::objective::Point;
 
-/// At first no body moves farther from one configuration to the next (m), by a bound that is two to three times what it moves.
+/// First spacing of configurations: no body moves farther from one to the next (m), by a bound two to three times too large.
 const SPACING: f64 = 0.08;
 
-/// Bodies move no farther than this fraction of the bound.
+/// Fraction of the bound that bodies move at most.
 const SLACK: f64 = 0.6;
 
 /// Number of pairs that are tested first, since they met before.
@@ -32,7 +32,7 @@ pub struct SampledLine<'a> {
 }
 
 impl<'a> SampledLine<'a> {
-    /// For lines that keep `margin` >= 0 (m) in `scene`, but for rounding.
+    /// Checker of lines that keep `margin` >= 0 (m) in `scene`, but for rounding.
     pub fn new(scene: &'a Scene<'a>, margin: f64) -> Self {
         Self { eight: EightScene::new(scene), margin, spacing: SPACING, pending: vec![], likely: vec![], examined: 0 }
     }
@@ -59,7 +59,7 @@ impl<'a> SampledLine<'a> {
         // Every configuration of the line is within half an eighth of one of the first eight.
         reach.iter_mut().for_each(|reach| *reach *= SLACK / 16.0);
         let first = blocks / 2;
-        self.place::<A>(from, to, first, blocks);
+        self.pose::<A>(from, to, first, blocks);
         if !self.first_block::<A>(&reach) {
             return false;
         }
@@ -67,7 +67,7 @@ impl<'a> SampledLine<'a> {
             if self.pending.is_empty() {
                 return true;
             }
-            self.place::<A>(from, to, block, blocks);
+            self.pose::<A>(from, to, block, blocks);
             for i in 0..self.pending.len() {
                 let pair = self.pending[i];
                 if self.eight.meet::<A>(pair, self.margin) {
@@ -79,11 +79,11 @@ impl<'a> SampledLine<'a> {
         true
     }
 
-    /// Places everything at entry `block` of `blocks` configurations in each eighth of the line.
+    /// Poses everything at entry `block` of `blocks` configurations in each eighth of the line.
     #[inline(always)]
-    fn place<A: Arithmetic>(&mut self, from: &[f64], to: &[f64], block: usize, blocks: usize) {
+    fn pose<A: Arithmetic>(&mut self, from: &[f64], to: &[f64], block: usize, blocks: usize) {
         let fraction = |lane: usize| (lane * blocks + block + 1) as f32 / (8 * blocks) as f32;
-        self.eight.place::<A>([from, to], std::array::from_fn(fraction));
+        self.eight.pose_along::<A>([from, to], std::array::from_fn(fraction));
         self.examined += 8;
     }
 

@@ -1,12 +1,9 @@
-//! What a caller wants configurations to keep clear of.
+//! Obstacles, margin and self-collision, as a caller asks for them.
 
 use serde::{Deserialize, Serialize};
 
-use super::clear_space::ClearSpace;
-use super::obstacles::Obstacles;
-use super::scene::Scene;
+use super::obstacles::{Obstacle, Obstacles};
 use crate::error::{Error, Result};
-use crate::robot::Robot;
 
 /// Distance kept where none is given (m).
 const DEFAULT_MARGIN: f64 = 1e-3;
@@ -23,9 +20,19 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
+    /// These obstacles, at the default distance.
+    pub fn among(obstacles: impl Into<Obstacles>) -> Self {
+        Self { obstacles: Some(obstacles.into()), ..Self::default() }
+    }
+
     /// Whether there is anything to keep clear of.
     pub fn is_given(&self) -> bool {
         self.obstacles.is_some() || self.self_collision == Some(true)
+    }
+
+    /// The obstacles, if any.
+    pub(crate) fn obstacles(&self) -> &[Obstacle] {
+        self.obstacles.as_deref().unwrap_or_default()
     }
 
     /// The first obstacle that is a mesh which is not closed.
@@ -33,31 +40,15 @@ impl Surroundings {
         self.obstacles.as_ref()?.first_open_mesh()
     }
 
-    /// The space that they leave to `robot`; `None` if nothing is to be checked.
+    /// The distance to keep (m).
     ///
     /// # Errors
-    /// Those of [`Scene::new`]; [`Error::OutOfRange`] for a margin that is negative or not finite; [`Error::Contradiction`] for a
-    /// margin without anything to keep it from.
-    pub fn clear_space<'a>(&'a self, robot: &'a Robot) -> Result<Option<ClearSpace<'a>>> {
-        let margin = kept_margin(self.margin)?;
-        if !self.is_given() {
-            let problem = "margin= needs obstacles= (a list, which may be empty) or self_collision=True".into();
-            return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
+    /// [`Error::OutOfRange`] for a margin that is negative or not finite.
+    pub(crate) fn kept_margin(&self) -> Result<f64> {
+        let margin = self.margin.unwrap_or(DEFAULT_MARGIN);
+        if margin.is_finite() && margin >= 0.0 {
+            return Ok(margin);
         }
-        let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;
-        let scene = if self.self_collision == Some(false) { scene.without_self_collision() } else { scene };
-        Ok(Some(ClearSpace::new(scene, margin)))
+        Err(Error::out_of_range("margin", "zero or more and finite", margin))
     }
-}
-
-/// The distance to keep (m): `margin`, or 1 mm.
-///
-/// # Errors
-/// [`Error::OutOfRange`] for a margin that is negative or not finite.
-pub(crate) fn kept_margin(margin: Option<f64>) -> Result<f64> {
-    let margin = margin.unwrap_or(DEFAULT_MARGIN);
-    if margin.is_finite() && margin >= 0.0 {
-        return Ok(margin);
-    }
-    Err(Error::out_of_range("margin", "zero or more and finite", margin))
 }

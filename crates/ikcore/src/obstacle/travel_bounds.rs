@@ -1,6 +1,6 @@
-//! How far the joints can move a body, whatever the configuration in their ranges.
+//! Bounds on the motion of bodies by the joints, for all configurations in their ranges.
 
-use crate::kinematics::chain::StageMotion;
+use crate::kinematics::chain::Transmission;
 use crate::math::Frame;
 use crate::robot::Robot;
 
@@ -18,15 +18,15 @@ pub(super) struct CarriedBall {
 
 /// The moving elements of a robot, and how far each slides at most (m) while its joint is in its sampling range.
 pub(super) struct MovingElements {
-    stages: Vec<(usize, Frame, StageMotion)>,
+    stages: Vec<(usize, Frame, Transmission)>,
     slides: Vec<f64>,
 }
 
 impl MovingElements {
-    /// Those of `robot`.
+    /// The moving elements of `robot`.
     pub fn of(robot: &Robot) -> Self {
         let stages: Vec<_> = robot.moving_elements().collect();
-        let slide = |(_, _, motion): &(usize, Frame, StageMotion)| {
+        let slide = |(_, _, motion): &(usize, Frame, Transmission)| {
             let (lower, upper) = robot.joints()[motion.joint].sampling_range();
             let at = |q: f64| {
                 if motion.slide_scale == 0.0 {
@@ -76,18 +76,18 @@ impl MovingElements {
 }
 
 impl TravelBounds {
-    /// Of something that none of `joints` joints moves.
+    /// Zero bounds of something that none of `joints` joints moves.
     pub fn none(joints: usize) -> Self {
         Self(vec![0.0; joints])
     }
 
-    /// How far (m) any point moves at most while the joints move by up to `reach` (rad, m).
+    /// Largest motion (m) of a point while the joints move by up to `reach` (rad, m).
     #[inline]
     pub fn travel(&self, reach: &[f64]) -> f64 {
         self.0.iter().zip(reach).map(|(lever, reach)| lever * reach).sum()
     }
 
-    /// How far (m) if all joints move by 1 (rad, m).
+    /// Largest motion (m) while all joints move by 1 (rad, m).
     pub fn sum(&self) -> f64 {
         self.0.iter().sum()
     }

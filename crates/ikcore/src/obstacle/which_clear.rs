@@ -1,9 +1,9 @@
-//! Which of many configurations are clear? Most are seen to be in single precision, eight in the registers; the others are judged one by
+//! Clear ones of many configurations. Most are found clear in single precision, eight in the registers; the others are tested one by
 //! one.
 
-use super::body_model::BodyPair;
 use super::eight_scene::{EightScene, Near, Visitor};
 use super::scene::Scene;
+use crate::bodies::BodyPair;
 use crate::error::{Error, Result};
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f32x8::F32x8;
@@ -55,7 +55,7 @@ by_instructions! {
         let n = eight.scene.robot().dof();
         let last = qs.len() / n - 1;
         // Lanes without a configuration repeat the last one.
-        eight.place_at::<A>(|joint| F32x8(std::array::from_fn(|lane| qs[lane.min(last) * n + joint] as f32)));
+        eight.pose_at::<A>(|joint| F32x8(std::array::from_fn(|lane| qs[lane.min(last) * n + joint] as f32)));
         let enough = margin + eight.rounding(qs.iter().fold(0.0, |most, q| q.abs().max(most)));
         let mut near = NearLanes(0);
         eight.each_near::<A>(enough, &[], &mut near);

@@ -1,12 +1,13 @@
 //! Shared by planners with obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use super::planar_arm::PlanarArm;
-use super::planner_options::PointToPointOptions;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::obstacle::{Contact, JointMotion, NearestContact, Scene};
+use crate::message::Message;
+use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Contact, JointMotion, Surroundings, TooNear};
 use crate::robot::Robot;
 use crate::timing::Violation;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
@@ -14,53 +15,41 @@ use crate::trajectory::{Coefficients, POWERS, Trajectory};
 /// Distance added to the margin at end configurations (m), so that motions to them can be certified.
 pub(crate) const RESERVE: f64 = 2e-6;
 
-/// Whether `robot` can collide: with an obstacle, or with itself where that is asked for, or by default if its shape is
-/// known.
-pub(crate) fn can_collide(robot: &Robot, options: &PointToPointOptions) -> bool {
-    let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
-    !options.obstacles.is_empty() || options.self_collision.unwrap_or(shape_known)
-}
-
-/// `robot` with a line for every link if it is a planar arm without a shape, as in Wang et al. (2019); `None` for any
-/// other robot, or if links must not touch each other.
+/// The space that `surroundings` leave to a motion of `robot` from point to point; `None` if nothing can collide: without obstacles,
+/// by default, an arm without bodies cannot.
+///
+/// A planar arm without bodies gets a line for every link, as in Wang et al. (2019), unless links must not touch each other. Lines may
+/// cross each other: they have no thickness.
 ///
 /// # Errors
-/// As [`Robot::with_capsules_along_links`].
-pub(crate) fn as_lines(robot: &Robot, options: &PointToPointOptions) -> Result<Option<Robot>> {
-    let no_shape = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
-    let may_cross = options.self_collision != Some(true);
-    let is_planar = || PlanarArm::of(robot).is_some();
-    if no_shape && may_cross && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
-}
-
-/// The scene of `robot`, or of its `lines` if it has no shape, among the obstacles. Lines may cross each other: they have
-/// no thickness.
-///
-/// # Errors
-/// As [`Scene::new`].
-pub(crate) fn scene<'a>(
-    robot: &'a Robot,
-    lines: Option<&'a Robot>,
-    options: &'a PointToPointOptions,
-) -> Result<Scene<'a>> {
-    let scene = Scene::new(lines.unwrap_or(robot), &options.obstacles)?;
-    let may_cross = lines.is_some() || options.self_collision == Some(false);
-    Ok(if may_cross { scene.without_self_collision() } else { scene })
+/// Those of [`Surroundings::clear_space`].
+pub(crate) fn motion_space<'a>(surroundings: &Surroundings, robot: &'a Robot) -> Result<Option<ClearSpace<'a>>> {
+    let [no_bodies, all_read] = [robot.capsules().is_empty(), robot.unread_collision_shapes().is_empty()];
+    let self_collision = surroundings.self_collision;
+    if surroundings.obstacles().is_empty() && !self_collision.unwrap_or(!no_bodies && all_read) {
+        return Ok(None);
+    }
+    let obstacles = Some(surroundings.obstacles.clone().unwrap_or_default());
+    let among = |self_collision| Surroundings { obstacles, margin: surroundings.margin, self_collision };
+    if no_bodies && all_read && self_collision != Some(true) && PlanarArm::of(robot).is_some() {
+        return among(Some(false)).clear_space(&Arc::new(robot.with_capsules_along_links(0.0)?));
+    }
+    among(self_collision).clear_space(robot)
 }
 
 /// Checks that a configuration keeps the margin; `what` names it in the error.
 ///
 /// # Errors
 /// [`Error::InCollision`].
-pub(crate) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
-    let kept = margin + RESERVE;
+pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) -> Result<()> {
+    let (scene, kept) = (space.scene(), space.margin() + RESERVE);
     match scene.nearest(q)? {
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));
             let remedy = if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) {
-                format!("; {}", contact.remedy())
+                format!("; {}", contact.remedy()).into()
             } else {
-                String::new()
+                Message::default()
             };
             Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
         }
@@ -68,12 +57,29 @@ pub(crate) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64
     }
 }
 
-/// The nearest two bodies on a motion at the time `at` (s).
+/// Certifies that everything stays `margin` (m) apart on a motion, between samples too.
+///
+/// # Errors
+/// [`TooNear`]: the first such place.
+pub(crate) fn certify(sweep: &mut ClearanceSweep<'_>, motion: &Trajectory, margin: f64) -> Result<(), Box<TooNear>> {
+    sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin)
+}
+
+/// The smallest clearance on a motion, and the contact there; `None` if nothing can touch. `certified` is a distance (m) that it is
+/// known to keep: that may be more than the search for the smallest one proves.
 ///
 /// # Errors
 /// None in practice: the joints are those of the robot.
-pub(crate) fn nearest_at(scene: &Scene, motion: &Trajectory, at: f64) -> Result<Option<NearestContact>> {
-    scene.nearest_contact(&configuration_at(motion, at)?)
+pub(crate) fn least_clearance(
+    sweep: &mut ClearanceSweep<'_>,
+    motion: &Trajectory,
+    certified: Option<f64>,
+) -> Result<Option<(Clearance, Contact)>> {
+    let least = sweep.smallest(&TimedMotion::new(motion), [0.0, motion.duration()]);
+    let Some(TooNear { at, contact }) = least else { return Ok(None) };
+    let nearest = sweep.scene().nearest_contact(&configuration_at(motion, at)?)?;
+    let distance = certified.map_or(contact.distance, |certified| contact.distance.max(certified));
+    Ok(Some((Clearance { distance, nearest }, contact)))
 }
 
 /// The configuration of a motion at the time `t` (s).
@@ -257,18 +263,17 @@ mod tests {
         let bare = Robot::planar(&[1.0, 1.0]).unwrap();
         let thick = bare.with_capsules_along_links(0.1).unwrap();
         let ball = Shape::sphere([3.0, 0.0, 0.0], 0.1).unwrap();
-        let with = |obstacles: &[&Shape], self_collision| PointToPointOptions {
-            obstacles: obstacles.iter().map(|shape| (*shape).clone()).collect(),
+        let with = |obstacles: &[&Shape], self_collision| Surroundings {
+            obstacles: Some(obstacles.iter().map(|shape| (*shape).clone()).collect()),
             self_collision,
-            ..PointToPointOptions::default()
+            ..Surroundings::default()
         };
         let (empty, obstructed) = (with(&[], None), with(&[&ball], None));
-        assert!(!can_collide(&bare, &empty) && can_collide(&bare, &obstructed) && can_collide(&thick, &empty));
-        assert!(can_collide(&bare, &with(&[], Some(true))) && !can_collide(&thick, &with(&[], Some(false))));
-        assert!(can_collide(&thick, &with(&[&ball], Some(false))));
-        assert!(
-            as_lines(&bare, &empty).unwrap().is_some() && as_lines(&bare, &with(&[], Some(true))).unwrap().is_none()
-        );
-        assert!(as_lines(&Robot::named("panda").unwrap(), &empty).unwrap().is_none());
+        let space = |surroundings: &Surroundings, robot| motion_space(surroundings, robot).map(|space| space.is_some());
+        assert!(!space(&empty, &bare).unwrap() && space(&obstructed, &bare).unwrap() && space(&empty, &thick).unwrap());
+        assert!(space(&with(&[], Some(true)), &bare).is_err() && !space(&with(&[], Some(false)), &thick).unwrap());
+        assert!(space(&with(&[&ball], Some(false)), &thick).unwrap());
+        assert!(motion_space(&obstructed, &bare).unwrap().unwrap().robot().capsules().len() == 2);
+        assert!(space(&obstructed, &Robot::named("panda").unwrap()).is_err());
     }
 }

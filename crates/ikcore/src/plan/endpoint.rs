@@ -4,6 +4,7 @@ use smallvec::smallvec;
 
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
+use crate::message::{Message, message};
 use crate::robot::Robot;
 use crate::task::{NamedTask, Target, TargetRow, Task, Tolerance};
 
@@ -41,7 +42,9 @@ impl Endpoint {
             Self::Targets { tips, targets } if tips.is_empty() => {
                 robot.require_one_tip("a plain target of plan_point_to_point")?;
                 targets.iter().try_for_each(Target::validate).map_err(|error| match error {
-                    Error::NotFinite { place, value, .. } => Error::NotFinite { what: name.of_target(), place, value },
+                    Error::NotFinite { place, value, .. } => {
+                        Error::NotFinite { what: name.of_target().into(), place, value }
+                    }
                     other => other,
                 })?;
                 let only = NamedTask::of_only(task.copied(), Tolerance::default()).validated()?;
@@ -98,14 +101,14 @@ pub(crate) fn no_usable_end(count: usize, mut problems: Vec<Error>) -> Error {
         return problems.swap_remove(0);
     }
     let brief = |error: &Error| match error {
-        Error::Unreachable { what, problem } => format!("{what}: {problem}"),
-        other => other.to_string(),
+        Error::Unreachable { what, problem } => message![what.as_str(), ": ", problem.clone()],
+        other => other.to_string().into(),
     };
-    let mut named: Vec<String> = problems.iter().take(NAMED_IN_MESSAGE).map(brief).collect();
+    let mut named: Vec<Message> = problems.iter().take(NAMED_IN_MESSAGE).map(brief).collect();
     if let Some(more @ 1..) = problems.len().checked_sub(NAMED_IN_MESSAGE) {
-        named.push(format!("and {more} more"));
+        named.push(format!("and {more} more").into());
     }
-    Error::NoUsableEnd { count, problems: named.join("; ") }
+    Error::NoUsableEnd { count, problems: Message::joined(named, "; ") }
 }
 
 #[cfg(test)]
@@ -114,7 +117,7 @@ mod tests {
 
     #[test]
     fn the_error_of_several_ends_names_each_and_that_of_one_is_its_own() {
-        let missed = |i: usize| Error::Unreachable { what: format!("end[{i}]"), problem: format!("{i} m away") };
+        let missed = |i: usize| Error::Unreachable { what: format!("end[{i}]"), problem: format!("{i} m away").into() };
         assert_eq!(no_usable_end(1, vec![missed(0)]), missed(0));
         assert_eq!(
             no_usable_end(2, vec![missed(0), missed(1)]).to_string(),

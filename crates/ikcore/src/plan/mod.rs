@@ -30,7 +30,7 @@ mod straight_line;
 mod tpbso_options;
 
 pub(crate) use collision_checks::{
-    RESERVE, TimedMotion, as_lines, can_collide, configuration_at, nearest_at, refuse_collision, scene, too_near,
+    RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_collision, too_near,
 };
 pub use cost::Cost;
 pub(crate) use cost::tip_travel_along;

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::collision_checks::{TimedMotion, nearest_at};
+use super::collision_checks::least_clearance;
 use super::cost::Cost;
 use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
-use crate::obstacle::{ClearanceSweep, NearestContact, Surroundings};
+use crate::message::{Message, Setting, message};
+use crate::obstacle::{Clearance, ClearanceSweep, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
@@ -27,11 +28,10 @@ pub struct Plan {
     pub cost: f64,
     /// Improvements of the search, in the order of evaluations.
     pub history: Vec<Improvement>,
-    /// A distance (m) that robot and obstacles keep at least on the trajectory, and links from each other; `None` without obstacles.
-    /// [`least_distance`](Self::least_distance) finds the smallest.
-    pub clearance: Option<f64>,
-    /// The nearest two bodies, where on the trajectory they are nearest, if that is known.
-    pub nearest: Option<NearestContact>,
+    /// The clearance on the trajectory, or a bound of it; `None` without obstacles. [`least_clearance`](Self::least_clearance) finds
+    /// the smallest distance.
+    #[serde(with = "stored_clearance")]
+    pub clearance: Option<Clearance>,
     /// Why no clear motion was found, if that is so.
     pub obstruction: Option<String>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
@@ -93,7 +93,7 @@ pub struct Improvement {
 
 /// What to try where a path leads into collision.
 const ADVICE_ALONG_PATH: &str =
-    "move the path or what is in the way, lower the margin, or leave a part of the poses free by task=";
+    "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
 
 /// Number of violations that a message lists.
 const NAMED_IN_MESSAGE: usize = 3;
@@ -107,7 +107,6 @@ impl Plan {
             cost,
             history: vec![],
             clearance: None,
-            nearest: None,
             obstruction: None,
             chosen_end: None,
             freed: None,
@@ -149,28 +148,26 @@ impl Plan {
         });
     }
 
-    /// The smallest distance (m) on the trajectory, and the nearest two bodies where it occurs; `None` without obstacles. `robot` is
-    /// the robot of the plan.
+    /// The smallest clearance on the trajectory; `None` without obstacles. `robot` is the robot of the plan.
     ///
     /// # Errors
     /// Those of [`Surroundings::clear_space`] for another robot.
-    pub fn least_distance(&self, robot: &Robot) -> Result<Option<(f64, Option<NearestContact>)>> {
-        let Some(clearance) = self.clearance else { return Ok(None) };
-        let known = Ok(Some((clearance, self.nearest.clone())));
-        let (None, Some(surroundings)) = (&self.nearest, &self.surroundings) else { return known };
+    pub fn least_clearance(&self, robot: &Robot) -> Result<Option<Clearance>> {
+        let known = Ok(self.clearance.clone());
+        let (Some(Clearance { distance, nearest: None }), Some(surroundings)) = (&self.clearance, &self.surroundings)
+        else {
+            return known;
+        };
         let Some(space) = surroundings.clear_space(robot)? else { return known };
-        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let Some(near) = ClearanceSweep::new(space.scene()).smallest(&motion, whole) else { return known };
-        let nearest = nearest_at(space.scene(), &self.trajectory, near.at)?;
-        // What is certified may be more than the search for the smallest distance proves.
-        Ok(Some((near.contact.distance.max(clearance), nearest)))
+        let least = least_clearance(&mut ClearanceSweep::new(space.scene()), &self.trajectory, Some(*distance))?;
+        least.map_or(known, |(clearance, _)| Ok(Some(clearance)))
     }
 
     /// Returns a sentence: what happened, and what to try.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
-            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH } else { self.advice() };
-            return format!("no clear plan for {obstruction}; {advice}");
+            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
+            return message![format!("no clear plan for {obstruction}; "), advice];
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
@@ -179,32 +176,22 @@ impl Plan {
                 self.clearance_in_words(),
                 self.freed_in_words(),
                 self.peak_in_words()
-            ),
+            )
+            .into(),
             Status::Interrupted if self.violations.is_empty() => {
-                format!("stopped with {cost}: {}", self.status.advice())
+                message![format!("stopped with {cost}: "), self.status.advice()]
             }
-            _ => format!(
-                "no plan keeps everything; the least violating one breaks: {}; {}",
-                self.broken(),
-                self.advice()
-            ),
+            _ => message![
+                format!("no plan keeps everything; the least violating one breaks: {}; ", self.broken()),
+                self.advice(),
+            ],
         }
     }
 
     /// Of a certified motion.
     fn clearance_in_words(&self) -> String {
         let Some(surroundings) = &self.surroundings else { return String::new() };
-        let clear = match self.clearance {
-            None => ", with nothing to touch".into(),
-            Some(clearance) => {
-                let at_least = if self.nearest.is_none() { "at least " } else { "" };
-                format!(", {at_least}{} m clear of everything", number(clearance))
-            }
-        };
-        match surroundings.first_open_mesh() {
-            None => clear,
-            Some(i) => format!("{clear}; the mesh of obstacle {i} is open, so that its inside is unknown"),
-        }
+        clear_in_words(self.clearance.as_ref(), surroundings.first_open_mesh())
     }
 
     fn freed_in_words(&self) -> String {
@@ -221,17 +208,15 @@ impl Plan {
         })
     }
 
-    fn advice(&self) -> &'static str {
-        match (self.accuracy, self.clearance) {
-            (None, None) => "try another seed, a larger budget in stop=Stop(...) or wider limits",
-            (None, Some(_)) => {
-                "try another seed, a larger budget in stop=Stop(...), a smaller margin, ends that are clear or wider limits"
-            }
+    fn advice(&self) -> Message {
+        let more = match (self.accuracy, &self.clearance) {
+            (None, None) => " or wider limits".into(),
+            (None, Some(_)) => ", a smaller margin, ends that are clear or wider limits".into(),
             (Some(_), _) => {
-                "try another seed, a larger budget in stop=Stop(...), wider limits, a larger accuracy, or for \
-                 method=\"tpbso\" denser points"
+                message![", wider limits, a larger accuracy, or for ", Setting::Method("tpbso"), " denser points"]
             }
-        }
+        };
+        message!["try another seed, a larger ", Setting::Budget, more]
     }
 
     fn broken(&self) -> String {
@@ -240,5 +225,22 @@ impl Plan {
             named.push(format!("and {more} more"));
         }
         named.join("; ")
+    }
+}
+
+/// A clearance as two options: the distance, and the nearest bodies.
+mod stored_clearance {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use crate::obstacle::{Clearance, NearestContact};
+
+    pub fn serialize<S: Serializer>(clearance: &Option<Clearance>, serializer: S) -> Result<S::Ok, S::Error> {
+        let (distance, nearest) = clearance.as_ref().map(|known| (known.distance, &known.nearest)).unzip();
+        (distance, nearest.and_then(Option::as_ref)).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Clearance>, D::Error> {
+        let (distance, nearest): (Option<f64>, Option<NearestContact>) = Deserialize::deserialize(deserializer)?;
+        Ok(distance.map(|distance| Clearance { distance, nearest }))
     }
 }

@@ -7,7 +7,7 @@ use super::straight_line::StraightLine;
 use super::tpbso_options::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::{Obstacles, Surroundings};
+use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 use crate::task::Task;
@@ -88,26 +88,15 @@ pub struct PointToPointOptions {
     pub method: PointToPointMethod,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// Obstacles to avoid.
-    pub obstacles: Obstacles,
-    /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
-    pub margin: Option<f64>,
-    /// Whether links must not touch each other. `None`: where the robot has bodies.
-    pub self_collision: Option<bool>,
+    /// What the motion keeps clear of. Unless `self_collision` says otherwise, links must not touch each other where the robot has
+    /// bodies.
+    pub surroundings: Surroundings,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
     /// Budget of the search. `None` means the method's own.
     pub stop: Option<Stop>,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
-}
-
-impl PointToPointOptions {
-    /// What the motion keeps clear of.
-    pub(crate) fn surroundings(&self) -> Surroundings {
-        let obstacles = Some(self.obstacles.clone());
-        Surroundings { obstacles, margin: self.margin, self_collision: self.self_collision }
-    }
 }
 
 /// Options of [`plan_along_path`](crate::planning::plan_along_path).

@@ -1,10 +1,11 @@
 //! Other limits for a finished plan: the same path, passed at other times.
 
-use super::collision_checks::{TimedMotion, too_near};
+use super::collision_checks::{certify, too_near};
 use super::plan::{Freed, Plan};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::ClearanceSweep;
+use crate::message::message;
+use crate::obstacle::{Clearance, ClearanceSweep};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::timing::{MotionLimits, TimingLimits, scaled, time_all};
@@ -25,7 +26,7 @@ impl Plan {
         let limits_of_all = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         let limits = MotionLimits::new(robot, Some(&limits_of_all), METHOD)?;
         if !self.violations.is_empty() {
-            let problem = format!("only a plan without violations can be retimed, and this one: {}", self.message());
+            let problem = message!["only a plan without violations can be retimed, and this one: ", self.message()];
             return Err(Error::Infeasible { problem });
         }
         let trajectory = if self.path.is_empty() {
@@ -35,7 +36,7 @@ impl Plan {
         };
         let violations = limits.violations(&trajectory);
         if let Some(violation) = violations.first() {
-            let problem = format!("the path of the plan leaves the limits: {violation}");
+            let problem = format!("the path of the plan leaves the limits: {violation}").into();
             return Err(Error::Infeasible { problem });
         }
         let cost = self.objective.of(robot, &trajectory);
@@ -51,18 +52,16 @@ impl Plan {
     fn certify(&mut self, robot: &Robot, smoothed: bool) -> Result<()> {
         let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
         let Some(space) = space else { return Ok(()) };
-        let (scene, margin) = (space.scene(), space.margin());
-        let (motion, whole) = (TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let mut sweep = ClearanceSweep::new(scene);
-        if let Err(near) = sweep.check(&motion, whole, margin) {
+        let margin = space.margin();
+        if let Err(near) = certify(&mut ClearanceSweep::new(space.scene()), &self.trajectory, margin) {
             let violation = too_near(&near.contact, margin);
             let problem =
                 format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
-            return Err(Error::Infeasible { problem });
+            return Err(Error::Infeasible { problem: problem.into() });
         }
         if smoothed {
             // Found when it is asked for.
-            (self.clearance, self.nearest) = (Some(margin), None);
+            self.clearance = Some(Clearance::at_least(margin));
         }
         Ok(())
     }

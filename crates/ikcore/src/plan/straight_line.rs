@@ -3,8 +3,7 @@
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Frame;
 use crate::math::so3::norm;
-use crate::obstacle::Obstacles;
-use crate::shape::Shape;
+use crate::obstacle::{Obstacle, Obstacles};
 use crate::wording::words;
 
 /// The frame of a direction.
@@ -49,7 +48,7 @@ impl StraightLine {
     pub fn validate(&self, what: &str) -> Result<()> {
         require_positive(&format!("distance of {what}"), self.distance)?;
         let Some(direction) = &self.direction else { return Ok(()) };
-        require_finite(&format!("direction of {what}"), direction, |i| format!("entry {i}"))?;
+        require_finite(format!("direction of {what}"), direction, |i| format!("entry {i}"))?;
         if norm(direction) == 0.0 {
             return Err(Error::out_of_range(format!("the length of direction of {what}"), "positive", 0.0));
         }
@@ -83,15 +82,15 @@ impl StraightLine {
     }
 
     /// The obstacles with the contacts that are allowed on the line.
-    pub(crate) fn obstacles(&self, obstacles: &[Shape]) -> Obstacles {
+    pub(crate) fn obstacles(&self, obstacles: &[Obstacle]) -> Obstacles {
         let allowed = |i: usize| {
             let of_this =
                 self.touch.iter().filter(move |contact| contact.obstacle.is_none_or(|obstacle| obstacle == i));
             of_this.flat_map(|contact| contact.links.iter().cloned())
         };
-        let touched = |(i, shape): (usize, &Shape)| {
-            let links = shape.touch().iter().cloned().chain(allowed(i)).collect();
-            shape.clone().with_touch(links)
+        let touched = |(i, obstacle): (usize, &Obstacle)| {
+            let links = obstacle.touch().iter().cloned().chain(allowed(i)).collect();
+            Obstacle::new(obstacle.shape.clone(), links)
         };
         obstacles.iter().enumerate().map(touched).collect()
     }

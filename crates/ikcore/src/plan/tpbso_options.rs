@@ -27,6 +27,6 @@ impl Tpbso {
         let [start, end] = [start.sign(), end.sign()];
         let problem =
             format!("elbows is ({start}, {end}), but along a path the arm keeps one elbow: give one sign twice");
-        Err(Error::Contradiction { problem })
+        Err(Error::Contradiction { problem: problem.into() })
     }
 }

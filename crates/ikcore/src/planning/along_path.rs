@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::along_path::timed::PathProblem;
 use crate::along_path::{TipPath, clear_path, missed_points, timed};
 use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::plan::{AlongPathMethod, AlongPathOptions, Cost, Plan};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -41,10 +42,16 @@ pub fn plan_along_path(
             }
         }
         (AlongPathMethod::Tpbso(_), _) if options.task.is_some() || space.is_some() => Err(Error::Contradiction {
-            problem: "along a path task=, obstacles= and self_collision= need method=\"timed\"".into(),
+            problem: message!["along a path a task, obstacles and self-collision need ", Setting::Method("timed")],
         }),
         (AlongPathMethod::Tpbso(_), _) if options.solver.is_some() => Err(Error::Contradiction {
-            problem: "solver is the search of method=\"timed\": give method=TPBSO(solver=...) its own".into(),
+            problem: message![
+                "solver is the search of ",
+                Setting::Method("timed"),
+                ": give ",
+                Setting::MethodWithSolver,
+                " its own",
+            ],
         }),
         (AlongPathMethod::Tpbso(tpbso), _) => tpbso::along_path(robot, &tip_path, tpbso, options, monitor),
     }?;

@@ -3,8 +3,9 @@
 use super::several_tips::tip_ends;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
-use crate::obstacle::kept_margin;
-use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions};
+use crate::message::{Message, Setting, message};
+use crate::obstacle::ClearSpace;
+use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions, motion_space};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
@@ -28,13 +29,15 @@ pub fn plan_point_to_point(
 ) -> Result<Plan> {
     check_point_to_point(robot, start, ends, options)?;
     require_joint_space(robot, options)?;
+    let space = motion_space(&options.surroundings, robot)?;
+    let space = space.as_ref();
     let names_tips = |end: &Endpoint| matches!(end, Endpoint::Targets { tips, .. } if !tips.is_empty());
     if !std::iter::once(start).chain(ends).any(names_tips) {
-        return plan_joined(robot, start, ends, options, monitor);
+        return plan_joined(robot, start, ends, space, options, monitor);
     }
     let stopwatch = Stopwatch::start();
-    let tips = tip_ends(robot, start, ends, options, monitor)?;
-    let mut plan = plan_joined(robot, &tips.start, &tips.ends, options, monitor)?;
+    let tips = tip_ends(robot, start, ends, space, options, monitor)?;
+    let mut plan = plan_joined(robot, &tips.start, &tips.ends, space, options, monitor)?;
     plan.chosen_end = plan.chosen_end.and_then(|chosen| tips.origins.get(chosen).copied());
     plan.evaluations += tips.evaluations;
     plan.elapsed = stopwatch.elapsed();
@@ -46,15 +49,16 @@ fn plan_joined(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let mut plan = match &options.method {
-        PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, options, monitor),
-        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, options, monitor),
+        PointToPointMethod::MinMax if options.has_pieces() => composed(robot, start, ends, space, options, monitor),
+        PointToPointMethod::MinMax => free_path::point_to_point(robot, start, ends, space, options, monitor),
         PointToPointMethod::Tpbso(tpbso) => {
             let end = only_end(ends, options)?;
-            tpbso::point_to_point(robot, [start, end], tpbso, options, monitor)
+            tpbso::point_to_point(robot, [start, end], space, (tpbso, options), monitor)
         }
     }
     .map_err(|error| with_way_out(error, options))?;
@@ -68,10 +72,13 @@ fn plan_joined(
 /// [`Error::SeveralTips`].
 fn require_joint_space(robot: &Robot, options: &PointToPointOptions) -> Result<()> {
     let cases = [
-        (options.task.is_some(), "task= of plan_point_to_point without a dict"),
-        (options.has_pieces(), "approach=, retreat= or free_start= of plan_point_to_point"),
-        (matches!(options.method, PointToPointMethod::Tpbso(_)), "method=\"tpbso\" of plan_point_to_point"),
-        (options.objective == Cost::TipTravel, "objective=\"tip_travel\" of plan_point_to_point"),
+        (options.task.is_some(), Setting::OneTask.into()),
+        (options.has_pieces(), "plan_point_to_point with approach, retreat or free_start".into()),
+        (
+            matches!(options.method, PointToPointMethod::Tpbso(_)),
+            message![Setting::Method("tpbso"), " of plan_point_to_point"],
+        ),
+        (options.objective == Cost::TipTravel, "the objective 'tip_travel' of plan_point_to_point".into()),
     ];
     cases.into_iter().filter(|(is_asked, _)| *is_asked).try_for_each(|(_, call)| robot.require_one_tip(call))
 }
@@ -95,17 +102,20 @@ pub(crate) fn check_point_to_point(
     for (line, what) in [(&options.approach, "approach"), (&options.retreat, "retreat")] {
         if let Some(line) = line {
             line.validate(what)?;
-            line.check_obstacles(what, options.obstacles.len())?;
+            line.check_obstacles(what, options.surroundings.obstacles().len())?;
         }
     }
     if options.start_velocity.is_some() && (options.retreat.is_some() || options.free_start) {
-        let problem = "start_qd cannot be kept by a motion that begins with retreat or free_start, from rest";
-        return Err(Error::Contradiction { problem: problem.into() });
+        let problem = message![
+            Setting::StartVelocity,
+            " cannot be kept by a motion that begins with retreat or free_start, from rest"
+        ];
+        return Err(Error::Contradiction { problem });
     }
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
     }
-    kept_margin(options.margin).map(|_| ())
+    options.surroundings.kept_margin().map(|_| ())
 }
 
 /// Names the remedy for a start in contact, or says that it did not help.
@@ -117,12 +127,9 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
                 && options.start_velocity.is_none()
                 && options.method == PointToPointMethod::MinMax =>
         {
-            let remedy = if options.free_start {
-                "; free_start=True found no way out on which nothing comes nearer"
-            } else {
-                "; free_start=True moves out first"
-            };
-            Error::InCollision { what, link, other, depth, remedy: remedy.into() }
+            let does =
+                if options.free_start { " found no way out on which nothing comes nearer" } else { " moves out first" };
+            Error::InCollision { what, link, other, depth, remedy: message!["; ", Setting::FreeStart, does] }
         }
         other => other,
     }
@@ -130,14 +137,17 @@ fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
 
 /// The end of a motion by [`Tpbso`](super::Tpbso), which keeps only what was published.
 fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&'a Endpoint> {
-    let refused = |what: &str, does: &str| {
-        Err(Error::Contradiction { problem: format!("{what} by method=\"minmax\": method=\"tpbso\" {does}") })
+    let refused = |what: Message, does: &str| {
+        let [other, method] = ["minmax", "tpbso"].map(Setting::Method);
+        Err(Error::Contradiction { problem: message![what, " by ", other, ": ", method, " ", does] })
     };
     match ends {
-        _ if options.start_velocity.is_some() => refused("start_qd is kept", "begins at rest"),
-        _ if options.has_pieces() => refused("approach, retreat and free_start are kept", "has no such pieces"),
-        _ if options.task.is_some() => refused("task is kept", "reaches whole targets"),
+        _ if options.start_velocity.is_some() => {
+            refused(message![Setting::StartVelocity, " is kept"], "begins at rest")
+        }
+        _ if options.has_pieces() => refused("approach, retreat and free_start are kept".into(), "has no such pieces"),
+        _ if options.task.is_some() => refused("task is kept".into(), "reaches whole targets"),
         [end] => Ok(end),
-        _ => refused("several ends are taken", "plans to one"),
+        _ => refused("several ends are taken".into(), "plans to one"),
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
-use crate::obstacle::{Surroundings, kept_margin};
-use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, can_collide, no_usable_end};
+use crate::obstacle::ClearSpace;
+use crate::plan::{EndName, Endpoint, PointToPointOptions, RESERVE, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{NamedTask, Target};
@@ -30,10 +30,11 @@ pub(super) fn tip_ends(
     robot: &Robot,
     start: &Endpoint,
     ends: &[Endpoint],
+    space: Option<&ClearSpace<'_>>,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<TipEnds> {
-    let mut search = EndSearch::new(robot, options)?;
+    let mut search = EndSearch::new(robot, space, options)?;
     let start = search.start(start, monitor)?;
     let (mut found, mut origins, mut problems) = (vec![], vec![], vec![]);
     for (i, end) in ends.iter().enumerate() {
@@ -61,16 +62,11 @@ struct EndSearch<'a> {
 }
 
 impl<'a> EndSearch<'a> {
-    fn new(robot: &'a Robot, options: &PointToPointOptions) -> Result<Self> {
+    fn new(robot: &'a Robot, space: Option<&ClearSpace<'_>>, options: &PointToPointOptions) -> Result<Self> {
         let limits = MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?;
-        let margin = Some(kept_margin(options.margin)? + RESERVE);
-        let surroundings = match can_collide(robot, options) {
-            true => Surroundings { margin, ..options.surroundings() },
-            false => Surroundings::default(),
-        };
         let options = SolveOptions {
             limits: Some(limits.position_limits(robot)?),
-            surroundings,
+            surroundings: space.map(|space| space.narrowed(RESERVE).surroundings()).unwrap_or_default(),
             seed: options.seed,
             ..SolveOptions::default()
         };

@@ -11,6 +11,7 @@ use super::linkage::{Linkage, Measure, Rectangle};
 use crate::error::Result;
 use crate::ik::{SolveOptions, solve};
 use crate::math::vector::distance;
+use crate::message::{Message, message};
 use crate::objective::{Bounds, Objective, Score};
 use crate::rng;
 use crate::robot::Robot;
@@ -51,11 +52,13 @@ pub struct Posture {
 
 impl Posture {
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         match self.status {
-            Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index),
-            Status::OutOfReach => format!("no posture: the tip stays {} away; move the target nearer", self.error),
-            Status::Interrupted => format!("interrupted: {}", Status::Interrupted.advice()),
+            Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index).into(),
+            Status::OutOfReach => {
+                format!("no posture: the tip stays {} away; move the target nearer", self.error).into()
+            }
+            Status::Interrupted => message!["interrupted: ", Status::Interrupted.advice()],
             _ => "no posture found inside the region and the joint limits: widen them".into(),
         }
     }

@@ -77,7 +77,7 @@ impl CircleSwarm {
         for (what, count) in [("population", self.population), ("generations", self.generations)] {
             require_at_least_one(what, count)?;
             if count > MOST {
-                return Err(Error::out_of_range(what, &format!("at most {MOST}"), count as f64));
+                return Err(Error::out_of_range(what, format!("at most {MOST}"), count as f64));
             }
         }
         for (what, value) in [("c1", self.c1), ("c2", self.c2), ("velocity_limit", self.velocity_limit)] {

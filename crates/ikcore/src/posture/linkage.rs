@@ -63,7 +63,7 @@ impl Linkage {
     /// [`Error::OutOfRange`] for a target out of that plane.
     pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Rectangle>) -> Result<Self> {
         let screws = robot.screws(&vec![0.0; robot.dof()]);
-        let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem: problem.into() };
         let height = screws[0].origin[2];
         let planar = screws.iter().enumerate().all(|(i, screw)| {
             let axis_is_z = (screw.turn[2] - 1.0).abs() < 1e-12 && screw.slide == [0.0; 3];
@@ -81,7 +81,7 @@ impl Linkage {
         if !((target[2] - height).abs() < 1e-9) {
             return Err(Error::out_of_range(
                 "z of the target",
-                &format!("that of the arm's plane, {height}"),
+                format!("that of the arm's plane, {height}"),
                 target[2],
             ));
         }

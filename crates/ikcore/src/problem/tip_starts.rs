@@ -98,7 +98,7 @@ fn place(robot: &Robot, tip: usize, target: &Target, choice: &mut Choice<'_>, q:
 /// Transforms a target from the frame `base` to the axes of the robot's base.
 fn seen_from_base(base: &Frame, target: &Target) -> Target {
     match target {
-        Target::Position(position) => Target::Position(base.place::<NoFma>(position)),
+        Target::Position(position) => Target::Position(base.transform::<NoFma>(position)),
         Target::Pose(frame) => Target::Pose(base.then::<NoFma>(frame)),
         Target::Orientation(frame) => Target::Orientation(base.then::<NoFma>(frame)),
         Target::Pointing { frame, axis } => Target::Pointing { frame: base.then::<NoFma>(frame), axis: *axis },

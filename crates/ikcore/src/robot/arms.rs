@@ -1,4 +1,4 @@
-//! The arms of a robot with several tips: for each what moves its tip alone, as a robot of its own. Starts of searches come from them.
+//! Arms of a robot with several tips: the elements that move one tip alone, as a robot of its own. Starts of searches come from them.
 
 use smallvec::SmallVec;
 
@@ -17,7 +17,7 @@ const BEGINNINGS: usize = 16;
 /// Starts of the index that are taken; later attempts begin anywhere.
 const STARTS: usize = 8;
 
-/// How to choose among several configurations.
+/// Choice among several configurations.
 pub(crate) struct Choice<'a> {
     /// Position limits of the whole robot (rad, m).
     pub lower: &'a [f64],
@@ -28,7 +28,7 @@ pub(crate) struct Choice<'a> {
 }
 
 impl Robot {
-    /// What moves tip number `tip` alone; None for a tip that no joint moves alone, and for the tip of a robot with one.
+    /// The arm that moves tip number `tip` alone; None for a tip that no joint moves alone, and for the tip of a robot with one.
     pub(crate) fn arm(&self, tip: usize) -> Option<&TipArm> {
         let arms = || self.tip_chains().chains.iter().map(|chain| arm(self, &chain.own)).collect();
         self.found_arms().get_or_init(arms).get(tip)?.as_ref()
@@ -84,7 +84,7 @@ impl TipArm {
         self.write_start(|own| starts.write_next(&lower, &upper, own), choice, q)
     }
 
-    /// The same with the tip near `position` (m), at any orientation.
+    /// A start with the tip near `position` (m), at any orientation.
     pub fn start_at_position(&self, position: &[f64; 3], choice: &mut Choice<'_>, q: &mut [f64]) -> bool {
         let [lower, upper] = self.limits(choice);
         let mut starts = self.robot.starts_near_position(position);

@@ -10,11 +10,11 @@ use crate::error::{Error, Result};
 use crate::shape::Shape;
 
 impl Robot {
-    /// The same robot with `shape`, in the frame of `link`, attached to that link, as a body of its own named `name`; without a
+    /// Copy of the robot with `shape`, in the frame of `link`, attached to that link, as a body of its own named `name`; without a
     /// name it is "attached", "attached_2" and so on.
     ///
     /// It is tested against obstacles and against the links of the robot but
-    /// `link` itself, those that move with it, and those named in `touch` or by the shape ([`Shape::touch`]); and like any link without an SRDF
+    /// `link` itself, those that move with it, and those named in `touch`; and like any link without an SRDF
     /// ([`collision_pairs`](Self::collision_pairs)) not against those that it always touches or never meets.
     ///
     /// # Errors
@@ -22,7 +22,6 @@ impl Robot {
     /// [`Error::InvalidRobot`] for a name that is taken.
     pub fn with_attached(&self, link: &str, shape: &Shape, touch: &[&str], name: Option<&str>) -> Result<Self> {
         let parent = self.link_number(link)?;
-        let touch: Vec<&str> = touch.iter().copied().chain(shape.touch().iter().map(String::as_str)).collect();
         touch.iter().try_for_each(|link| self.link_number(link).map(|_| ()))?;
         if !shape.can_be_carried() {
             let problem = format!(
@@ -37,12 +36,15 @@ impl Robot {
             let mut others: Vec<&str> = self.bodies().iter().map(|body| body.link.as_str()).collect();
             others.dedup();
             let moves = |other: &&str| {
-                self.place_of_link(other).map(|(frame, _)| frame) != self.place_of_link(link).map(|p| p.0)
+                self.carrier_of_link(other).map(|(frame, _)| frame) != self.carrier_of_link(link).map(|p| p.0)
             };
             pairs.extend(others.into_iter().filter(moves).map(|other| [other.to_owned(), name.clone()]));
         }
         parts.may_touch.extend(touch.iter().map(|other| [name.clone(), (*other).to_owned()]));
-        parts.bodies.push(Body { link: name.clone(), shape: shape.clone(), source: BodySource::Attached });
+        let mut touch: Vec<String> = touch.iter().map(|link| (*link).to_owned()).collect();
+        touch.sort_unstable();
+        touch.dedup();
+        parts.bodies.push(Body { link: name.clone(), shape: shape.clone(), touch, source: BodySource::Attached });
         Arc::make_mut(&mut parts.off_chain).links.push(OffChainLink { name, parent, elements: vec![] });
         self.with_parts_beside_chain(parts)
     }

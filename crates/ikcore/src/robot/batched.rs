@@ -52,7 +52,11 @@ impl Robot {
         let n = self.dof();
         if !qs.len().is_multiple_of(n) {
             let what = format!("joint angles of robot '{}'", self.name());
-            return Err(Error::WrongLength { what, expected: format!("rows of {n} joints"), got: qs.len() });
+            return Err(Error::WrongLength {
+                what: what.into(),
+                expected: format!("rows of {n} joints"),
+                got: qs.len(),
+            });
         }
         if let Some(i) = qs.iter().position(|value| !value.is_finite()) {
             let place = format!("joint '{}' of configuration {}", self.joints()[i % n].name, i / n);

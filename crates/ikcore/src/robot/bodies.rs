@@ -3,10 +3,12 @@
 use super::body::{Bodies, Body, BodySource};
 use super::link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 use super::model::Robot;
+use crate::bodies::CarriedBody;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
+use crate::message::Setting;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -38,7 +40,7 @@ impl Robot {
         self.parts().bodies.meshes()
     }
 
-    /// The same robot with these capsules and no others.
+    /// Copy of the robot with these capsules and no others.
     ///
     /// # Errors
     /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
@@ -46,7 +48,7 @@ impl Robot {
         for (i, capsule) in capsules.iter().enumerate() {
             self.link_number(&capsule.link)?;
             let ends = [capsule.a, capsule.b];
-            require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
+            require_finite(format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
                 format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
@@ -54,7 +56,7 @@ impl Robot {
         self.with_capsules_as_bodies(capsules)
     }
 
-    /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
+    /// Copy of the robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
     /// frames of its links, to the axis of the next joint; the last capsule ends at the tip. The gap that a prismatic
     /// joint opens between two links is not covered.
     ///
@@ -63,7 +65,7 @@ impl Robot {
     /// [`Error::SeveralTips`].
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
-        self.require_one_tip("with_capsules(radius=...)")?;
+        self.require_one_tip(Setting::CapsulesAlongLinks)?;
         let chain = self.chain();
         let moving = chain.moving;
         let mut capsules = vec![];
@@ -78,11 +80,22 @@ impl Robot {
             for ends in places.windows(2).filter(|ends| distance(&ends[0], &ends[1]) > SHORTEST) {
                 let Some((carrier, name)) = links.first() else { return Err(self.nameless(body)) };
                 let from_link = carrier.offset.inverse();
-                let [a, b] = [ends[0], ends[1]].map(|end| from_link.place::<NoFma>(&end));
+                let [a, b] = [ends[0], ends[1]].map(|end| from_link.transform::<NoFma>(&end));
                 capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
             }
         }
         self.with_capsules_as_bodies(capsules)
+    }
+
+    /// The bodies, each in the frame of the moving element that carries it.
+    pub(super) fn carried_bodies(&self) -> Vec<CarriedBody> {
+        let numbers = self.link_numbers();
+        let bodies = self.capsules().iter().zip(self.bodies()).filter_map(|(capsule, body)| {
+            let carrier = self.carrier_of_link_number(*numbers.get(capsule.link.as_str())?);
+            let solid = (!body.is_capsule()).then_some(&body.shape);
+            Some(CarriedBody::new(&capsule.link, carrier, [capsule.a, capsule.b], capsule.radius, solid))
+        });
+        bodies.collect()
     }
 
     fn with_capsules_as_bodies(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
@@ -96,7 +109,7 @@ impl Robot {
             body,
             body + 1
         );
-        Error::InvalidRobot { robot: self.name().into(), problem }
+        Error::InvalidRobot { robot: self.name().into(), problem: problem.into() }
     }
 }
 

@@ -15,11 +15,13 @@ pub struct Body {
     pub link: String,
     /// The shape, in the frame of the link.
     pub shape: Shape,
-    /// Where it comes from.
+    /// Names of other links that it may touch.
+    pub touch: Vec<String>,
+    /// Its origin.
     pub source: BodySource,
 }
 
-/// Where a body comes from.
+/// Origin of a body.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BodySource {
     /// Given by [`with_capsules`](crate::robot::Robot::with_capsules), or made along the links.
@@ -44,13 +46,18 @@ impl fmt::Display for BodySource {
 }
 
 impl Body {
+    /// A body that may touch no other link.
+    pub(crate) fn new(link: String, shape: Shape, source: BodySource) -> Self {
+        Self { link, shape, touch: vec![], source }
+    }
+
     /// A capsule as a body.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite), [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative radius.
     pub(crate) fn from_capsule(capsule: LinkCapsule, source: BodySource) -> Result<Self> {
         let LinkCapsule { link, a, b, radius } = capsule;
-        Ok(Self { link, shape: Shape::swept_ball(a, b, radius)?, source })
+        Ok(Self::new(link, Shape::swept_ball(a, b, radius)?, source))
     }
 
     /// Whether it is a sphere or capsule, and so the capsule that holds it.
@@ -81,7 +88,7 @@ pub(crate) struct Bodies {
     meshes: Vec<LinkMesh>,
 }
 
-/// What [`Bodies`] follow from.
+/// Stored form of [`Bodies`].
 #[derive(Deserialize)]
 struct StoredBodies {
     list: Vec<Body>,

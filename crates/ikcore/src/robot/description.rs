@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::RotationVector;
-use crate::kinematics::chain::{Chain, ChainFolder, StageMotion};
+use crate::kinematics::chain::{Chain, ChainFolder, Transmission};
 use crate::math::{MAX_DOF, Pose, pose};
 
 /// Squares of longer lengths (m) are not finite.
@@ -70,7 +70,7 @@ pub(crate) fn require_supported(robot: &str, moving: usize) -> Result<()> {
         return Ok(());
     }
     let problem = format!("{moving} moving joints between base and tip; at most {MAX_DOF} are supported");
-    Err(Error::InvalidRobot { robot: robot.into(), problem })
+    Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })
 }
 
 impl Description {
@@ -93,7 +93,7 @@ impl Description {
                 // A follower whose factor is zero stands still.
                 Element::Moving { axis, turns, scale: 0.0, offset, .. } => chain.fixed(&moved(axis, *turns, *offset)),
                 Element::Moving { axis, turns, joint, scale, offset } => {
-                    let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
+                    let motion = if *turns { Transmission::turn } else { Transmission::slide };
                     chain.moving(axis, motion(*joint, *scale, *offset));
                 }
             }
@@ -103,7 +103,7 @@ impl Description {
 
     /// Checks all assumptions of the kernels.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem: problem.into() };
         let moving: usize = self.elements.iter().map(Element::stages).sum();
         if moving == 0 || self.joints.is_empty() {
             return Err(invalid("no joint moves between base and tip".into()));
@@ -149,12 +149,12 @@ impl Element {
         }
     }
 
-    /// How far it moves the chain on, along one of the axes (m): finite where the square of the length is not.
+    /// Largest displacement of the chain along an axis (m): finite where the square of the length is not.
     fn length(&self) -> f64 {
         if let Self::Fixed(transform) = self { transform.translation.vector.amax() } else { 0.0 }
     }
 
-    /// How many stages it becomes.
+    /// Number of stages that it becomes.
     fn stages(&self) -> usize {
         match self {
             Self::Fixed(_) | Self::Link(_) | Self::Moving { scale: 0.0, .. } => 0,
@@ -163,7 +163,7 @@ impl Element {
         }
     }
 
-    /// The same element in a robot that has `shift` more joints before its own.
+    /// Copy of the element in a robot that has `shift` more joints before its own.
     pub(super) fn shifted(mut self, shift: usize) -> Self {
         if let Self::Moving { joint, .. } | Self::RotationVector { joint } = &mut self {
             *joint += shift;
@@ -173,7 +173,7 @@ impl Element {
 
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
     pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem: problem.into() };
         match self {
             Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Self::Link(_) => Ok(()),

@@ -57,12 +57,12 @@ impl Joint {
         Self { name: name.into(), kind, lower, upper, velocity, rated_acceleration, rated_jerk }
     }
 
-    /// The same joint between these position limits (rad or m).
+    /// Copy of the joint between these position limits (rad or m).
     pub fn with_range(self, lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..self }
     }
 
-    /// The same joint with this velocity limit (rad/s or m/s).
+    /// Copy of the joint with this velocity limit (rad/s or m/s).
     pub fn with_velocity(self, velocity: f64) -> Self {
         Self { velocity, ..self }
     }
@@ -71,6 +71,12 @@ impl Joint {
     /// 1e6 turns (6.28e6 rad or m) counts as open.
     pub fn sampling_range(&self) -> (f64, f64) {
         self.sampling_range_within(self.lower, self.upper)
+    }
+
+    /// The middle of [`sampling_range`](Self::sampling_range) (rad or m).
+    pub(crate) fn middle(&self) -> f64 {
+        let (lower, upper) = self.sampling_range();
+        0.5 * (lower + upper)
     }
 
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).

@@ -17,7 +17,7 @@ pub struct LinkCapsule {
     pub radius: f64,
 }
 
-/// How well the capsules fitted to a mesh follow it. They hold all of it.
+/// Quality of the capsules fitted to a mesh. They hold all of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshFit {
     /// The link that carries it.
@@ -35,7 +35,7 @@ pub struct MeshFit {
 pub struct LinkMesh {
     /// The link that carries it.
     pub link: String,
-    /// Where the file was found.
+    /// Path of the file.
     pub path: String,
     /// Factors of its coordinates.
     pub scale: [f64; 3],

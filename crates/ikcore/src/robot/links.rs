@@ -3,20 +3,16 @@
 use super::model::Robot;
 use std::collections::HashMap;
 
-use smallvec::SmallVec;
-
 use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::kinematics::chain::{LinkFrame, StageMotion};
+use crate::kinematics::chain::{LinkFrame, Transmission};
 use crate::kinematics::eight_frames::EightStages;
+use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Frame, Pose};
 use crate::wording::listed;
-
-/// The frames of all moving elements: STACK_DOF + 1 and a few more on the stack, more of them on the heap.
-pub(crate) type FrameBuffer = SmallVec<[Frame; 36]>;
 
 impl Robot {
     /// Names of all links: those of the chain, base to tip, then those that branch off it, parents first.
@@ -29,7 +25,7 @@ impl Robot {
         &self.parts().off_chain.held
     }
 
-    /// The same robot with some of its held joints elsewhere, each (name, value in rad or m).
+    /// Copy of the robot with some of its held joints elsewhere, each (name, value in rad or m).
     ///
     /// # Errors
     /// [`Error::NotHeld`], [`Error::NotFinite`], [`Error::OutsideLimits`].
@@ -140,12 +136,12 @@ impl Robot {
     }
 
     /// Number of the frame that carries a link, and the constant frame of the link there.
-    pub(crate) fn place_of_link(&self, link: &str) -> Option<(usize, Frame)> {
-        Some(self.place_of_link_number(self.link_number(link).ok()?))
+    pub(crate) fn carrier_of_link(&self, link: &str) -> Option<(usize, Frame)> {
+        Some(self.carrier_of_link_number(self.link_number(link).ok()?))
     }
 
-    /// [`place_of_link`](Self::place_of_link) by number.
-    pub(crate) fn place_of_link_number(&self, link: usize) -> (usize, Frame) {
+    /// [`carrier_of_link`](Self::carrier_of_link) by number.
+    pub(crate) fn carrier_of_link_number(&self, link: usize) -> (usize, Frame) {
         let LinkFrame { stages, offset } = &self.tree().links[link];
         (*stages, *offset)
     }
@@ -164,7 +160,7 @@ impl Robot {
     }
 
     /// The frames of all moving elements at `q`: 0 is the base, then those of the chain, then those of the branches.
-    fn frames(&self, q: &[f64]) -> FrameBuffer {
+    pub(super) fn frames(&self, q: &[f64]) -> FrameBuffer {
         let mut frames = self.frame_buffer();
         self.write_frames(q, &mut frames);
         frames
@@ -184,13 +180,13 @@ impl Robot {
     /// The moving elements between a frame and one below that carries it, the outermost first: the number of the frame that each
     /// moves, and its motion.
     #[inline]
-    pub(crate) fn carriers(&self, frame: usize, below: usize) -> impl Iterator<Item = (usize, &StageMotion)> {
+    pub(crate) fn carriers(&self, frame: usize, below: usize) -> impl Iterator<Item = (usize, &Transmission)> {
         self.tree().carriers(self.chain(), frame, below)
     }
 
     /// All moving elements, in the order of their frames from number 1 on: the number of the frame that each starts from, its constant
     /// frame there, and its motion.
-    pub(crate) fn moving_elements(&self) -> impl Iterator<Item = (usize, Frame, StageMotion)> {
+    pub(crate) fn moving_elements(&self) -> impl Iterator<Item = (usize, Frame, Transmission)> {
         self.tree().stages(self.chain())
     }
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::rng::LazyRng;
 
 impl Robot {
-    /// The same robot with manufacturing errors: every constant offset between two joints is longer or shorter by up to
+    /// Copy of the robot with manufacturing errors: every constant offset between two joints is longer or shorter by up to
     /// `length` (m) along its own direction, and the zero of every rotating joint is off by up to `angle` (rad), all
     /// drawn uniformly. Base and tool are unchanged.
     ///

@@ -14,12 +14,12 @@ use crate::error::{Error, Result};
 use crate::math::Pose;
 use crate::wording::words;
 
-/// How a base moves.
+/// Mobility of a base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MobileBase {
-    /// On a plane: `base_x`, `base_y` (m) and `base_yaw` (rad).
+    /// Motion on a plane: `base_x`, `base_y` (m) and `base_yaw` (rad).
     Planar,
-    /// Freely: `base_x`, `base_y`, `base_z` (m), and the rotation vector `base_rx`, `base_ry`, `base_rz` (rad).
+    /// Free motion: `base_x`, `base_y`, `base_z` (m), and the rotation vector `base_rx`, `base_ry`, `base_rz` (rad).
     Floating,
 }
 
@@ -99,7 +99,7 @@ impl MobileBase {
 }
 
 impl Robot {
-    /// The same robot on a mobile base, whose joints come first in q, between `limits`. The first link moves; the pose of the base
+    /// Copy of the robot on a mobile base, whose joints come first in q, between `limits`. The first link moves; the pose of the base
     /// before is how it is mounted. Poses are in the frame of a new first link, "world". In named configurations the base is at zero,
     /// or as near to it as its limits allow.
     ///
@@ -119,7 +119,7 @@ impl Robot {
             if values.len() != count {
                 let what = format!("{field} of a {base} base");
                 let expected = format!("{count} joints: {}", base.joint_names().join(", "));
-                return Err(Error::WrongLength { what, expected, got: values.len() });
+                return Err(Error::WrongLength { what: what.into(), expected, got: values.len() });
             }
         }
         let joints = base.joints(limits)?;

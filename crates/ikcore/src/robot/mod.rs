@@ -11,8 +11,6 @@
 //! | `links` | kinematics of any link |
 //! | `tips`, `tip_chain`, `arms` | several tips: the kinematics of each, their chains, what moves one alone |
 //! | `body`, `link_capsule`, `bodies` | bodies on the links, and capsules around them |
-//! | `derived` | what a higher module derives from the bodies |
-//! | `carried` | bodies seen from the moving elements that carry them |
 //! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `upright_axis` | a vertical first axis |
@@ -28,8 +26,6 @@ mod batched;
 mod bodies;
 mod body;
 mod builder;
-mod carried;
-mod derived;
 mod description;
 mod joint;
 mod kinematics;
@@ -54,12 +50,10 @@ pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
-pub(crate) use carried::Carried;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
-pub(crate) use links::FrameBuffer;
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;

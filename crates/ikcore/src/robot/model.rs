@@ -1,11 +1,9 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
-use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use super::body::Bodies;
-use super::derived::Derived;
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::off_chain::OffChain;
@@ -14,10 +12,11 @@ use super::parts::Parts;
 use super::stance::Stance;
 use super::tip_chain::TipChains;
 use super::visual::Visual;
+use crate::bodies::BodyModel;
 use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::link_tree::LinkTree;
 use crate::kinematics::{Reach, TaskRank};
@@ -39,7 +38,7 @@ pub struct Robot {
     chain: Arc<Chain>,
     /// The chains of a robot with several tips.
     tips: Arc<TipChains>,
-    /// All links, folded at first use.
+    /// Tree of all links, folded at first use.
     tree: OnceLock<Arc<LinkTree>>,
     /// The kernels compiled for the chain's size and this machine.
     kernels: Kernels,
@@ -47,13 +46,13 @@ pub struct Robot {
     reach_of_links: Reach,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
-    /// Of bodies and pairs.
-    derived: Derived,
+    /// The collision model, made at first use.
+    body_model: Arc<OnceLock<Arc<BodyModel>>>,
     /// The smallest change of each joint that leaves the pose of every link unchanged.
     turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
-    /// What moves each of several tips alone, made at first use; copies that differ in base share it.
+    /// Arms of the tips of a robot with several, made at first use; copies that differ in base share it.
     arms: Arc<OnceLock<Vec<Option<TipArm>>>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
@@ -61,7 +60,7 @@ pub struct Robot {
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
 }
 
-/// What moves one of several tips alone, seen from the end of what it shares with others.
+/// The elements that move one of several tips alone, from the end of those that it shares with others.
 #[derive(Debug)]
 pub(crate) struct TipArm {
     pub robot: Robot,
@@ -95,7 +94,7 @@ impl Robot {
             chain: Arc::new(chain),
             tree: OnceLock::new(),
             pairs: Arc::default(),
-            derived: Derived::default(),
+            body_model: Arc::default(),
             start_index: Arc::default(),
             arms: Arc::default(),
             task_rank: OnceLock::new(),
@@ -138,7 +137,7 @@ impl Robot {
         &self.parts.tool
     }
 
-    /// The same robot with its base at `base`.
+    /// Copy of the robot with its base at `base`.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
@@ -148,7 +147,7 @@ impl Robot {
         Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
-    /// The same robot with its tip at `tool`, relative to the tip link.
+    /// Copy of the robot with its tip at `tool`, relative to the tip link.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose; [`Error::SeveralTips`].
@@ -159,7 +158,7 @@ impl Robot {
         Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
-    /// The same robot with other joint limits; `change` gets each joint with its index.
+    /// Copy of the robot with other joint limits; `change` gets each joint with its index.
     ///
     /// # Errors
     /// [`Error::EmptyRange`] or [`Error::NegativeLimit`] for impossible limits.
@@ -186,12 +185,12 @@ impl Robot {
         if q.len() != self.dof() {
             let expected = format!("{} joints{}", self.dof(), self.joints_among(q.len()));
             let what = format!("{what} of robot '{}'", self.name());
-            return Err(Error::WrongLength { what, expected, got: q.len() });
+            return Err(Error::WrongLength { what: what.into(), expected, got: q.len() });
         }
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }
 
-    /// Says which joints are expected where `count` is too many: those of a gripper are often among them.
+    /// Names the joints that are expected where `count` is too many: those of a gripper are often among them.
     fn joints_among(&self, count: usize) -> String {
         let held = self.held_joints();
         match (self.joints(), count) {
@@ -279,8 +278,8 @@ impl Robot {
         self.closed_form_or_reason().as_ref().is_ok_and(ClosedFormArm::proves)
     }
 
-    /// The same unless forward kinematics says otherwise, at less cost where that is possible; none without a closed form and for
-    /// redundant arms.
+    /// Finds likely branches, which forward kinematics has to confirm, at less cost where that is possible; none without a closed form
+    /// and for redundant arms.
     #[inline]
     pub(crate) fn likely_branches(&self, pose: &Frame, found: &mut ArmConfigurations) {
         match self.closed_form_or_reason() {
@@ -337,21 +336,21 @@ impl Robot {
         self.joints().iter().map(Joint::sampling_range).collect()
     }
 
-    /// The same robot with other bodies.
+    /// Copy of the robot with other bodies.
     pub(crate) fn with_bodies(&self, bodies: Bodies) -> Self {
         let mut robot = self.clone();
         robot.parts.bodies = bodies;
         robot.pairs = Arc::default();
-        robot.derived = Derived::default();
+        robot.body_model = Arc::default();
         robot
     }
 
-    /// The same robot with another rule for the pairs of links that are tested against each other.
+    /// Copy of the robot with another rule for the pairs of links that are tested against each other.
     pub(super) fn with_pair_rule(&self, pairs: PairRule) -> Self {
         let mut robot = self.clone();
         robot.parts.pairs = pairs;
         robot.pairs = Arc::default();
-        robot.derived = Derived::default();
+        robot.body_model = Arc::default();
         robot
     }
 
@@ -361,7 +360,7 @@ impl Robot {
         Self { start_index, closed_form, arms, ..robot }
     }
 
-    /// The same robot with these named configurations in place of others.
+    /// Copy of the robot with these named configurations in place of others.
     pub(crate) fn with_stances(&self, stances: Vec<Stance>) -> Self {
         let mut robot = self.clone();
         robot.parts.stances = stances;
@@ -373,29 +372,31 @@ impl Robot {
         &self.parts.visuals
     }
 
-    /// The same robot with these visual shapes.
+    /// Copy of the robot with these visual shapes.
     pub(crate) fn with_visuals(&self, visuals: Vec<Visual>) -> Self {
         let mut robot = self.clone();
         robot.parts.visuals = visuals;
         robot
     }
 
-    /// What `make` derives from the bodies of this robot and their pairs; made once, and shared with copies that have the same. To
-    /// be called with one type alone.
-    pub(crate) fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
-        self.derived.get(make)
+    /// Bodies and pairs, prepared for distances; made at the first call, and shared with copies that have the same.
+    pub(crate) fn body_model(&self) -> &Arc<BodyModel> {
+        self.body_model.get_or_init(|| {
+            let rest = self.frames(&vec![0.0; self.dof()]);
+            Arc::new(BodyModel::new(self.carried_bodies(), &self.tested_bodies(), self.eight_stages(), rest))
+        })
     }
 
     pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {
         &self.pairs
     }
 
-    /// The same robot with these branches, on which further tips are.
+    /// Copy of the robot with these branches, on which further tips are.
     pub(crate) fn with_branches(&self, off_chain: OffChain, tips: Vec<String>) -> Result<Self> {
         self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), tips, ..self.parts.clone() })
     }
 
-    /// The same robot with other branches.
+    /// Copy of the robot with other branches.
     pub(crate) fn with_off_chain(&self, off_chain: OffChain) -> Result<Self> {
         self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), ..self.parts.clone() })
     }
@@ -437,17 +438,17 @@ impl Robot {
 }
 
 /// The motions of the elements that move a tip.
-fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [StageMotion] {
+fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [Transmission] {
     if tips.chains.is_empty() { &chain.motions[..chain.moving] } else { &tips.motions }
 }
 
-fn repeats_every_turn(motions: &[StageMotion], joint: &Joint, number: usize) -> bool {
+fn repeats_every_turn(motions: &[Transmission], joint: &Joint, number: usize) -> bool {
     let mut driven = motions.iter().filter(|motion| motion.joint == number);
     joint.kind.turns()
         && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0 && !motion.of_vector)
 }
 
-fn turn_periods(motions: &[StageMotion], joints: &[Joint]) -> Vec<Option<f64>> {
+fn turn_periods(motions: &[Transmission], joints: &[Joint]) -> Vec<Option<f64>> {
     let period = |(number, joint): (usize, &Joint)| {
         let mut driven = motions.iter().filter(|motion| motion.joint == number);
         match (driven.next(), driven.next()) {

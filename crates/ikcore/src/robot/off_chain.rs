@@ -1,4 +1,4 @@
-//! What a robot has beside its chain: links that branch off it, and joints that are held.
+//! Links that branch off the chain, and held joints.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::description::{Description, Element, moved};
 use super::joint::Joint;
 use crate::error::{Error, Result, require_finite};
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::link_tree::{LinkTree, LinkTreeFolder};
 
 /// A link that is not on the chain.
@@ -49,7 +49,7 @@ impl OffChain {
                     // A rotation vector stands at the start of the chain alone.
                     Element::Link(_) | Element::RotationVector { .. } => {}
                     Element::Moving { axis, turns, joint, scale, offset } => {
-                        let motion = if turns { StageMotion::turn } else { StageMotion::slide };
+                        let motion = if turns { Transmission::turn } else { Transmission::slide };
                         tree.moving(&axis, motion(joint, scale, offset));
                     }
                 }
@@ -76,7 +76,8 @@ impl OffChain {
 
     /// Checks all assumptions of [`folded`](Self::folded).
     pub fn validate(&self, description: &Description) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: description.name.clone(), problem };
+        let invalid =
+            |problem: String| Error::InvalidRobot { robot: description.name.clone(), problem: problem.into() };
         let mut names: HashSet<&str> = description.link_names().collect();
         let on_chain = names.len();
         let joints: Vec<&str> = self.all_joints(description).map(|joint| joint.name.as_str()).collect();

@@ -1,8 +1,8 @@
-//! Where the pairs of links that are tested against each other come from.
+//! Source of the pairs of links that are tested against each other.
 
 use serde::{Deserialize, Serialize};
 
-/// Which pairs of links are tested against each other.
+/// Rule for the pairs of links that are tested against each other.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) enum PairRule {
     /// Random configurations show which links can touch.

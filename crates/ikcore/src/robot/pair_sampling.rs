@@ -5,10 +5,10 @@ use std::collections::HashSet;
 
 use nalgebra::Vector3;
 
-use super::carried::Carried;
 use super::joint::Joint;
-use super::links::FrameBuffer;
 use super::model::Robot;
+use crate::bodies::CarriedBody;
+use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::rng;
@@ -29,7 +29,7 @@ struct Carrier {
     link: usize,
     /// Number of the frame that carries it.
     frame: usize,
-    bodies: Vec<Carried>,
+    bodies: Vec<CarriedBody>,
     /// A ball that holds them.
     center: [f64; 3],
     radius: f64,
@@ -97,7 +97,7 @@ impl<'a> Sampling<'a> {
     }
 
     fn drop_touching_at_rest(&mut self) {
-        let rest: Vec<f64> = self.robot.joints().iter().map(middle_of_range).collect();
+        let rest: Vec<f64> = self.robot.joints().iter().map(Joint::middle).collect();
         self.robot.write_frames(&rest, &mut self.frames);
         let Self { pairs, carriers, frames, .. } = self;
         pairs.retain(|pair| !nearer(pair.map(|i| &carriers[i]), frames, 0.0));
@@ -136,7 +136,7 @@ impl<'a> Sampling<'a> {
 
 /// The links with capsules, in the order of the links.
 fn carriers(robot: &Robot) -> Vec<Carrier> {
-    let mut on_link: Vec<Vec<Carried>> = robot.all_link_names().map(|_| vec![]).collect();
+    let mut on_link: Vec<Vec<CarriedBody>> = robot.all_link_names().map(|_| vec![]).collect();
     for (body, link) in robot.carried_bodies().into_iter().zip(robot.links_of_bodies()) {
         on_link[link].push(body);
     }
@@ -146,7 +146,7 @@ fn carriers(robot: &Robot) -> Vec<Carrier> {
             let ends = || bodies.iter().flat_map(|body| body.ends.map(|end| (Vector3::from(end), body.radius)));
             let center = ends().map(|(end, _)| end).sum::<Vector3<f64>>() / ends().count() as f64;
             let radius = ends().map(|(end, radius)| (end - center).norm() + radius).fold(0.0, f64::max);
-            Carrier { link, frame: robot.place_of_link_number(link).0, bodies, center: center.into(), radius }
+            Carrier { link, frame: robot.carrier_of_link_number(link).0, bodies, center: center.into(), radius }
         })
         .collect()
 }
@@ -155,7 +155,7 @@ fn carriers(robot: &Robot) -> Vec<Carrier> {
 fn nearer([one, other]: [&Carrier; 2], frames: &[Frame], distance: f64) -> bool {
     let (frame, other_frame) = (&frames[one.frame], &frames[other.frame]);
     let [center, other_center] =
-        [frame.place::<NoFma>(&one.center), other_frame.place::<NoFma>(&other.center)].map(Vector3::from);
+        [frame.transform::<NoFma>(&one.center), other_frame.transform::<NoFma>(&other.center)].map(Vector3::from);
     if (center - other_center).norm() > one.radius + other.radius + distance {
         return false;
     }
@@ -163,13 +163,8 @@ fn nearer([one, other]: [&Carrier; 2], frames: &[Frame], distance: f64) -> bool 
         let axis = body.axis_at(frame);
         other.bodies.iter().any(|other| {
             let other_axis = other.axis_at(other_frame);
-            let (body, other) = (body.placed(&axis, frame), other.placed(&other_axis, other_frame));
+            let (body, other) = (body.posed(&axis, frame), other.posed(&other_axis, other_frame));
             body.distance_to(&other, distance.next_up()) <= distance
         })
     })
-}
-
-fn middle_of_range(joint: &Joint) -> f64 {
-    let (lower, upper) = joint.sampling_range();
-    0.5 * (lower + upper)
 }

@@ -18,7 +18,7 @@ impl Robot {
         self.tested_links().iter().map(|pair| pair.map(|link| names[link])).collect()
     }
 
-    /// The same robot with these pairs of links tested against each other, and no others.
+    /// Copy of the robot with these pairs of links tested against each other, and no others.
     ///
     /// # Errors
     /// [`Error::UnknownLink`], [`Error::Contradiction`] for a pair of a link with itself.
@@ -27,13 +27,15 @@ impl Robot {
             self.link_number(one)?;
             self.link_number(other)?;
             if one == other {
-                return Err(Error::Contradiction { problem: format!("link '{one}' cannot be tested against itself") });
+                return Err(Error::Contradiction {
+                    problem: format!("link '{one}' cannot be tested against itself").into(),
+                });
             }
         }
         Ok(self.with_pair_rule(PairRule::Given(pairs)))
     }
 
-    /// The same robot with all pairs of links tested against each other but these, and those that always touch.
+    /// Copy of the robot with all pairs of links tested against each other but these, and those that always touch.
     pub(crate) fn with_disabled_pairs(&self, pairs: Vec<[String; 2]>) -> Self {
         self.with_pair_rule(PairRule::AllBut(pairs))
     }

@@ -13,7 +13,7 @@ use super::visual::Visual;
 use crate::error::Result;
 use crate::math::Pose;
 
-/// Chain, branches, placement and bodies.
+/// Chain, branches, base, tool and bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Parts {
     pub description: Description,
@@ -23,7 +23,7 @@ pub(crate) struct Parts {
     /// Pose of the tool in the frame of the tip link.
     pub tool: Pose,
     pub bodies: Bodies,
-    /// Which links are tested against each other.
+    /// Rule for the pairs of links that are tested against each other.
     pub pairs: PairRule,
     /// Pairs of links that may touch, whatever the rule.
     pub may_touch: Vec<[String; 2]>,

@@ -9,7 +9,7 @@ impl Robot {
     /// Returns the robot as bytes, for storing and for copying between processes.
     ///
     /// # Errors
-    /// [`Error::Corrupt`](crate::Error::Corrupt) if the encoder fails.
+    /// None in practice: any robot can be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         stored::to_bytes("robot", self.parts())
     }

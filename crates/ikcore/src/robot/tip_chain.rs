@@ -7,7 +7,7 @@ use super::description::{Description, Element, require_supported};
 use super::parts::Parts;
 use crate::error::{Error, Result};
 use crate::kinematics::Reach;
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::kernels::Kernels;
 use crate::math::Pose;
 
@@ -32,9 +32,9 @@ pub(crate) struct TipChain {
     /// Numbers of the links from the base to it.
     pub links: Vec<usize>,
     pub whole: CompiledChain,
-    /// Up to the last element that moves another tip too.
+    /// The chain up to the last element that moves another tip too.
     pub stem: CompiledChain,
-    /// What follows the stem: the elements that move this tip alone.
+    /// Elements after the stem, which move this tip alone.
     pub own: Vec<Element>,
     /// The reach of the stretched links, without prismatic motion.
     pub reach_of_links: Reach,
@@ -45,11 +45,11 @@ pub(crate) struct TipChain {
 pub(crate) struct TipChains {
     pub chains: Vec<TipChain>,
     /// The motions of all elements that move a tip.
-    pub motions: Vec<StageMotion>,
+    pub motions: Vec<Transmission>,
 }
 
 impl TipChains {
-    /// Those of a valid robot.
+    /// The chains of a valid robot.
     pub fn of(parts: &Parts) -> Self {
         if parts.tips.is_empty() {
             return Self::default();
@@ -74,7 +74,7 @@ impl TipChains {
             }
         });
         let chains: Vec<TipChain> = chains.collect();
-        let mut motions: Vec<StageMotion> = vec![];
+        let mut motions: Vec<Transmission> = vec![];
         for chain in &chains {
             let stages = &chain.whole.chain.motions[..chain.whole.chain.moving];
             motions.extend(stages.iter().filter(|motion| !motions.contains(motion)).copied().collect::<Vec<_>>());
@@ -85,7 +85,7 @@ impl TipChains {
     /// Checks the tips of `parts`, whose links are valid: that each has a chain, and that joints move it relative to the others.
     pub fn validate(parts: &Parts) -> Result<()> {
         let name = &parts.description.name;
-        let invalid = |problem: String| Error::InvalidRobot { robot: name.clone(), problem };
+        let invalid = |problem: String| Error::InvalidRobot { robot: name.clone(), problem: problem.into() };
         let beside = |tip: &String| parts.off_chain.links.iter().any(|link| link.name == *tip);
         if let Some(tip) = parts.tips.iter().find(|tip| !beside(tip)) {
             let problem = match parts.description.link_names().any(|link| link == tip) {

@@ -6,6 +6,7 @@ use crate::error::{Error, Result, shortened, suggestion};
 use crate::kinematics::{Reach, Screws, TaskRank};
 use crate::math::Columns;
 use crate::math::{Frame, MAX_DOF};
+use crate::message::{Message, Setting, message};
 use crate::wording::{joined, listed};
 
 impl Robot {
@@ -14,7 +15,7 @@ impl Robot {
         std::iter::once(first_tip(self.parts())).chain(self.parts().tips.iter().map(String::as_str))
     }
 
-    /// How many tips it has.
+    /// Number of tips.
     #[inline]
     pub fn tip_count(&self) -> usize {
         1 + self.parts().tips.len()
@@ -46,10 +47,13 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::SeveralTips`].
-    pub fn require_one_tip(&self, call: &str) -> Result<()> {
+    pub fn require_one_tip(&self, call: impl Into<Message>) -> Result<()> {
         match self.parts().tips[..] {
             [] => Ok(()),
-            _ => Err(Error::SeveralTips { call: call.into(), tips: joined(self.tips()) }),
+            _ => {
+                let remedy = message!["load the robot with one of them as ", Setting::Tip];
+                Err(Error::SeveralTips { call: call.into(), tips: joined(self.tips()), remedy })
+            }
         }
     }
 
@@ -139,7 +143,7 @@ impl Robot {
 
     /// Number of the frame that carries tip number `tip`.
     pub(crate) fn frame_of_tip(&self, tip: usize) -> usize {
-        self.tip_chain(tip).map_or(self.chain().moving, |TipChain { link, .. }| self.place_of_link_number(*link).0)
+        self.tip_chain(tip).map_or(self.chain().moving, |TipChain { link, .. }| self.carrier_of_link_number(*link).0)
     }
 
     /// The chain to tip number `tip`; None for a robot with one.

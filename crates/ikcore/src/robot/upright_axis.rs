@@ -9,11 +9,11 @@ const TILT: f64 = 1e-12;
 /// The vertical axis about which the first joint turns the whole arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UprightAxis {
-    /// Where it meets the plane z = 0 of the robot's base (m).
+    /// Intersection with the plane z = 0 of the robot's base (m).
     pub point: [f64; 2],
     /// The joint that turns the arm, as an entry of q.
     pub joint: usize,
-    /// How far the joint moves while the arm turns by 1 rad about z.
+    /// Joint motion while the arm turns by 1 rad about z.
     pub per_turn: f64,
 }
 

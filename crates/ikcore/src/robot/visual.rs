@@ -1,4 +1,4 @@
-//! How the links of a robot look. Nothing is computed with it.
+//! Looks of the links of a robot. Nothing is computed with them.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,20 +10,20 @@ use crate::shape::Shape;
 pub struct Visual {
     /// The link that carries it.
     pub link: String,
-    /// What is seen.
+    /// Visual shape.
     pub shape: VisualShape,
     /// Red, green, blue and opacity, from 0 to 1.
     pub color: Option<[f64; 4]>,
 }
 
-/// What is seen of a link.
+/// Visual of a link.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum VisualShape {
     /// A sphere, box, cylinder or capsule, in the frame of the link.
     Solid(Shape),
     /// A mesh in a file, which is not read.
     Mesh {
-        /// Where the file was found; as the URDF names it where it was not.
+        /// Path of the file; as the URDF names it if it was not found.
         path: String,
         /// Factors of its coordinates.
         scale: [f64; 3],

@@ -33,7 +33,7 @@ impl BodyBlock {
 
     /// Moves the capsules by `frame`.
     #[inline(always)]
-    pub fn placed<A: Arithmetic>(&self, frame: &Frame) -> Self {
+    pub fn posed<A: Arithmetic>(&self, frame: &Frame) -> Self {
         let [x, y, z] = [0, 1, 2].map(|k| Vec3::<Four<A>>::splat(&frame.axes[k]));
         let (start, along) = (Vec3::of(&self.start), Vec3::of(&self.along));
         let start = x.mul_add(start.x, y.mul_add(start.y, z.mul_add(start.z, Vec3::splat(&frame.origin))));

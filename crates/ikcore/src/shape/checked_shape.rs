@@ -21,8 +21,6 @@ pub struct Shape {
     bounds: BoundingBall,
     /// Allowance for rounding in distances from nearby points (m).
     rounding: f64,
-    /// Sorted names of the links that may touch the shape; `None` means no link.
-    touch: Option<Arc<[String]>>,
 }
 
 /// Rounding error of distances, for coordinates of 1 m (m).
@@ -34,7 +32,7 @@ impl Shape {
     fn made(geometry: Geometry, bounds: BoundingBall) -> Self {
         let reach = if matches!(geometry, Geometry::HalfSpace { .. }) { 0.0 } else { bounds.radius };
         let scale = bounds.center.iter().fold(1.0 + reach, |largest, x| largest.max(reach + x.abs()));
-        Self { geometry, bounds, rounding: ROUNDING * scale, touch: None }
+        Self { geometry, bounds, rounding: ROUNDING * scale }
     }
 
     /// Creates a ball about `center` (m).
@@ -206,19 +204,6 @@ impl Shape {
             grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
         let bounds = ball_about(&corners, 0.0);
         Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
-    }
-
-    /// Returns the shape as an obstacle that the links of these names may touch.
-    pub fn with_touch(mut self, mut links: Vec<String>) -> Self {
-        links.sort_unstable();
-        links.dedup();
-        self.touch = (!links.is_empty()).then(|| links.into());
-        self
-    }
-
-    /// Returns the names of the links that may touch the shape, sorted.
-    pub fn touch(&self) -> &[String] {
-        self.touch.as_deref().unwrap_or_default()
     }
 
     /// Returns the geometry.

@@ -94,7 +94,7 @@ impl<'a> Convex<'a> {
     /// Returns the point of the core farthest along `direction`.
     pub fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         let along = Vector3::from(self.frame.turn_back(&(*direction).into()));
-        self.frame.place::<NoFma>(&self.core.support(&along).into()).into()
+        self.frame.transform::<NoFma>(&self.core.support(&along).into()).into()
     }
 }
 

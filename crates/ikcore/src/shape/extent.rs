@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::checked_shape::Shape;
 use super::convex::Convex;
 use super::geometry::Geometry;
-use super::placed_body::PlacedBody;
+use super::posed_body::PosedBody;
 use crate::math::Frame;
 
 /// Largest difference, in each entry, between a normal and the normal of a half-space that count as equal.
@@ -24,7 +24,7 @@ impl Shape {
     }
 }
 
-impl PlacedBody<'_> {
+impl PosedBody<'_> {
     /// Returns the smallest n'x (m) over all points x of the body.
     pub fn least_along(&self, normal: &Vector3<f64>) -> f64 {
         let convex = self.convex();
@@ -43,7 +43,7 @@ mod tests {
         let slanted = Vector3::new(1.0, 1.0, 0.0).normalize();
         assert!((shape.farthest_along(&slanted).unwrap() - (1.1 + 0.2) / 2_f64.sqrt()).abs() < 1e-11);
         let axis = [Vector3::new(0.0, 0.0, 1.0), Vector3::new(0.0, 0.0, 2.0)];
-        let body = PlacedBody { axis: &axis, radius: 0.25, solid: None };
+        let body = PosedBody { axis: &axis, radius: 0.25, solid: None };
         assert_eq!(body.least_along(&Vector3::z()), 0.75);
     }
 

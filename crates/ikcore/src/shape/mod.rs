@@ -26,7 +26,7 @@
 //! | `cover` | covers of meshes by few spheres and capsules |
 //! | `enclosing_capsule` | capsules that contain other shapes |
 //! | `convex`, `convex_distance` | signed distance of any two convex sets |
-//! | `placed_body` | body of a robot with its frame, and its distances |
+//! | `posed_body` | body of a robot with its frame, and its distances |
 //! | `extent` | extents of bodies and shapes along a direction |
 //! | `separation` | nearest point of a capsule to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
@@ -51,8 +51,8 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
-mod placed_body;
 mod point_cloud;
+mod posed_body;
 #[cfg(test)]
 mod scale_tests;
 mod segment_distance;
@@ -77,6 +77,6 @@ pub(crate) use eight_shape::{EightCapsules, EightShape, LARGEST_IN_SINGLE, Vecto
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
-pub(crate) use placed_body::PlacedBody;
 pub use point_cloud::PointCloud;
+pub(crate) use posed_body::PosedBody;
 pub(crate) use shape_index::ShapeIndex;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::body_block::BodyBlock;
 use super::checked_shape::{LARGEST, Shape};
-use super::placed_body::PlacedBody;
+use super::posed_body::PosedBody;
 use crate::error::Result;
 use crate::math::Frame;
 use crate::math::arithmetic::by_instructions;
@@ -69,18 +69,18 @@ fn obstacles(center: [f64; 3], half: f64) -> Vec<Shape> {
 }
 
 /// Calls `visit` with bodies about `center` that extend by `half` along x.
-fn for_bodies(center: [f64; 3], half: f64, mut visit: impl FnMut(&PlacedBody, &str)) {
+fn for_bodies(center: [f64; 3], half: f64, mut visit: impl FnMut(&PosedBody, &str)) {
     for shape in bounded(center, half).into_iter().filter_map(Result::ok) {
         let (a, b, radius) = shape.enclosing_capsule();
         let axis = [a.into(), b.into()];
         let is_capsule = ["Sphere", "Capsule"].contains(&shape.name());
         let solid = (!is_capsule).then_some((&shape, Frame::IDENTITY));
-        visit(&PlacedBody { axis: &axis, radius, solid }, shape.name());
+        visit(&PosedBody { axis: &axis, radius, solid }, shape.name());
     }
 }
 
 /// Returns the capsule of a body in four lanes.
-fn block(body: &PlacedBody) -> BodyBlock {
+fn block(body: &PosedBody) -> BodyBlock {
     let [a, b] = body.axis;
     BodyBlock {
         start: std::array::from_fn(|k| F64x4::splat(a[k])),
@@ -112,7 +112,7 @@ fn what_contains_a_body_is_near_at_every_size_and_place() {
                 for other in bounded(center, half).into_iter().filter_map(Result::ok) {
                     let (a, b, radius) = other.enclosing_capsule();
                     let placed =
-                        PlacedBody { axis: &[a.into(), b.into()], radius, solid: Some((&other, Frame::IDENTITY)) };
+                        PosedBody { axis: &[a.into(), b.into()], radius, solid: Some((&other, Frame::IDENTITY)) };
                     let found = placed.distance_to(body, f64::INFINITY);
                     assert!(found <= 0.0, "{}: {found:e} from {}", what(), other.name());
                 }

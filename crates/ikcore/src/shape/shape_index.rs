@@ -21,7 +21,8 @@ const FEW: usize = 24;
 
 impl ShapeIndex {
     /// Builds the index; `None` for few shapes.
-    pub fn of_many(shapes: &[Shape]) -> Option<Self> {
+    pub fn of_many<'a>(shapes: impl Iterator<Item = &'a Shape>) -> Option<Self> {
+        let shapes: Vec<&Shape> = shapes.collect();
         let (bounded, unbounded): (Vec<usize>, Vec<usize>) =
             (0..shapes.len()).partition(|i| shapes[*i].bounding_ball().radius.is_finite() && !shapes[*i].is_huge());
         if bounded.len() < FEW {

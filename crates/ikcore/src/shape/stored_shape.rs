@@ -25,15 +25,13 @@ enum StoredShape {
 
 impl Serialize for Shape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        (StoredShape::from(self), self.touch()).serialize(serializer)
+        StoredShape::from(self).serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Shape {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (stored, touch): (StoredShape, Vec<String>) = Deserialize::deserialize(deserializer)?;
-        let shape = Self::try_from(stored).map_err(serde::de::Error::custom)?;
-        Ok(shape.with_touch(touch))
+        Self::try_from(StoredShape::deserialize(deserializer)?).map_err(serde::de::Error::custom)
     }
 }
 

@@ -5,7 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Defines the statuses: variant and number, name in Python, meaning.
+use crate::message::{Message, Setting, message};
+
+/// Defines the statuses: variant and number, name, meaning.
 macro_rules! statuses {
     ($($variant:ident = $number:literal, $name:literal: $meaning:literal;)+) => {
         /// Status of a solve, an item of a batch or a step of a track at its end.
@@ -19,7 +21,7 @@ macro_rules! statuses {
             /// All statuses in the order of their numbers.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
-            /// Name in Python.
+            /// Name of the status.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)+
@@ -39,7 +41,7 @@ macro_rules! statuses {
 statuses! {
     Solved = 0, "SOLVED": "Within the tolerances.";
     Improved = 1, "IMPROVED":
-        "A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached `value_below`.";
+        "A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached the value asked for.";
     Capped = 2, "CAPPED":
         "A step of a track that is neither within the tolerance nor nearer than the step before; the best configuration found is kept.";
     Stalled = 3, "STALLED": "The solver's own rule ended the search: no further progress from here.";
@@ -65,21 +67,21 @@ statuses! {
 
 impl Status {
     /// Advice on the next attempt, as the end of a sentence; empty for success.
-    pub fn advice(self) -> &'static str {
-        match self {
+    pub fn advice(self) -> Message {
+        Message::from(match self {
             Self::Solved | Self::Improved => "",
             Self::Capped => {
                 "allow more ticks, wider limits, a wider tolerance or more solver passes, or move the target into reach"
             }
             Self::Stalled => "try another start or seed, or MultiStart; the target may be out of reach",
-            Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
+            Self::BudgetSpent => return message!["raise the ", Setting::Budget, "; the target may be out of reach"],
             Self::TimeUp => "raise max_time",
             Self::Interrupted => "run again to finish",
             Self::Lost => {
                 "slow the path down, widen the limits, start elsewhere (another start or seed), or move the path into reach"
             }
             Self::OutOfReach => "move or turn the target into reach, or move the base",
-            Self::Invalid => "use on_invalid=\"raise\" to see what is wrong",
+            Self::Invalid => return message![Setting::RaiseInvalid, " to see what is wrong"],
             Self::PlantFailed => "fix the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::InCollision => "move the target or what is in the way, or lower the margin",
@@ -88,6 +90,6 @@ impl Status {
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"
             }
-        }
+        })
     }
 }

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use super::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
-use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::kernels::Kernels;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -141,10 +141,10 @@ impl StartIndex {
         nearest_by_lane(&self.rows, width, blocks, &distance)
     }
 
-    /// Returns entries whose point at `reach` (m) along the z axis of their frame is near `place`, nearest first.
-    pub(super) fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
+    /// Returns entries whose point at `reach` (m) along the z axis of their frame is near `position`, nearest first.
+    pub(super) fn near_point(&self, position: [f64; 3], reach: f64) -> [usize; LANES] {
         let distance = ToPoint {
-            place: place.map(|v| v as f32),
+            position: position.map(|v| v as f32),
             reach: (reach / AXIS_WEIGHT) as f32,
             azimuth_free: self.first.is_some(),
         };
@@ -203,10 +203,10 @@ impl Distance for ToFrame<'_> {
     }
 }
 
-/// Distance from `place` to the point at `reach` along the weighted z axis, minimised over the azimuth if the azimuth is
+/// Distance from `position` to the point at `reach` along the weighted z axis, minimised over the azimuth if the azimuth is
 /// free.
 struct ToPoint {
-    place: [f32; 3],
+    position: [f32; 3],
     reach: f32,
     azimuth_free: bool,
 }
@@ -214,7 +214,7 @@ struct ToPoint {
 impl Distance for ToPoint {
     #[inline(always)]
     fn of(&self, block: &[LaneRow]) -> LaneRow {
-        let [x, y, z] = self.place;
+        let [x, y, z] = self.position;
         let mut squared = [0.0; LANES];
         if self.azimuth_free {
             // Stored positions have y = 0.
@@ -228,7 +228,7 @@ impl Distance for ToPoint {
             }
             return squared;
         }
-        for (k, coordinate) in self.place.iter().enumerate() {
+        for (k, coordinate) in self.position.iter().enumerate() {
             let (origin, axis) = (&block[k], &block[3 + k]);
             for (i, squared) in squared.iter_mut().enumerate() {
                 let missed = origin[i] + self.reach * axis[i] - coordinate;
@@ -240,8 +240,8 @@ impl Distance for ToPoint {
 }
 
 impl Turn {
-    fn of_stage(motions: &[StageMotion], stage: usize) -> Option<Self> {
-        let StageMotion { joint, turn_scale: scale, .. } = motions[stage];
+    fn of_stage(motions: &[Transmission], stage: usize) -> Option<Self> {
+        let Transmission { joint, turn_scale: scale, .. } = motions[stage];
         let alone = motions.iter().filter(|motion| motion.joint == joint).count() == 1;
         (alone && scale != 0.0).then_some(Self { joint, scale })
     }

@@ -23,8 +23,8 @@ pub struct Starts<'a> {
 enum Wanted {
     /// Frame of the last joint.
     Frame(Frame),
-    /// Position `place` of the tip; `tip` is the tip in the frame of the last joint.
-    Point { place: [f64; 3], tip: [f64; 3] },
+    /// Position of the tip; `tip` is the tip in the frame of the last joint.
+    Point { position: [f64; 3], tip: [f64; 3] },
 }
 
 impl StartIndex {
@@ -36,9 +36,9 @@ impl StartIndex {
 
     /// Returns starts for `position` (m) of the tip of `chain`. Ignores the offset of the tip from the last axis.
     pub(crate) fn near_position(&self, chain: &Chain, position: &[f64; 3]) -> Starts<'_> {
-        let place = chain.stages.frame(0).inverse().place::<NoFma>(position);
+        let position = chain.stages.frame(0).inverse().transform::<NoFma>(position);
         let tip = chain.tip.origin;
-        self.starts(Wanted::Point { place, tip }, self.near_point(place, tip[2]))
+        self.starts(Wanted::Point { position, tip }, self.near_point(position, tip[2]))
     }
 
     fn starts(&self, wanted: Wanted, entries: [usize; LANES]) -> Starts<'_> {
@@ -77,7 +77,7 @@ impl Starts<'_> {
     /// Returns sine and cosine of the rotation about the base's z axis that brings `frame` nearest to the target.
     fn turn_of_first(&self, frame: &Frame) -> (f64, f64) {
         match &self.wanted {
-            Wanted::Point { place, tip } => turn_between(&[(1.0, frame.place::<NoFma>(tip), *place)]),
+            Wanted::Point { position, tip } => turn_between(&[(1.0, frame.transform::<NoFma>(tip), *position)]),
             Wanted::Frame(wanted) => {
                 let z = AXIS_WEIGHT * AXIS_WEIGHT;
                 let x = if self.index.last.is_some() { 0.0 } else { z };

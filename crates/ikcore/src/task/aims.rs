@@ -152,7 +152,7 @@ impl<'a> Aims<'a> {
                     "the targets of '{from}' and '{of}' contradict that of ('{from}', '{of}'), from which they are {} away: leave one out",
                     TipError::from(error)
                 );
-                return Err(Error::Contradiction { problem });
+                return Err(Error::Contradiction { problem: problem.into() });
             }
         }
         Ok(())

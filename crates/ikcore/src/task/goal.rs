@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
+use crate::message::{Setting, message};
 use crate::objective::{Bounds, Point};
 use crate::obstacle::ClearSpace;
 use crate::robot::Robot;
@@ -107,9 +108,7 @@ impl Goal {
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
             Self::Clearance { .. } if !among_obstacles => Err(Error::Contradiction {
-                problem: "the goal Clearance is for calls with obstacles= (a list, which may be empty) or \
-                          self_collision=True"
-                    .into(),
+                problem: message!["the goal Clearance is for calls with ", Setting::Surroundings],
             }),
             // The gradient assumes that each axis is carried along by the joints before it, unlike the axes of a rotation
             // vector.
@@ -118,7 +117,9 @@ impl Goal {
                 Err(Error::Contradiction { problem: problem.into() })
             }
             Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
-            Self::Manipulability { tip: None, .. } => robot.require_one_tip("the goal Manipulability without tip="),
+            Self::Manipulability { tip: None, .. } => {
+                robot.require_one_tip(message!["the goal Manipulability without ", Setting::Tip])
+            }
             Self::LinkManipulability { .. } => robot.require_one_tip("the goal LinkManipulability"),
             _ => Ok(()),
         }

@@ -41,7 +41,7 @@ impl TargetMotion {
             (Some(begin), Some(end)) => rotation_between(begin, end),
             _ => [0.0; 3],
         };
-        let target = self.begin.placed(position, turn.map(|entry| fraction * entry));
+        let target = self.begin.turned_at(position, turn.map(|entry| fraction * entry));
         (target, Twist { linear, angular: turn.map(|entry| entry / self.dt) })
     }
 }
@@ -51,17 +51,17 @@ impl Target {
     pub fn moved(&self, twist: &Twist, time: f64) -> Self {
         let position = self.position().unwrap_or_default();
         let there = std::array::from_fn(|k| position[k] + time * twist.linear[k]);
-        self.placed(there, twist.angular.map(|entry| time * entry))
+        self.turned_at(there, twist.angular.map(|entry| time * entry))
     }
 
     /// Target moved to `origin` (m) and rotated by the rotation vector `turn` (rad).
-    fn placed(&self, origin: [f64; 3], turn: [f64; 3]) -> Self {
-        let placed = |frame: &Frame| Frame { axes: frame.axes.map(|axis| rotated(&axis, &turn)), origin };
+    fn turned_at(&self, origin: [f64; 3], turn: [f64; 3]) -> Self {
+        let turned = |frame: &Frame| Frame { axes: frame.axes.map(|axis| rotated(&axis, &turn)), origin };
         match self {
             Self::Position(_) => Self::Position(origin),
-            Self::Pose(frame) => Self::Pose(placed(frame)),
-            Self::Orientation(frame) => Self::Orientation(placed(frame)),
-            Self::Pointing { frame, axis } => Self::Pointing { frame: placed(frame), axis: *axis },
+            Self::Pose(frame) => Self::Pose(turned(frame)),
+            Self::Orientation(frame) => Self::Orientation(turned(frame)),
+            Self::Pointing { frame, axis } => Self::Pointing { frame: turned(frame), axis: *axis },
         }
     }
 }

@@ -43,7 +43,7 @@ pub struct Task {
 }
 
 impl TaskKind {
-    /// Name in Python.
+    /// Name of the kind.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pose => "Pose",
@@ -92,7 +92,7 @@ impl TaskKind {
             };
             let expected = format!("{} entries ({meaning})", rows.len());
             let what = format!("{what} of task {}", self.name());
-            return Err(Error::WrongLength { what, expected, got: entries.len() });
+            return Err(Error::WrongLength { what: what.into(), expected, got: entries.len() });
         }
         let mut all = [rest; ROWS];
         for (rows, entry) in rows.iter().zip(entries) {

@@ -25,7 +25,7 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
     if (3..=MAX_GRIDPOINTS).contains(&gridpoints) {
         return Ok(());
     }
-    Err(Error::out_of_range("gridpoints", &format!("from 3 to {MAX_GRIDPOINTS}"), gridpoints as f64))
+    Err(Error::out_of_range("gridpoints", format!("from 3 to {MAX_GRIDPOINTS}"), gridpoints as f64))
 }
 
 /// Maximum number of times that a segment is halved where the motion starts or ends at rest: at full acceleration the

@@ -6,6 +6,7 @@ use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
 use crate::math::sampling_range;
+use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
 
@@ -34,11 +35,12 @@ impl MotionLimits {
     /// # Errors
     /// [`Error::UnsupportedLimit`] for limits that vary over time, [`Error::OutOfRange`] for a velocity, acceleration or
     /// jerk limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
-    pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
+    pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: impl Into<Message>) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         limits.validate(0.0, 0)?;
-        let constants = |field: Field| limits.constants(field, method, "give numbers");
+        let method = method.into();
+        let constants = |field: Field| limits.constants(field, &method, "give numbers");
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
         let or_unlimited = |mut values: Vec<f64>| {
             values.resize(robot.dof(), f64::INFINITY);
@@ -65,11 +67,11 @@ impl MotionLimits {
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
-    pub(crate) fn refuse_jerk(&self, method: &str) -> Result<()> {
+    pub(crate) fn refuse_jerk(&self, method: impl Into<Message>) -> Result<()> {
         if !self.limit_jerk() {
             return Ok(());
         }
-        let remedy = "leave them out, and add them with plan.retime(limits)".into();
+        let remedy = message!["leave them out, and add them with ", Setting::Retime];
         Err(Error::UnsupportedLimit { field: "jerk".into(), method: method.into(), remedy })
     }
 
@@ -141,13 +143,13 @@ impl MotionLimits {
     ///
     /// # Errors
     /// [`Error::OutOfRange`].
-    pub(crate) fn require_velocities(&self, method: &str) -> Result<()> {
+    pub(crate) fn require_velocities(&self, method: impl Into<Message>) -> Result<()> {
         match self.velocity.iter().position(|limit| limit.is_infinite()) {
             None => Ok(()),
             Some(j) => {
                 let what = format!("velocity limit of joint '{}'", self.joint_name(j));
-                let requirement = format!("finite for {method}: give limits=Limits(velocity=...)");
-                Err(Error::out_of_range(what, &requirement, self.velocity[j]))
+                let requirement = message!["finite for ", method, ": give ", Setting::Limit("velocity")];
+                Err(Error::out_of_range(what, requirement, self.velocity[j]))
             }
         }
     }

@@ -172,5 +172,7 @@ impl Coupling {
 }
 
 fn too_fast(end: &str) -> Error {
-    Error::Infeasible { problem: format!("the speed at the {end} of the path is beyond what the limits allow there") }
+    Error::Infeasible {
+        problem: format!("the speed at the {end} of the path is beyond what the limits allow there").into(),
+    }
 }

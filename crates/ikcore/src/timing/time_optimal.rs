@@ -107,5 +107,5 @@ fn end_range(path: &JointPath, speed: f64, end: PathEnd) -> Result<Range> {
     }
     let problem =
         format!("{name}_speed is {speed}, but the path has no direction at its {name}: give the spline other ends");
-    Err(Error::Infeasible { problem })
+    Err(Error::Infeasible { problem: problem.into() })
 }

@@ -3,6 +3,7 @@
 use super::motion_limits::MotionLimits;
 use super::within_limits::within_limits;
 use crate::error::{Error, Result};
+use crate::message::{Setting, message};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
@@ -24,7 +25,7 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &MotionLimits) -> Result<Traje
         .max(largest(motion.max_acceleration(), &limits.acceleration).sqrt())
         .max(largest(motion.max_jerk(), &limits.jerk).cbrt());
     if factor == 0.0 {
-        return Err(Error::NoPace { joint: limits.joint_name(0).into() });
+        return Err(Error::no_pace(limits.joint_name(0)));
     }
     within_limits(motion.slowed(factor * CAUTION)?, [&limits.velocity, &limits.acceleration, &limits.jerk])
 }
@@ -45,10 +46,10 @@ fn refuse_jumps(motion: &Trajectory, limits: &MotionLimits) -> Result<()> {
         if let Some(j) = limited.filter(|j| largest[*j] > 0.0).find(jump) {
             let (joint, t) = (limits.joint_name(j), time(t));
             let (from, to) = (number(before[j]), number(after[j]));
-            let problem = format!(
-                "the acceleration of joint '{joint}' jumps from {from} to {to} at t = {t} s, which no jerk limit allows: \
-                 plan with limits=Limits(jerk=...) instead"
+            let jump = format!(
+                "the acceleration of joint '{joint}' jumps from {from} to {to} at t = {t} s, which no jerk limit allows: plan with "
             );
+            let problem = message![jump, Setting::Limit("jerk"), " instead"];
             return Err(Error::Infeasible { problem });
         }
         std::mem::swap(&mut before, &mut at_end);

@@ -3,6 +3,7 @@
 use super::joint_path::JointPath;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
+use crate::message::Message;
 
 /// Excess over a position limit that counts as rounding (rad or m, relative beyond 1).
 const ROUNDING: f64 = 1e-9;
@@ -26,20 +27,22 @@ impl TimingLimits {
     /// # Errors
     /// [`Error::UnsupportedLimit`] for limits that vary over time and for joints without an acceleration limit;
     /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
-    pub fn new(limits: &Limits, method: &str) -> Result<Self> {
+    pub fn new(limits: &Limits, method: impl Into<Message>) -> Result<Self> {
         limits.validate(0.0, 0)?;
+        let method = method.into();
         let remedy = "when a point of the path is passed is what it looks for; give numbers";
-        let constants = |field: Field| limits.constants(field, method, remedy);
+        let constants = |field: Field| limits.constants(field, &method, remedy);
         let acceleration = constants(Field::Acceleration)?;
         let unlimited = acceleration.iter().position(|limit| *limit == f64::INFINITY);
         if let Some(joint) = if acceleration.is_empty() { Some(0) } else { unlimited } {
             return Err(Error::UnsupportedLimit {
                 field: "infinite acceleration".into(),
-                method: method.into(),
+                method,
                 remedy: format!(
                     "joint '{}' could start at any speed; give acceleration limits",
                     limits.joint_name(joint)
-                ),
+                )
+                .into(),
             });
         }
         let jerk = constants(Field::Jerk)?;
@@ -72,7 +75,7 @@ impl TimingLimits {
                 if excess > ROUNDING * bound.abs().max(1.0) {
                     let problem =
                         format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
-                    return Err(Error::Infeasible { problem });
+                    return Err(Error::Infeasible { problem: problem.into() });
                 }
             }
             let fields = [
@@ -83,7 +86,7 @@ impl TimingLimits {
             for (field, limits) in fields {
                 if limits.is_some_and(|limits| limits[j] == 0.0) && highest > lowest {
                     let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
-                    return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0") });
+                    return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0").into() });
                 }
             }
         }

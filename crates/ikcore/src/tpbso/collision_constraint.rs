@@ -1,32 +1,16 @@
-//! Collisions of a motion: tested at samples during the search, certified for the plan.
+//! Collisions of a motion, tested at samples during the search.
 
-use crate::error::Result;
-use crate::obstacle::{ClearanceSweep, NearestContact, Scene, kept_margin};
-use crate::plan::{
-    PlanarArm, PointToPointOptions, TimedMotion, collision_checks, nearest_at, refuse_collision, too_near,
-};
+use crate::obstacle::{ClearSpace, Obstacle};
+use crate::plan::PlanarArm;
 use crate::robot::Robot;
-use crate::shape::{Geometry, Shape};
-use crate::timing::Violation;
-use crate::trajectory::Trajectory;
+use crate::shape::Geometry;
 
 /// Obstacles and links that a motion must stay clear of.
 #[derive(Debug, Clone)]
 pub(super) struct CollisionTest<'a> {
-    scene: Scene<'a>,
-    margin: f64,
+    space: &'a ClearSpace<'a>,
     /// For a planar arm of lines among ellipses: the exact test of section 4, several times faster than distances.
     flat: Option<(PlanarArm, Vec<UnitDisc>)>,
-}
-
-/// How near a motion comes to anything.
-pub(super) struct Clearance {
-    /// The smallest distance (m).
-    pub distance: f64,
-    /// The two bodies there.
-    pub nearest: Option<NearestContact>,
-    /// The violation, if it is below the margin.
-    pub violation: Option<Violation>,
 }
 
 /// An ellipse, given by the map onto the unit disc.
@@ -43,36 +27,22 @@ struct UnitDisc {
 const ALLOWANCE: f64 = 0.005;
 
 impl<'a> CollisionTest<'a> {
-    /// The constraint of the planner's `options` for `robot`, or for its `lines` if it has no shape.
-    ///
-    /// # Errors
-    /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
-    pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
-        let margin = kept_margin(options.margin)?;
-        let scene = collision_checks::scene(robot, lines, options)?;
-        let flat = lines.and_then(|lines| {
-            let arm = PlanarArm::of(lines)?;
-            let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();
-            let discs: Option<Vec<_>> = options.obstacles.iter().map(|obstacle| UnitDisc::of(obstacle, kept)).collect();
+    /// The constraint of staying in `space`.
+    pub(super) fn new(space: &'a ClearSpace<'a>, robot: &Robot) -> Self {
+        let arm = if robot.capsules().is_empty() { PlanarArm::of(space.robot()) } else { None };
+        let flat = arm.and_then(|arm| {
+            let kept = space.margin() + ALLOWANCE * arm.lengths().iter().sum::<f64>();
+            let discs: Option<Vec<_>> = space.obstacles().iter().map(|obstacle| UnitDisc::of(obstacle, kept)).collect();
             Some((arm, discs?))
         });
-        Ok(Self { scene, margin, flat })
-    }
-
-    /// Checks that a configuration keeps the margin; `what` names it in the error.
-    ///
-    /// # Errors
-    /// [`Error::InCollision`](crate::Error::InCollision).
-    pub(super) fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
-        refuse_collision(what, &self.scene, q, self.margin)
+        Self { space, flat }
     }
 
     /// Number of contacts between links and ellipses at `q`; for other shapes 1 if there is any contact: g_3 of eq.
     /// (15) at one instant.
     pub(super) fn touching(&self, q: &[f64]) -> f64 {
         let Some((arm, discs)) = &self.flat else {
-            return if self.scene.is_clear(q, self.margin) { 0.0 } else { 1.0 };
+            return if self.space.holds(q) { 0.0 } else { 1.0 };
         };
         let mut corners = arm.corners(q);
         let mut from = corners.next().unwrap_or_default();
@@ -83,25 +53,12 @@ impl<'a> CollisionTest<'a> {
         }
         touching
     }
-
-    /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
-    /// `None` if nothing can touch.
-    pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<Clearance> {
-        let near =
-            ClearanceSweep::new(&self.scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])?;
-        let distance = near.contact.distance;
-        Some(Clearance {
-            distance,
-            nearest: nearest_at(&self.scene, trajectory, near.at).ok().flatten(),
-            violation: (distance < self.margin).then(|| too_near(&near.contact, self.margin)),
-        })
-    }
 }
 
 impl UnitDisc {
     /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape, or one that some links may touch.
-    fn of(obstacle: &Shape, kept: f64) -> Option<Self> {
-        match *obstacle.geometry() {
+    fn of(obstacle: &Obstacle, kept: f64) -> Option<Self> {
+        match *obstacle.shape.geometry() {
             Geometry::Ellipse { center, semi_axes, angle } if obstacle.touch().is_empty() => {
                 let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
                 Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })

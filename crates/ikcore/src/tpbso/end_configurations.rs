@@ -63,7 +63,7 @@ impl EndConfigurations {
         };
         if let Some((arm, place)) = planar(robot, target) {
             if let Some(problem) = arm.problem(&place) {
-                return Err(Error::Unreachable { what: what.into(), problem });
+                return Err(Error::Unreachable { what: what.into(), problem: problem.into() });
             }
             return Ok(Self::Planar { arm, place, elbow });
         }
@@ -154,7 +154,7 @@ fn solutions(
     match nearest {
         Some(missed) if found.is_empty() => {
             let problem = format!("the nearest that the tip came is {} away", missed.error);
-            Err(Error::Unreachable { what: what.into(), problem })
+            Err(Error::Unreachable { what: what.into(), problem: problem.into() })
         }
         _ => Ok(chained(found)),
     }

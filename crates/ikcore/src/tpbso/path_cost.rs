@@ -258,7 +258,7 @@ impl<'a> PathCost<'a> {
         let q = &mut q[..self.robot.dof()];
         q.iter_mut().enumerate().for_each(|(j, q)| *q = self.piece(j, knot).at(since));
         let tip = self.robot.tip_position(q);
-        let [x, y] = self.redundancy.place(i).position;
+        let [x, y] = self.redundancy.target(i).position;
         (tip[0] - x).hypot(tip[1] - y)
     }
 }

@@ -5,6 +5,7 @@ use super::published_settings::{METHOD, no_configuration, search};
 use super::redundancy::Redundancy;
 use crate::along_path::{TipPath, refuse_repetition};
 use crate::error::{Error, Result, require_positive};
+use crate::message::{Setting, message};
 use crate::plan::{AlongPathOptions, Plan, PlanarArm, Tpbso};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
@@ -56,6 +57,6 @@ pub(crate) fn along_path(
 const ACCURACY: f64 = 0.04;
 
 fn not_planar(robot: &Robot) -> Error {
-    let problem = format!("{METHOD} plans along paths for planar arms alone: use method=\"timed\"");
+    let problem = message![METHOD, " plans along paths for planar arms alone: use ", Setting::Method("timed")];
     Error::InvalidRobot { robot: robot.name().into(), problem }
 }

@@ -1,11 +1,12 @@
 //! Settings and messages shared by both planners.
 
 use crate::error::Error;
+use crate::message::{Setting, message};
 use crate::plan::Search;
 use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Schedule, Stop};
 
 /// Name of the method in messages.
-pub(super) const METHOD: &str = "method=\"tpbso\"";
+pub(super) const METHOD: Setting = Setting::Method("tpbso");
 
 /// The search for a decision vector: as published, except for the given arguments.
 pub(super) fn search(solver: Option<&AnySolver<DerivativeFree>>, stop: Option<Stop>, seed: u64) -> Search {
@@ -32,6 +33,6 @@ fn published_budget() -> Stop {
 /// The error of a search that found no vector with a configuration: its budget was too small, or the free links rarely
 /// leave a solution to the other two.
 pub(super) fn no_configuration(what: &str) -> Error {
-    let problem = "the search met no configuration that reaches it: raise the budget in stop=Stop(...)".into();
+    let problem = message!["the search met no configuration that reaches it: raise the ", Setting::Budget];
     Error::Unreachable { what: what.into(), problem }
 }

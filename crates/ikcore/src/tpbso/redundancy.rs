@@ -19,7 +19,7 @@ pub(super) const NODES: usize = 5;
 pub(super) struct Redundancy {
     arm: PlanarArm,
     elbow: Elbow,
-    places: Vec<PlanarTarget>,
+    targets: Vec<PlanarTarget>,
     nodes: CubicSpline,
 }
 
@@ -31,23 +31,23 @@ impl Redundancy {
     /// links.
     pub(super) fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
         let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
-        let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
-        Ok(Self { arm, elbow, places, nodes })
+        let targets = (0..path.len()).map(|i| planar_target(&arm, path, i)).collect::<Result<Vec<_>>>()?;
+        Ok(Self { arm, elbow, targets, nodes })
     }
 
     /// The target of the tip at point `i` of the path.
-    pub(super) fn place(&self, i: usize) -> &PlanarTarget {
-        &self.places[i]
+    pub(super) fn target(&self, i: usize) -> &PlanarTarget {
+        &self.targets[i]
     }
 
     /// Number of points of the path.
     pub(super) fn points(&self) -> usize {
-        self.places.len()
+        self.targets.len()
     }
 
     /// Number of orientations that are free.
     pub(super) fn links(&self) -> usize {
-        self.arm.dof() - ELBOW_LINKS - usize::from(self.places[0].orientation.is_some())
+        self.arm.dof() - ELBOW_LINKS - usize::from(self.targets[0].orientation.is_some())
     }
 
     /// Writes the joint angles at point `i`, wrapped; returns the free orientations. `x` holds [`NODES`] values per
@@ -62,7 +62,7 @@ impl Redundancy {
         curvatures: &[f64],
         q: &mut [f64],
     ) -> Result<Orientations, f64> {
-        let PlanarTarget { mut position, orientation } = self.places[i];
+        let PlanarTarget { mut position, orientation } = self.targets[i];
         let mut link = self.arm.dof() - 1;
         let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
         if let Some(given) = orientation {
@@ -71,7 +71,7 @@ impl Redundancy {
             link -= 1;
         }
         let mut free = Orientations::new();
-        let u = i as f64 / (self.places.len() - 1) as f64;
+        let u = i as f64 / (self.targets.len() - 1) as f64;
         for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact(NODES)) {
             // Clamped: between its nodes the spline may leave [0, 1].
             let fraction = self.nodes.at(u, values, curvatures).clamp(0.0, 1.0);
@@ -83,7 +83,7 @@ impl Redundancy {
             link -= 1;
         }
         absolute.reverse();
-        self.arm.solve(self.places[i].position, &absolute, self.elbow, q)?;
+        self.arm.solve(self.targets[i].position, &absolute, self.elbow, q)?;
         Ok(free)
     }
 
@@ -93,7 +93,7 @@ impl Redundancy {
     /// # Errors
     /// [`Error::InvalidPath`] if the tip is elsewhere at `q`.
     pub(super) fn fractions_of(&self, q: &[f64]) -> Result<Vec<f64>> {
-        let PlanarTarget { mut position, orientation } = self.places[0];
+        let PlanarTarget { mut position, orientation } = self.targets[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
         let absolute = self.arm.orientations(q);
         let mut link = self.arm.dof() - 1;
@@ -136,20 +136,21 @@ const START_TOLERANCE: f64 = 1e-6;
 /// Replaces the cosine if the triangle does not exist.
 const OUT_OF_REACH: f64 = 2.0;
 
-fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
+fn planar_target(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
     let target = match path.pose(i) {
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),
     };
-    let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
+    let unreachable =
+        |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem: problem.into() };
     let beside = || unreachable("it lies beside the plane that the arm moves in".into());
-    let place = arm.planar_target(&target).ok_or_else(beside)?;
-    let held = usize::from(place.orientation.is_some());
+    let planar = arm.planar_target(&target).ok_or_else(beside)?;
+    let held = usize::from(planar.orientation.is_some());
     if arm.dof() < ELBOW_LINKS + held {
         return Err(unreachable("an arm of two links cannot choose its orientation".into()));
     }
-    match arm.problem(&place) {
-        None => Ok(place),
+    match arm.problem(&planar) {
+        None => Ok(planar),
         Some(problem) => Err(unreachable(problem)),
     }
 }

@@ -1,11 +1,12 @@
 //! The point-to-point planner.
 
-use super::collision_constraint::{Clearance, CollisionTest};
+use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
 use super::published_settings::{METHOD, no_configuration, search};
 use super::via_point_cost::ViaPointCost;
 use crate::error::Result;
-use crate::plan::{Elbow, Endpoint, Plan, PointToPointOptions, Tpbso, as_lines, can_collide};
+use crate::obstacle::{ClearSpace, ClearanceSweep};
+use crate::plan::{Elbow, Endpoint, Plan, PointToPointOptions, Tpbso, least_clearance, refuse_collision, too_near};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::timing::MotionLimits;
@@ -14,20 +15,18 @@ use crate::timing::MotionLimits;
 pub(crate) fn point_to_point(
     robot: &Robot,
     [start, end]: [&Endpoint; 2],
-    tpbso: &Tpbso,
-    options: &PointToPointOptions,
+    space: Option<&ClearSpace<'_>>,
+    (tpbso, options): (&Tpbso, &PointToPointOptions),
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
-    let can_collide = can_collide(robot, options);
-    let lines = if can_collide { as_lines(robot, options)? } else { None };
-    let collisions = can_collide.then(|| CollisionTest::new(robot, lines.as_ref(), options)).transpose()?;
+    let collisions = space.map(|space| CollisionTest::new(space, robot));
     let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {
-        if let (Endpoint::Configuration(q), Some(collisions)) = (end, &collisions) {
-            collisions.refuse_collision(what, q)?;
+        if let (Endpoint::Configuration(q), Some(space)) = (end, space) {
+            refuse_collision(what, space, q)?;
         }
         EndConfigurations::new(what, end, robot, &limits, elbow, options.seed, monitor)
     };
@@ -39,17 +38,16 @@ pub(crate) fn point_to_point(
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("start or end")))?;
     let mut violations = limits.violations(&trajectory);
-    let (clearance, nearest) = match collisions.and_then(|collisions| collisions.clearance(&trajectory)) {
-        None => (None, None),
-        Some(Clearance { distance, nearest, violation }) => {
-            violations.extend(violation);
-            (Some(distance), nearest)
-        }
-    };
+    let mut clearance = None;
+    if let Some(space) = space
+        && let Some((least, contact)) = least_clearance(&mut ClearanceSweep::new(space.scene()), &trajectory, None)?
+    {
+        violations.extend((least.distance < space.margin()).then(|| too_near(&contact, space.margin())));
+        clearance = Some(least);
+    }
     let status = found.status(violations.is_empty());
     let cost = options.objective.of(robot, &trajectory);
     Ok(Plan {
-        nearest,
         chosen_end: Some(0),
         history: found.history,
         clearance,

@@ -7,6 +7,7 @@ use super::tip_paths::TipPaths;
 use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
+use crate::message::{Setting, message};
 use crate::motion::{ArmState, meet};
 use crate::objective::Point;
 use crate::robot::Robot;
@@ -37,9 +38,12 @@ impl ApproachMotion {
     ) -> Result<Option<Self>> {
         let limits = options.limits_for(robot);
         if ![Field::Acceleration, Field::Jerk].into_iter().any(|field| limits.is_finite(field)) {
-            let problem = "ease=True eases the start under acceleration or jerk limits, and there are none: give \
-                           limits=Limits(acceleration=...)";
-            return Err(Error::Contradiction { problem: problem.into() });
+            let problem = message![
+                Setting::Ease,
+                " is an approach under acceleration or jerk limits, and there are none: give ",
+                Setting::Limit("acceleration"),
+            ];
+            return Err(Error::Contradiction { problem });
         }
         let dt = asked.paths[0].dt();
         let mut session = Session::new(robot, start, dt, &without_rates(&limits, options)?)?;

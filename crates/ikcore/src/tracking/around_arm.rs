@@ -45,7 +45,7 @@ const PACE: f64 = 0.1;
 
 /// Velocities of the obstacles between two updates of their poses.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct ObstacleMotion {
+pub(super) struct ObstacleVelocities {
     /// Velocity of each obstacle (m/s); empty if all are at rest.
     pub velocities: Vec<[f64; 3]>,
     speeds: Vec<f64>,
@@ -55,7 +55,7 @@ pub(super) struct ObstacleMotion {
 #[derive(Debug)]
 pub(super) struct Around {
     pub space: Arc<ClearSpace<'static>>,
-    pub obstacles: ObstacleMotion,
+    pub obstacles: ObstacleVelocities,
     /// Time since the last update of the obstacles (s).
     pub since: f64,
     /// Near pairs at the rest configuration if the arm brakes now.
@@ -67,7 +67,7 @@ pub(super) struct Around {
     check: MotionCertificate,
 }
 
-impl ObstacleMotion {
+impl ObstacleVelocities {
     /// Velocities (m/s) of `count` obstacles; empty means that all are at rest.
     ///
     /// # Errors
@@ -94,18 +94,19 @@ impl Around {
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
     /// obstacle.
-    pub fn new(space: ClearSpace<'static>, obstacles: ObstacleMotion, limits: &Limits) -> Result<Self> {
+    pub fn new(space: ClearSpace<'static>, obstacles: ObstacleVelocities, limits: &Limits) -> Result<Self> {
         for field in [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk] {
-            let remedy = "limits that vary can carry the arm into an obstacle; give numbers, or leave obstacles= out";
+            let remedy =
+                "limits that vary can carry the arm into an obstacle; give numbers, or leave the obstacles out";
             if limits.field(field).is_some() {
                 limits.constants(field, "tracking among obstacles", remedy)?;
             }
         }
         Ok(Self {
-            near: space.near_rows(),
-            after: space.near_rows(),
-            coming: space.coming_rows(),
-            check: space.motion_certificate(),
+            near: NearRows::new(space.scene()),
+            after: NearRows::new(space.scene()),
+            coming: ComingRows::new(space.scene()),
+            check: MotionCertificate::new(space.scene()),
             space: Arc::new(space),
             obstacles,
             since: 0.0,
@@ -126,7 +127,7 @@ impl Around {
         let reach: f64 = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).sum();
         let far = self.obstacles.fastest() * (self.since + WARNING);
         let up_to = self.space.margin() + reach.clamp(NEAR[0], NEAR[1]) + 2.0 * far;
-        self.space.find_rows(rest, up_to, &mut self.near);
+        self.near.find(self.space.scene(), rest, up_to);
         self.find_coming(rest);
     }
 
@@ -140,7 +141,7 @@ impl Around {
         let (velocities, since) = (&self.obstacles.velocities[..], self.since);
         let margin = self.space.margin() + ROOM;
         let coming = Coming { velocities, since, horizon: FORESEEN, margin, pace: GIVING_WAY };
-        self.space.find_coming(q, &coming, &mut self.coming);
+        self.coming.find(self.space.scene(), q, &coming);
     }
 
     /// Whether the obstacle of a pair moves.
@@ -151,6 +152,11 @@ impl Around {
     /// Desired clearance beyond the margin (m).
     fn room(&self, limited: bool) -> f64 {
         if limited && self.obstacles.fastest() > 0.0 { ROOM_TO_START } else { ROOM }
+    }
+
+    /// Intervals that certificates have examined so far.
+    pub fn intervals(&self) -> usize {
+        self.check.intervals()
     }
 
     /// Whether the motion until `end` (ticks) is certified clear.
@@ -164,7 +170,7 @@ impl Around {
             tolerance_band: ROOM,
             only_parts: true,
         };
-        self.space.is_kept_by(motion, end, &kept, &mut self.check)
+        self.check.is_clear(self.space.scene(), motion, end, &kept)
     }
 
     /// Sets the rows of a command that ends in `rest` after `stop_ticks`; overlapping pairs become rows to separate them.
@@ -223,7 +229,7 @@ impl Around {
         rows: &mut Vec<Row>,
     ) {
         let slope = Response::new(context, rest).slope;
-        self.space.find_rows(rest, self.space.margin() + NEAR[0], &mut self.after);
+        self.after.find(self.space.scene(), rest, self.space.margin() + NEAR[0]);
         for near in self.after.rows().iter().filter(|near| near.distance >= 0.0) {
             let [until_rest, _] = self.approach_of(near, context.dt * stop_ticks);
             let least = self.space.margin() + until_rest + LEAST_ROOM - near.distance;
@@ -237,7 +243,7 @@ impl Around {
     /// Sets the rows of a goal configuration at `q`. Returns whether `q` satisfies them.
     pub fn set_goal_rows(&mut self, q: &[f64], rows: &mut Vec<Row>) -> bool {
         let far = self.obstacles.fastest() * (self.since + WARNING);
-        self.space.find_rows(q, self.space.margin() + NEAR[0] + 2.0 * far, &mut self.near);
+        self.near.find(self.space.scene(), q, self.space.margin() + NEAR[0] + 2.0 * far);
         rows.clear();
         for near in self.near.rows() {
             // A goal keeps slightly more clearance than the arm that pursues it; goals are pursued under acceleration limits

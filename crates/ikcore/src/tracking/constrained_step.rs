@@ -83,6 +83,11 @@ impl ConstrainedStep {
         }
     }
 
+    /// Exchanges of constraints so far.
+    pub fn exchanges(&self) -> usize {
+        self.solver.exchanges()
+    }
+
     /// Whether an arm at `q` has to move: to separate overlapping bodies, or to evade moving ones, whose rows are softer.
     pub fn ask_to_move(&self, q: &[f64]) -> bool {
         let gives_way = |row: &Row| row.softness > SOFTNESS && dot(&row.gradient, q) < row.least;

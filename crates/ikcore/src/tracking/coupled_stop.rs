@@ -19,7 +19,7 @@ const REST: f64 = 1e-8;
 #[derive(Debug, Clone, Default)]
 pub(super) struct CoupledStop {
     /// Configurations before and after the command, and at the ends of the ticks of the stop.
-    places: Vec<Point>,
+    configurations: Vec<Point>,
     /// Displacements in the previous tick.
     before: Point,
     /// Largest accelerations (rad, m per tick^2).
@@ -33,13 +33,13 @@ pub(super) struct CoupledStop {
 impl CoupledStop {
     /// Discards the stop.
     pub fn clear(&mut self) {
-        self.places.clear();
+        self.configurations.clear();
         self.passed = 0;
     }
 
     /// Next configuration of a stopping arm.
     pub fn next(&self) -> Option<&Point> {
-        self.places.get(self.passed + 2).or(self.places.last())
+        self.configurations.get(self.passed + 2).or(self.configurations.last())
     }
 
     /// Advances to the next configuration.
@@ -49,18 +49,18 @@ impl CoupledStop {
 
     /// Configuration at rest.
     pub fn rest(&self) -> Option<&Point> {
-        self.places.last()
+        self.configurations.last()
     }
 
     /// Ticks until the arm is at rest, from the end of the command or from the last configuration passed.
     pub fn ticks_to_stop(&self) -> f64 {
-        self.places.len().saturating_sub(2 + self.passed) as f64
+        self.configurations.len().saturating_sub(2 + self.passed) as f64
     }
 
     /// Finds the stop after `command`. Returns whether it holds the pairs within all limits.
     pub fn find(&mut self, context: &StepContext<'_>, command: &[f64], rows: &mut ConstrainedStep) -> bool {
         self.clear();
-        self.places.extend([Point::from_slice(context.q), Point::from_slice(command)]);
+        self.configurations.extend([Point::from_slice(context.q), Point::from_slice(command)]);
         self.limited = context.limited.is_some();
         let Some(limited) = context.limited else { return true };
         self.before.clone_from(&limited.state().step);
@@ -87,7 +87,7 @@ impl CoupledStop {
                 return false;
             }
             state.advance(next.iter().zip(&q).map(|(to, from)| to - from));
-            self.places.push(next.clone());
+            self.configurations.push(next.clone());
             q = next;
         }
         false
@@ -119,14 +119,14 @@ fn braked(context: &StepContext<'_>, state: &JointState, q: &Point) -> Point {
 
 impl JointMotion for CoupledStop {
     fn write(&self, tick: f64, q: &mut [f64]) {
-        let Some(first) = self.places.first() else { return };
+        let Some(first) = self.configurations.first() else { return };
         if tick < 0.0 && self.limited {
             q.iter_mut().zip(first.iter().zip(&self.before)).for_each(|(q, (first, step))| *q = first - step);
             return;
         }
-        let last = self.places.len() - 1;
+        let last = self.configurations.len() - 1;
         let before = (tick.max(0.0).floor() as usize).min(last);
-        let (from, to) = (&self.places[before], &self.places[(before + 1).min(last)]);
+        let (from, to) = (&self.configurations[before], &self.configurations[(before + 1).min(last)]);
         for (q, (from, to)) in q.iter_mut().zip(from.iter().zip(to)) {
             *q = from + tick.fract() * (to - from);
         }

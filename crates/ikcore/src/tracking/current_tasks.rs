@@ -51,7 +51,7 @@ impl CurrentTasks {
         }
         if !asked.is_empty() && robot.tip_count() == 1 {
             let problem = format!("robot '{}' has one tip: give a plain target", robot.name());
-            return Err(Error::Contradiction { problem });
+            return Err(Error::Contradiction { problem: problem.into() });
         }
         if asked == self.asked && !targets.is_empty() {
             return reduce(robot, &self.tasks, targets).map(|()| false);
@@ -69,7 +69,7 @@ fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<CheckedTask>> {
         return Err(Error::Contradiction { problem });
     }
     if tasks.iter().any(|task| task.task.is_some_and(|task| task.region.is_some())) {
-        let problem = "a tracked region is for one tip: leave within= out of the tasks of several".into();
+        let problem = "a tracked region is for one tip: leave it out of the tasks of several".into();
         return Err(Error::Contradiction { problem });
     }
     let weighed = |task: CheckedTask| if task.subject.is_pair() { task.weighing(PAIR_WEIGHT) } else { task };

@@ -75,7 +75,7 @@ impl LimitedMotion {
                 number(qd[j]),
                 number(qdd[j])
             );
-            return Err(Error::Contradiction { problem });
+            return Err(Error::Contradiction { problem: problem.into() });
         }
         self.state = state;
         Ok(())

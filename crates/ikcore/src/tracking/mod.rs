@@ -62,6 +62,7 @@ pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::{Record, TipTable};
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
+pub use safety_filter::FilterWork;
 pub use session::Session;
 pub use step::Step;
 pub use target_filter::{LowPass, OneEuro, TargetFilter};

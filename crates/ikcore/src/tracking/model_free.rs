@@ -10,6 +10,7 @@ use super::step::Step;
 use super::tip_pose::TipPose;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
+use crate::message::{Message, message};
 use crate::path::Reference;
 use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
@@ -165,11 +166,11 @@ impl ModelFreeRecord {
     }
 
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         if let Some(Fault(reason)) = &self.fault {
             let rows = self.track.rows();
             let when = time(rows as f64 * self.track.dt());
-            return format!("the plant {reason} at t = {when} s; the {rows} rows before are recorded");
+            return format!("the plant {reason} at t = {when} s; the {rows} rows before are recorded").into();
         }
         let typical = TipError { position: self.settled_error(), rotation: settled(&self.track.rotation_error) };
         match (self.track.status, self.sensor_delay) {
@@ -180,16 +181,18 @@ impl ModelFreeRecord {
                     1 => "1 measurement late".into(),
                     _ => format!("{delay} measurements late"),
                 };
-                let advice = format!("the sensor is {late}; give the controller sensor_delay={delay}");
-                let message = self.track.message_with(&advice);
-                format!("{message}. Over the second half the error was {typical} (root mean square)")
+                let advice = format!("the sensor is {late}; give the controller a sensor_delay of {delay}");
+                let over = format!(". Over the second half the error was {typical} (root mean square)");
+                message![self.track.message_with(advice), over]
             }
-            _ => format!(
-                "{}. Over the second half the error was {typical} (root mean square): a position_tolerance below what the \
-                 sensor and the controller can keep is never met; if the sensor is late, give the controller its \
-                 sensor_delay",
-                self.track.message(),
-            ),
+            _ => {
+                let over = format!(
+                    ". Over the second half the error was {typical} (root mean square): a position_tolerance below what the \
+                     sensor and the controller can keep is never met; if the sensor is late, give the controller its \
+                     sensor_delay"
+                );
+                message![self.track.message(), over]
+            }
         }
     }
 }

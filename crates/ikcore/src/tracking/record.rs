@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::comparison::larger;
+use crate::message::{Message, Setting, message};
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
@@ -320,23 +321,23 @@ impl Record {
     }
 
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let advice = match &self.out_of_reach {
             None if self.ease == Ease::Impossible => {
                 "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
             }
             None if self.was_held_back() => self.held_back(),
-            None if self.starts_too_fast() => {
-                "the path moves at its start, where the arm is at rest: ease=True (--ease) begins with an approach \
-                 within the limits"
-                    .into()
-            }
-            None => Status::Lost.advice().into(),
+            None if self.starts_too_fast() => message![
+                "the path moves at its start, where the arm is at rest: ",
+                Setting::Ease,
+                " begins with an approach within the limits",
+            ],
+            None => Status::Lost.advice(),
             Some((beyond, when)) => {
-                format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
+                message![format!("the path is {beyond} at t = {} s: ", time(*when)), Status::OutOfReach.advice()]
             }
         };
-        self.message_with(&advice)
+        self.message_with(advice)
     }
 
     /// Whether obstacles or other links held the arm back.
@@ -345,20 +346,21 @@ impl Record {
     }
 
     /// Describes how obstacles held the arm back, with advice.
-    fn held_back(&self) -> String {
+    fn held_back(&self) -> Message {
         let count = |wanted: Status| self.step_status.iter().filter(|status| **status == wanted).count();
         let (status, phrase) = match count(Status::InCollision) {
             0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
             _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
         };
-        format!("in {} steps {phrase}: {}", count(status), status.advice())
+        message![format!("in {} steps {phrase}: ", count(status)), status.advice()]
     }
 
     /// Returns [`message`](Self::message) with this `advice` if the track failed.
-    pub(super) fn message_with(&self, advice: &str) -> String {
+    pub(super) fn message_with(&self, advice: impl Into<Message>) -> Message {
         let last = self.rows() - 1;
         if self.status == Status::Interrupted {
-            return format!("interrupted at t = {} s: {}", time(self.time_of(last)), Status::Interrupted.advice());
+            let when = time(self.time_of(last));
+            return message![format!("interrupted at t = {when} s: "), Status::Interrupted.advice()];
         }
         if let Some((joint, when)) = self.worst_violation {
             let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
@@ -366,7 +368,8 @@ impl Record {
                 "joint '{joint}' is {excess} (rad or m) beyond its limits at t = {} s: a limit closes in faster than \
                  the joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside",
                 time(when)
-            );
+            )
+            .into();
         }
         let Criterion { tolerance, components, .. } = self.criterion;
         let band = match components.and_then(|components| components.tolerance) {
@@ -375,26 +378,28 @@ impl Record {
         };
         let Some(joined) = self.joined() else {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
-            return format!("never came within {band} (nearest {}): {advice}", self.in_words(position, rotation));
+            let nearest = self.in_words(position, rotation);
+            return message![format!("never came within {band} (nearest {nearest}): "), advice];
         };
         let since = time(self.time_of(joined));
         let (position, rotation) = (largest(&self.position_error[joined..]), largest(&self.rotation_error[joined..]));
         let worst = self.in_words(position, rotation);
         if self.status == Status::Solved {
-            return format!("in the band of {band} from t = {since} s on; worst error there {worst}");
+            return format!("in the band of {band} from t = {since} s on; worst error there {worst}").into();
         }
         if self.status == Status::HeldInRegion {
             let held = self.step_status[joined..].iter().filter(|status| **status == Status::HeldInRegion).count();
-            let advice = self.status.advice();
-            return format!(
+            let except = format!(
                 "in the band of {band} from t = {since} s on, except in {held} of {last} steps, in which its region held the tip \
-                 up to {worst} away: {advice}"
+                 up to {worst} away: "
             );
+            return message![except, self.status.advice()];
         }
         let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
-        format!(
-            "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: {advice}"
-        )
+        let joined = format!(
+            "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: "
+        );
+        message![joined, advice]
     }
 
     /// Whether the arm starts on the path and loses it at once because its acceleration is limited.

@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use super::around_arm::{Around, ObstacleMotion, Response};
+use super::around_arm::{Around, ObstacleVelocities, Response};
 use super::constrained_step::{ConstrainedStep, Resting, StepRequest, Towards};
 use super::coupled_stop::CoupledStop;
 use super::progress::{Admitted, ArmProgress, is_nearer};
@@ -45,6 +45,15 @@ pub(super) struct SafetyFilter {
     progress: ArmProgress,
 }
 
+/// Work of the safety filter, counted: for loops that must know their worst case.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FilterWork {
+    /// Intervals examined to certify motions.
+    pub intervals: usize,
+    /// Exchanges of constraints by steps beside rows.
+    pub exchanges: usize,
+}
+
 /// Outcome of the filter for a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FilterOutcome {
@@ -62,7 +71,7 @@ impl SafetyFilter {
     /// obstacle.
     pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
         Ok(Self {
-            around: space.map(|space| Around::new(space, ObstacleMotion::default(), limits)).transpose()?,
+            around: space.map(|space| Around::new(space, ObstacleVelocities::default(), limits)).transpose()?,
             rows: ConstrainedStep::with_room(limits.dof(), 2 * MOST_ROWS + MOST_COMING),
             stop: CoupledStop::default(),
             next_stop: CoupledStop::default(),
@@ -88,7 +97,7 @@ impl SafetyFilter {
     pub fn replace(
         &mut self,
         space: Option<ClearSpace<'static>>,
-        obstacles: ObstacleMotion,
+        obstacles: ObstacleVelocities,
         limits: &Limits,
     ) -> Result<()> {
         self.progress.note_replaced();
@@ -100,6 +109,12 @@ impl SafetyFilter {
             (None, around) => (*around, self.goal_is_held) = (None, false),
         }
         Ok(())
+    }
+
+    /// Work so far.
+    pub fn work(&self) -> FilterWork {
+        let intervals = self.around.as_ref().map_or(0, Around::intervals);
+        FilterWork { intervals, exchanges: self.rows.exchanges() }
     }
 
     /// Forgets the stop, because the arm has moved elsewhere.

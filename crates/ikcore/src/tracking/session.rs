@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::around_arm::ObstacleMotion;
+use super::around_arm::ObstacleVelocities;
 use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::safety_filter::{FilterOutcome, SafetyFilter};
+use super::safety_filter::{FilterOutcome, FilterWork, SafetyFilter};
 use super::step::Step;
 use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
@@ -16,7 +16,7 @@ use crate::kinematics::ReachShortfall;
 use crate::limits::Limits;
 use crate::math::vector::between;
 use crate::objective::{Bounds, Point, Score};
-use crate::obstacle::{ClearSpace, NearestContact, Obstacles, Surroundings};
+use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
@@ -59,7 +59,7 @@ impl Session {
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| arm.limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &arm.robot, &ranges);
         let surroundings = options.surroundings.clone();
-        let space = clear_space(&surroundings, &arm.robot)?;
+        let space = surroundings.clear_space(&arm.robot)?;
         let filters = !arm.has_one_tip() || space.is_some();
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, &arm.limits)?)) } else { None };
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
@@ -121,10 +121,8 @@ impl Session {
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        let nearest = self.space().map(|space| space.nearest(&self.arm.q));
-        let distance =
-            |nearest: Option<NearestContact>| nearest.map_or(f64::INFINITY, |nearest| nearest.contact.distance);
-        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance: nearest.map_or(f64::NAN, distance) }
+        let clearance = self.space().map_or(f64::NAN, |space| space.clearance(&self.arm.q).distance);
+        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance }
     }
 
     /// The tracked robot.
@@ -297,6 +295,11 @@ impl Session {
         self.safety.as_ref().and_then(|safety| safety.space())
     }
 
+    /// Work of the safety filter since it began, with the first obstacles or pairs of tips; zero without either.
+    pub fn filter_work(&self) -> FilterWork {
+        self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
+    }
+
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
         self.safety.as_ref().map_or(&[], |safety| safety.velocities())
@@ -313,10 +316,10 @@ impl Session {
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
     pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
-        let motion = ObstacleMotion::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
+        let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let space = if surroundings.is_given() { clear_space(&surroundings, &self.arm.robot)? } else { None };
+        let space = if surroundings.is_given() { surroundings.clear_space(&self.arm.robot)? } else { None };
         if space.is_some() || !self.arm.has_one_tip() {
             let safety = match self.safety.take() {
                 Some(safety) => self.safety.insert(safety),
@@ -401,9 +404,4 @@ impl Session {
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
-}
-
-/// Clear space of the robot, if collisions are to be avoided.
-fn clear_space(surroundings: &Surroundings, robot: &Arc<Robot>) -> Result<Option<ClearSpace<'static>>> {
-    Ok(surroundings.clear_space(robot)?.map(|space| space.with_shared(robot)))
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, message};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -28,25 +29,17 @@ pub struct Step {
 
 impl Step {
     /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> String {
+    pub fn message(&self) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
-        match self.status {
-            Status::Solved => format!("within the tolerances, {error} away{limits}"),
-            Status::HeldInRegion => {
-                format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
-            }
-            Status::InCollision => {
-                format!(
-                    "nearer than the margin to an obstacle or another link, {error} away{limits}: {}",
-                    self.status.advice()
-                )
-            }
-            Status::HeldByObstacle => {
-                format!("held back by an obstacle or another link, {error} away{limits}: {}", self.status.advice())
-            }
-            Status::Improved => format!("nearer than in the tick before, {error} away{limits}"),
-            status => format!("no nearer than in the tick before, {error} away{limits}: {}", status.advice()),
-        }
+        let how = match self.status {
+            Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
+            Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
+            Status::HeldInRegion => "as near as its region allows",
+            Status::InCollision => "nearer than the margin to an obstacle or another link",
+            Status::HeldByObstacle => "held back by an obstacle or another link",
+            _ => "no nearer than in the tick before",
+        };
+        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
     }
 }

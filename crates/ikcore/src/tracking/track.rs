@@ -10,6 +10,7 @@ use crate::ik::{Prefer, SolveOptions, solve_tips};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
+use crate::message::{Setting, message};
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
@@ -46,8 +47,8 @@ pub fn track_tips(
     let stopwatch = Stopwatch::start();
     let first = asked.first()?;
     if options.ease && robot.tip_count() > 1 {
-        let problem = "the approach of ease=True is for one tip: leave it out, or bring the arms to the paths first";
-        return Err(Error::Contradiction { problem: problem.into() });
+        let does = " is for one tip: leave it out, or bring the arms to the paths first";
+        return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
     let limits = options.limits_for(robot);
     limits.validate(first.dt(), first.len() - 1)?;
@@ -59,8 +60,8 @@ pub fn track_tips(
     };
     let mut session = Session::new(robot, &start, first.dt(), options)?;
     if options.ease && session.space().is_some() {
-        let problem = "the approach of ease=True is not kept clear of obstacles: leave one of the two out, or plan to the path first";
-        return Err(Error::Contradiction { problem: problem.into() });
+        let does = " is not kept clear of obstacles: leave one of the two out, or plan to the path first";
+        return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
     let limits = session.limits().clone();

@@ -4,6 +4,7 @@ use super::rule::TickRule;
 use super::target_filter::TargetFilter;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
+use crate::message::Setting;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
@@ -45,7 +46,7 @@ impl TrackOptions {
     /// Checks that rule and task support the robot's number of tips.
     pub(super) fn require_tips(&self, robot: &Robot) -> Result<()> {
         self.rule.require_tips(robot)?;
-        if self.task.is_some() { robot.require_one_tip("task= for all tips") } else { Ok(()) }
+        if self.task.is_some() { robot.require_one_tip(Setting::OneTask) } else { Ok(()) }
     }
 
     /// Checks that rule and robot support the goals.

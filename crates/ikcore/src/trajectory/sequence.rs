@@ -14,7 +14,7 @@ impl Trajectory {
     /// has other joints or starts elsewhere.
     pub fn then(&self, next: &Self, pause: f64) -> Result<Self> {
         if !(0.0..=LONGEST_PAUSE).contains(&pause) {
-            return Err(Error::out_of_range("pause", &format!("from 0 to {LONGEST_PAUSE} s"), pause));
+            return Err(Error::out_of_range("pause", format!("from 0 to {LONGEST_PAUSE} s"), pause));
         }
         if self.joints() != next.joints() {
             let [these, those] = [self, next].map(|motion| motion.joints().join(", "));

@@ -190,7 +190,8 @@ impl PyLimits {
                 method: method.into(),
                 remedy: format!(
                     "it has no end time up to which to sample; give numbers or a Sinusoid, or use {instead}"
-                ),
+                )
+                .into(),
             })),
         }
     }

@@ -67,7 +67,7 @@ impl PyMinimum {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Minimum {}: {}>", self.core.status.name(), self.core.message())
+        format!("<Minimum {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -164,7 +164,7 @@ pub fn minimize_function(
 fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> {
     let value = error.value(py);
     let note = match found.core.value.is_finite() {
-        true => format!("minimize: {}; kept as `best` of this exception", found.core.message()),
+        true => format!("minimize: {}; kept as `best` of this exception", found.message()),
         false => "minimize: no finite value was found before".into(),
     };
     // Exception classes may refuse attributes; the exception is raised anyway.

@@ -1,7 +1,6 @@
 //! Reading of obstacle arguments.
 
-use ikcore::obstacle::Obstacles;
-use ikcore::shape::Shape;
+use ikcore::obstacle::{Obstacle, Obstacles, Surroundings};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -31,14 +30,19 @@ impl GivenObstacles {
         let items = value.map_or_else(|| Ok(vec![]), items)?;
         Ok(Self { core: shapes(&items)?, tuple: PyTuple::new(py, items)?.unbind() })
     }
+}
 
-    /// Reads a sequence of obstacles for the core.
-    pub fn read_core(value: &Bound<'_, PyAny>) -> PyResult<Obstacles> {
-        match prepared(value) {
-            Some(prepared) => Ok(prepared.get().core.clone()),
-            None => shapes(&items(value)?),
-        }
-    }
+/// Reads the arguments `obstacles`, `margin` and `self_collision` of a call.
+pub fn read_surroundings(
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
+) -> PyResult<Surroundings> {
+    let read = |given: &Bound<'_, PyAny>| match prepared(given) {
+        Some(prepared) => Ok(prepared.get().core.clone()),
+        None => shapes(&items(given)?),
+    };
+    Ok(Surroundings { obstacles: obstacles.map(read).transpose()?, margin, self_collision })
 }
 
 /// The obstacles of a `Scene`, read and prepared once.
@@ -85,25 +89,25 @@ impl MovingObstacles {
         let (mut shapes, mut velocities) = (vec![], vec![]);
         for (i, item) in given.iter().enumerate() {
             let (shape, velocity) = match (item.cast::<PyMoving>(), item.cast::<PyObstacle>()) {
-                (Ok(moving), _) => (moving.get().shape.clone(), moving.get().velocity),
+                (Ok(moving), _) => (moving.get().obstacle.clone(), moving.get().velocity),
                 (_, Ok(obstacle)) => (obstacle.get().core.clone(), [0.0; 3]),
                 _ => return Err(not_made_here(&format!("obstacle {i}"), item)),
             };
             shapes.push(shape);
             velocities.push(velocity);
         }
-        Ok(Self { shapes: shapes.into(), velocities })
+        Ok(Self { shapes: shapes.into_iter().collect(), velocities })
     }
 
     /// Returns the obstacles as Python objects, moving obstacles as `Moving`.
-    pub fn objects(py: Python<'_>, shapes: &[Shape], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
-        let object = |(i, shape): (usize, &Shape)| match velocities.get(i) {
+    pub fn objects(py: Python<'_>, obstacles: &[Obstacle], velocities: &[[f64; 3]]) -> PyResult<Vec<Py<PyAny>>> {
+        let object = |(i, obstacle): (usize, &Obstacle)| match velocities.get(i) {
             Some(velocity) if *velocity != [0.0; 3] => {
-                Ok(Py::new(py, PyMoving { shape: shape.clone(), velocity: *velocity })?.into_any())
+                Ok(Py::new(py, PyMoving { obstacle: obstacle.clone(), velocity: *velocity })?.into_any())
             }
-            _ => wrapped(py, shape),
+            _ => wrapped(py, obstacle),
         };
-        shapes.iter().enumerate().map(object).collect()
+        obstacles.iter().enumerate().map(object).collect()
     }
 }
 

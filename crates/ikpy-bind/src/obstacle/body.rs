@@ -2,6 +2,7 @@
 
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
+use ikcore::obstacle::Obstacle;
 use ikcore::shape::{Geometry, Grid, Shape};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -21,7 +22,7 @@ use crate::options::NewArguments;
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
-    pub core: Shape,
+    pub core: Obstacle,
 }
 
 /// Makes an instance of an obstacle's class, with its own fields.
@@ -29,7 +30,7 @@ pub(super) fn made<C>(core: ikcore::Result<Shape>, touch: Touch, own: C) -> PyRe
 where
     C: PyClass<BaseType = PyObstacle>,
 {
-    let core = core.map_err(raise)?.with_touch(touch.unwrap_or_default());
+    let core = Obstacle::new(core.map_err(raise)?, touch.unwrap_or_default());
     Ok(PyClassInitializer::from(PyObstacle { core }).add_subclass(own))
 }
 
@@ -39,7 +40,7 @@ impl PyObstacle {
     /// a square of 4 m, a point cloud as octahedra about at most 2,000 of its points.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let triangles = self.core.triangles();
+        let triangles = self.core.shape.triangles();
         let count = triangles.len();
         table(py, triangles.as_flattened().as_flattened().to_vec(), &[count, 3, 3])
     }
@@ -52,7 +53,7 @@ impl PyObstacle {
     }
 
     fn __repr__(&self) -> String {
-        let arguments = match self.core.geometry() {
+        let arguments = match self.core.shape.geometry() {
             Geometry::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
             Geometry::Box { pose, size } => {
                 format!("{:?}, {size:?}{}", point_of(pose), rotation_text(pose))
@@ -81,7 +82,7 @@ impl PyObstacle {
             [] => String::new(),
             links => format!(", touch={links:?}"),
         };
-        format!("obstacles.{}({arguments}{touch})", self.core.name())
+        format!("obstacles.{}({arguments}{touch})", self.core.shape.name())
     }
 
     fn __hash__(&self) -> u64 {
@@ -94,7 +95,7 @@ impl PyObstacle {
             named.set_item("touch", self.core.touch())?;
         }
         let turned = |pose: &Pose| rotation_rows(pose).map_or(Ok(()), |rows| named.set_item("rotation", rows));
-        let arguments = match self.core.geometry() {
+        let arguments = match self.core.shape.geometry() {
             Geometry::Sphere { center, radius } => (*center, *radius).into_pyobject(py)?,
             Geometry::Box { pose, size } => {
                 turned(pose)?;

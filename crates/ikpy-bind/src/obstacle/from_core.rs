@@ -1,6 +1,7 @@
-//! Shapes of the core as Python objects.
+//! Obstacles of the core as Python objects.
 
-use ikcore::shape::{Geometry, Shape};
+use ikcore::obstacle::Obstacle;
+use ikcore::shape::Geometry;
 use pyo3::prelude::*;
 
 use super::arrays::{Coordinates, Rotation};
@@ -8,10 +9,10 @@ use super::body::PyObstacle;
 use super::large::{PyGrid, PyMesh, PyPointCloud};
 use super::shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
-/// Returns a shape as an instance of its class.
-pub fn wrapped(py: Python<'_>, shape: &Shape) -> PyResult<Py<PyAny>> {
-    let base = PyClassInitializer::from(PyObstacle { core: shape.clone() });
-    let object = match shape.geometry() {
+/// Returns an obstacle as an instance of the class of its shape.
+pub fn wrapped(py: Python<'_>, obstacle: &Obstacle) -> PyResult<Py<PyAny>> {
+    let base = PyClassInitializer::from(PyObstacle { core: obstacle.clone() });
+    let object = match obstacle.shape.geometry() {
         Geometry::Sphere { center, radius } => {
             let own = PySphere { center: Coordinates(*center), radius: *radius };
             Bound::new(py, base.add_subclass(own))?.into_any()

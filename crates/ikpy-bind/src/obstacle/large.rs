@@ -37,7 +37,7 @@ impl PyMesh {
     /// The vertices (k, 3) (m).
     #[getter]
     fn vertices<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::Mesh(mesh) => points(py, mesh.vertices()),
             _ => points(py, &[]),
         }
@@ -46,7 +46,7 @@ impl PyMesh {
     /// The faces (t, 3): indices of vertices.
     #[getter]
     fn faces<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::Mesh(mesh) => faces(py, mesh.faces()),
             _ => faces(py, &[]),
         }
@@ -57,7 +57,7 @@ impl PyMesh {
     /// In a large part, about 128 triangles are tested.
     #[getter]
     fn closed(this: PyRef<'_, Self>) -> bool {
-        matches!(this.as_super().core.geometry(), Geometry::Mesh(mesh) if mesh.is_closed())
+        matches!(this.as_super().core.shape.geometry(), Geometry::Mesh(mesh) if mesh.is_closed())
     }
 }
 
@@ -86,7 +86,7 @@ impl PyPointCloud {
     /// The points (k, 3) (m).
     #[getter]
     fn points<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::PointCloud(cloud) => points(py, cloud.points()),
             _ => points(py, &[]),
         }
@@ -125,7 +125,7 @@ impl PyGrid {
     /// Whether each voxel is occupied (nx, ny, nz).
     #[getter]
     fn occupied<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::Grid(grid) => occupied(py, grid),
             _ => table(py, vec![], &[0, 0, 0]),
         }

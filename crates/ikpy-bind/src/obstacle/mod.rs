@@ -14,7 +14,7 @@ mod touch;
 use pyo3::prelude::*;
 
 use argument::PyPreparedObstacles;
-pub use argument::{GivenObstacles, MovingObstacles};
+pub use argument::{GivenObstacles, MovingObstacles, read_surroundings};
 pub use body::PyObstacle;
 pub use from_core::wrapped;
 use large::{PyGrid, PyMesh, PyPointCloud};

@@ -1,6 +1,6 @@
 //! `Moving`: an obstacle with a velocity.
 
-use ikcore::shape::Shape;
+use ikcore::obstacle::Obstacle;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -22,7 +22,7 @@ use crate::hash::content_hash;
 #[pyclass(name = "Moving", module = "beetle_ik.obstacles", frozen, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyMoving {
-    pub(super) shape: Shape,
+    pub(super) obstacle: Obstacle,
     pub(super) velocity: [f64; 3],
 }
 
@@ -36,13 +36,13 @@ impl PyMoving {
         if !velocity.iter().all(|entry| entry.is_finite()) {
             return Err(invalid(format!("velocity must be finite, got {velocity:?}")));
         }
-        Ok(Self { shape: obstacle.get().core.clone(), velocity })
+        Ok(Self { obstacle: obstacle.get().core.clone(), velocity })
     }
 
     /// The shape, at its present position.
     #[getter]
     fn shape(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        wrapped(py, &self.shape)
+        wrapped(py, &self.obstacle)
     }
 
     /// Velocity (3,) (m/s), in the frame of the robot's base.
@@ -56,10 +56,10 @@ impl PyMoving {
     }
 
     fn __getnewargs__(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, [f64; 3])> {
-        Ok((wrapped(py, &self.shape)?, self.velocity))
+        Ok((wrapped(py, &self.obstacle)?, self.velocity))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("obstacles.Moving({}, {:?})", wrapped(py, &self.shape)?.bind(py).repr()?, self.velocity))
+        Ok(format!("obstacles.Moving({}, {:?})", wrapped(py, &self.obstacle)?.bind(py).repr()?, self.velocity))
     }
 }

@@ -128,7 +128,7 @@ impl PyCylinder {
     /// Axis (3,), of unit length.
     #[getter]
     fn axis<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::Cylinder { axis, .. } => copied(py, axis),
             _ => copied(py, &[]),
         }
@@ -160,7 +160,7 @@ impl PyHalfSpace {
     /// Outward normal (3,), of unit length.
     #[getter]
     fn normal<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        match this.as_super().core.geometry() {
+        match this.as_super().core.shape.geometry() {
             Geometry::HalfSpace { normal, .. } => copied(py, normal),
             _ => copied(py, &[]),
         }

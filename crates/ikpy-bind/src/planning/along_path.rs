@@ -18,6 +18,7 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::task::read_task;
+use crate::wording::said;
 
 /// Plans a motion that moves the tip along a path.
 ///
@@ -107,7 +108,7 @@ pub fn plan_along_path(
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
-    python_calls::log(py, format!("plan_along_path: {}", plan.message()))?;
+    python_calls::log(py, "plan_along_path", &said(&plan.message()))?;
     PyPlan::new(plan, robot, in_force, given.tuple)
 }
 

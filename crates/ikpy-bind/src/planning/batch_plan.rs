@@ -244,7 +244,7 @@ pub fn plan_batch<'py>(
     let status = results.iter().map(|result| plan_status(result) as u8).collect();
     let (plans, errors) = converted(robot, results, &kept)?;
     let batch = PyBatchPlan::new(&plans, &errors, status, Some(elapsed))?;
-    python_calls::log(py, format!("plan_batch: {}", batch.message))?;
+    python_calls::log(py, "plan_batch", &batch.message)?;
     Ok(batch)
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ikcore::obstacle::NearestContact;
+use ikcore::obstacle::Clearance;
 use ikcore::planning::Plan;
 use ikcore::stored::to_bytes;
 use numpy::PyArrayDyn;
@@ -49,8 +49,8 @@ pub struct PyPlan {
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
-    /// Smallest distance on the trajectory, computed at the first access.
-    least_distance: OnceLock<Option<(f64, Option<NearestContact>)>>,
+    /// Smallest clearance on the trajectory, computed at the first access.
+    least_clearance: OnceLock<Option<Clearance>>,
 }
 
 traversed!(PyPlan: obstacles, robot, limits);
@@ -85,13 +85,13 @@ impl PyPlan {
     /// allows; NaN without obstacles.
     #[getter]
     fn clearance(&self, py: Python<'_>) -> PyResult<f64> {
-        Ok(self.least_distance(py)?.as_ref().map_or(f64::NAN, |(clearance, _)| *clearance))
+        Ok(self.least_clearance(py)?.as_ref().map_or(f64::NAN, |clearance| clearance.distance))
     }
 
     /// Nearest two bodies over the whole trajectory, a `Nearest`; None without obstacles.
     #[getter]
     fn nearest(&self, py: Python<'_>) -> PyResult<Option<PyNearest>> {
-        let nearest = self.least_distance(py)?.as_ref().and_then(|(_, nearest)| nearest.clone());
+        let nearest = self.least_clearance(py)?.as_ref().and_then(|clearance| clearance.nearest.clone());
         Ok(nearest.map(PyNearest::from))
     }
 
@@ -148,7 +148,7 @@ impl PyPlan {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Plan {}: {}>", self.core.status.name(), self.core.message())
+        format!("<Plan {}: {}>", self.core.status.name(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -187,18 +187,18 @@ impl PyPlan {
             obstacles,
             robot: robot.clone().unbind(),
             limits,
-            least_distance: OnceLock::new(),
+            least_clearance: OnceLock::new(),
             core,
         })
     }
 
-    /// Returns the smallest distance, computed at the first access.
-    fn least_distance(&self, py: Python<'_>) -> PyResult<&Option<(f64, Option<NearestContact>)>> {
-        if let Some(known) = self.least_distance.get() {
+    /// Returns the smallest clearance, computed at the first access.
+    fn least_clearance(&self, py: Python<'_>) -> PyResult<&Option<Clearance>> {
+        if let Some(known) = self.least_clearance.get() {
             return Ok(known);
         }
         let arm = self.robot.get().core.clone();
-        let found = long_call(py, || self.core.least_distance(&arm))?;
-        Ok(self.least_distance.get_or_init(|| found))
+        let found = long_call(py, || self.core.least_clearance(&arm))?;
+        Ok(self.least_clearance.get_or_init(|| found))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use ikcore::obstacle::Surroundings;
 use ikcore::planning::{Endpoint, PointToPointOptions};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
@@ -80,7 +81,8 @@ impl PlanArguments<'_> {
     ) -> PyResult<ReadOptions> {
         let obstacles = match (&self.obstacles, &all.obstacles) {
             (Some(own), Some(common)) if own.is(common) => {
-                GivenObstacles { core: of_all.core.obstacles.clone(), tuple: of_all.obstacles.clone_ref(py) }
+                let core = of_all.core.surroundings.obstacles.clone().unwrap_or_default();
+                GivenObstacles { core, tuple: of_all.obstacles.clone_ref(py) }
             }
             (own, _) => GivenObstacles::read(py, own.as_ref())?,
         };
@@ -106,9 +108,11 @@ impl PlanArguments<'_> {
             },
             method: read_method(self.method.as_ref())?,
             objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
-            obstacles: obstacles.core,
-            margin: extracted("margin", self.margin.as_ref())?,
-            self_collision: extracted("self_collision", self.self_collision.as_ref())?,
+            surroundings: Surroundings {
+                obstacles: Some(obstacles.core),
+                margin: extracted("margin", self.margin.as_ref())?,
+                self_collision: extracted("self_collision", self.self_collision.as_ref())?,
+            },
             limits,
             stop: stop.map(|stop| stop.get().core()),
             seed: extracted("seed", self.seed.as_ref())?.map_or(Ok(0), |seed: i128| count("seed", seed))?,

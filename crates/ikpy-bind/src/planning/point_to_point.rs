@@ -8,6 +8,7 @@ use super::plan_arguments::{EndArguments, PlanArguments};
 use crate::monitor::{Watcher, watched};
 use crate::python_calls;
 use crate::robot::PyRobot;
+use crate::wording::said;
 
 /// Plans a motion between two ends, which comes to rest at the second.
 ///
@@ -105,6 +106,6 @@ pub fn plan_point_to_point<'py>(
     let (start, ends) = ends.read(robot.get(), &asked.task)?;
     let call = |watcher: &mut Watcher| planning::plan_point_to_point(&arm, &start, &ends, &options.core, watcher);
     let plan = watched(py, progress, call)?;
-    python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
+    python_calls::log(py, "plan_point_to_point", &said(&plan.message()))?;
     PyPlan::new(plan, robot, options.limits, options.obstacles)
 }

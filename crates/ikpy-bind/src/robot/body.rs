@@ -1,5 +1,6 @@
 //! `Body`: a shape fixed to a link.
 
+use ikcore::obstacle::Obstacle;
 use ikcore::robot::Body;
 use ikcore::stored::{from_bytes, to_bytes};
 use pyo3::prelude::*;
@@ -27,7 +28,7 @@ impl PyBody {
     /// The shape, in the frame of the link: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`.
     #[getter]
     fn shape(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        wrapped(py, &self.core.shape)
+        wrapped(py, &Obstacle::new(self.core.shape.clone(), self.core.touch.clone()))
     }
 
     /// Origin of the body: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file.

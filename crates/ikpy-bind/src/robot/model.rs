@@ -29,7 +29,7 @@ type VisualParts<'py> = (String, Py<PyAny>, Bound<'py, PyArray2<f64>>, Option<Bo
 
 fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'py>> {
     let (shape, placement) = match &visual.shape {
-        VisualShape::Solid(shape) => (wrapped(py, shape)?, Matrix4::identity()),
+        VisualShape::Solid(shape) => (wrapped(py, &shape.clone().into())?, Matrix4::identity()),
         VisualShape::Mesh { path, scale, origin } => {
             let scale = Matrix4::new_nonuniform_scaling(&Vector3::from(*scale));
             (PyString::new(py, path).into_any().unbind(), origin.to_homogeneous() * scale)
@@ -205,7 +205,7 @@ impl PyRobot {
         let read =
             on_a_thread(py, move || robot.meshes().iter().map(read_link_mesh).collect::<ikcore::Result<Vec<_>>>())?;
         let links = self.core.meshes().iter().map(|mesh| mesh.link.clone());
-        links.zip(read).map(|(link, mesh)| Ok((link, wrapped(py, &mesh)?))).collect()
+        links.zip(read).map(|(link, mesh)| Ok((link, wrapped(py, &mesh.into())?))).collect()
     }
 
     /// Collision shapes that did not become `bodies`, for example "a mesh of link 'hand'".

@@ -119,9 +119,9 @@ impl PyRobot {
         let shape = shape.cast::<PyObstacle>().map_err(|_| {
             invalid(format!("shape must be made by bik.obstacles, such as Sphere or Box, got {}", summary(shape)))
         })?;
-        let touch = touch.unwrap_or_default();
-        let touch: Vec<&str> = touch.iter().map(String::as_str).collect();
-        self.core.with_attached(link, &shape.get().core, &touch, name).map(Self::from).map_err(raise)
+        let (given, touch) = (&shape.get().core, touch.unwrap_or_default());
+        let touch: Vec<&str> = touch.iter().chain(given.touch()).map(String::as_str).collect();
+        self.core.with_attached(link, &given.shape, &touch, name).map(Self::from).map_err(raise)
     }
 
     /// Returns a copy that tests exactly these pairs of links against each other, each (link, link). To exclude a link:

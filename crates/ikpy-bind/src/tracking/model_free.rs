@@ -20,6 +20,7 @@ use crate::path::path_argument;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// The record of a track without a model, k rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt. If the
 /// plant fails, the record ends there.
@@ -81,7 +82,7 @@ impl PyModelFreeResult {
 
     fn __repr__(&self) -> String {
         let track = &self.core.track;
-        format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.rows(), self.core.message())
+        format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.rows(), self.message())
     }
 
     /// Keeps the exception of the plant if it can be pickled.
@@ -181,7 +182,7 @@ pub fn track_model_free(
     };
     let (core, exception) =
         watched_with_interpreter(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
-    python_calls::log(py, format!("track_model_free: {}", core.message()))?;
+    python_calls::log(py, "track_model_free", &said(&core.message()))?;
     PyModelFreeResult::new(py, core, in_force, exception.map(|error| error.into_value(py)))
 }
 

@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use ikcore::obstacle::{ClearSpace, Contact, NearestContact};
+use ikcore::message::Message;
+use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::TipError;
@@ -20,6 +21,7 @@ use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::tips::TipErrors;
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
@@ -39,12 +41,9 @@ pub struct PyStep {
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
-    /// Nearest two bodies, computed at the first access.
-    around: OnceLock<Around>,
+    /// Clearance, computed at the first access; `None` without obstacles and self-collision.
+    around: OnceLock<Option<Clearance>>,
 }
-
-/// Nearest two bodies: `None` without obstacles and self-collision, `Some(None)` if nothing can touch.
-type Around = Option<Option<NearestContact>>;
 
 traversed!(PyStep: limits);
 
@@ -96,20 +95,17 @@ impl PyStep {
     /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
-        let distance = |nearest: &Option<NearestContact>| {
-            nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.contact.distance)
-        };
-        self.around().as_ref().map_or(f64::NAN, distance)
+        self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
     /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        self.around().clone().flatten().map(PyNearest::from)
+        self.around().as_ref()?.nearest.clone().map(PyNearest::from)
     }
 
     fn __repr__(&self) -> String {
-        format!("<Step {}: {}>", self.core.status.name(), self.sentence())
+        format!("<Step {}: {}>", self.core.status.name(), self.message())
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
@@ -122,7 +118,7 @@ impl PyStep {
     #[staticmethod]
     #[pyo3(signature = (bytes, limits, tips=None))]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Around) =
+        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
         Ok(Self { around: OnceLock::from(around), ..step })
@@ -146,17 +142,18 @@ impl PyStep {
         Self { among: space.map(|space| (space, q)), ..self }
     }
 
-    fn around(&self) -> &Around {
-        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.nearest(q)))
+    fn around(&self) -> &Option<Clearance> {
+        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.clearance(q)))
     }
 
     /// Returns the message: the outcome, advice, and the body in the way.
-    fn sentence(&self) -> String {
+    fn sentence(&self) -> Message {
         let message = self.core.message();
-        match (self.core.status, self.around()) {
-            (Status::HeldByObstacle | Status::InCollision, Some(Some(NearestContact { contact, .. }))) => {
+        let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        match (self.core.status, nearest) {
+            (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;
-                format!("{message} ({link} is {distance:.4} m from {other})")
+                format!("{} ({link} is {distance:.4} m from {other})", said(&message)).into()
             }
             _ => message,
         }

@@ -1,7 +1,6 @@
 //! `track` and `TrackResult`.
 
 use ikcore::math::Pose;
-use ikcore::obstacle::Surroundings;
 use ikcore::path::Reference;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Target, TipError};
@@ -17,7 +16,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::GivenObstacles;
+use crate::obstacle::read_surroundings;
 use crate::outcome::outcome;
 use crate::path::{PyPath, path_argument};
 use crate::pickling::{self, Reduced};
@@ -26,6 +25,7 @@ use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
+use crate::wording::said;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -127,7 +127,7 @@ impl PyTrackResult {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.core.message())
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -268,8 +268,7 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let obstacles = obstacles.map(|given| GivenObstacles::read_core(given)).transpose()?;
-    let surroundings = Surroundings { obstacles, margin, self_collision };
+    let surroundings = read_surroundings(obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
@@ -279,7 +278,7 @@ pub fn track(
     let paths = TipPaths { tips: &tips, paths: &references };
     let record = watched(py, progress, |watcher| track_tips(&arm, &paths, start, &options, watcher))?;
     let tips = TipErrors { keys: asked.keys(robot.get()).clone(), errors: record.tips.errors.clone() };
-    python_calls::log(py, format!("track: {}", record.message()))?;
+    python_calls::log(py, "track", &said(&record.message()))?;
     PyTrackResult::new(py, record, tips, robot.clone().unbind(), in_force)
 }
 

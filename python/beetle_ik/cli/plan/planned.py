@@ -12,6 +12,7 @@ from ... import InvalidInputError, Limits, Plan, Stop, plot
 from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
+from ..wording import in_options
 
 Budget = Annotated[
     int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; default: the method's own.")
@@ -83,7 +84,7 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
         "seed": seed,
         "success": plan.success,
         "status": plan.status.name,
-        "message": plan.message,
+        "message": in_options(plan.message),
         "cost": plan.cost,
         "duration": plan.trajectory.duration,
         "start_q": plan.trajectory.q[0],
@@ -106,5 +107,5 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
     rows += [("violation", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
-    print_pairs(f"{plan.robot.name}: {plan.message}", rows)
+    print_pairs(f"{plan.robot.name}: {summary['message']}", rows)
     print_files(out)

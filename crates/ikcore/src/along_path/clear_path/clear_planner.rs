@@ -16,7 +16,7 @@ use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, ClearanceSweep, TooNear};
-use crate::plan::{Plan, SearchResult, TimedMotion, configuration_at, nearest_at, refuse_collision, too_near};
+use crate::plan::{Plan, SearchResult, certify, configuration_at, least_clearance, refuse_collision, too_near};
 use crate::solver::{Monitor, Status, Stop};
 
 /// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
@@ -49,7 +49,7 @@ const AROUND: f64 = 1.5;
 const SPARE: f64 = 2e-5;
 
 /// What to try where no motion is found.
-const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by task=";
+const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by a task";
 
 /// The penalty of a posture in collision, for each metre that is missing of the margin.
 const DEEP: f64 = 1e6;
@@ -64,7 +64,7 @@ pub(crate) fn along_path(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     if let (Some(q), Some(space)) = (&problem.options.start, space) {
-        refuse_collision("start", space.scene(), q, space.margin())?;
+        refuse_collision("start", space, q)?;
     }
     let mut planner = ClearPlanner {
         problem,
@@ -203,8 +203,7 @@ impl ClearPlanner<'_> {
     fn fault(&self, motion: &PathMotion) -> Option<Fault> {
         let trajectory = &motion.trajectory;
         let too_near = self.space.and_then(|space| {
-            let (whole, kept) = ([0.0, trajectory.duration()], space.margin() + SPARE);
-            ClearanceSweep::new(space.scene()).check(&TimedMotion::new(trajectory), whole, kept).err()
+            certify(&mut ClearanceSweep::new(space.scene()), trajectory, space.margin() + SPARE).err()
         });
         if let Some(near) = too_near {
             return Some(Fault::TooNear(near));
@@ -242,10 +241,7 @@ impl ClearPlanner<'_> {
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { fractions: &self.fractions, postures: &self.postures };
         let obstruction = layers.obstruction(&self.passage, space, dead_end);
-        let missing = |q: &Point| {
-            let distance = space.nearest(q).map_or(f64::INFINITY, |nearest| nearest.contact.distance);
-            (space.margin() - distance).max(0.0)
-        };
+        let missing = |q: &Point| (space.margin() - space.clearance(q).distance).max(0.0);
         let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
             Ok(postures.iter().map(|q| LayerPosture { q: q.clone(), penalty: DEEP * missing(q) }).collect())
@@ -281,31 +277,25 @@ impl ClearPlanner<'_> {
             1 => "the one configuration tried there is on another branch than those before".into(),
             count => format!("all {count} configurations tried there are on other branches than those before"),
         };
-        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}") })
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}").into() })
     }
 
     /// The plan of a motion; `blocked` is the status of one that is not certified.
     fn finished(&self, motion: PathMotion, found: Option<SearchResult>, blocked: Option<Status>) -> Result<Plan> {
         let mut plan = self.problem.after(found, self.problem.plan(motion));
         let Some(space) = self.space else { return Ok(plan) };
-        let (scene, margin) = (space.scene(), space.margin());
-        plan.surroundings = Some(self.problem.options.surroundings.clone());
-        let trajectory = &plan.trajectory;
-        let Some(near) =
-            ClearanceSweep::new(scene).smallest(&TimedMotion::new(trajectory), [0.0, trajectory.duration()])
-        else {
-            return Ok(plan);
-        };
-        let distance = near.contact.distance;
-        // What is certified may be more than the search for the smallest distance proves.
-        plan.clearance = Some(if blocked.is_none() { distance.max(margin) } else { distance });
-        plan.nearest = nearest_at(scene, trajectory, near.at)?;
+        let margin = space.margin();
+        plan.surroundings = Some(space.surroundings());
+        let certified = blocked.is_none().then_some(margin);
+        let least = least_clearance(&mut ClearanceSweep::new(space.scene()), &plan.trajectory, certified)?;
+        let Some((least, contact)) = least else { return Ok(plan) };
         if let Some(status) = blocked
-            && distance < margin
+            && least.distance < margin
         {
-            plan.violations.push(too_near(&near.contact, margin));
+            plan.violations.push(too_near(&contact, margin));
             plan.status = status;
         }
+        plan.clearance = Some(least);
         Ok(plan)
     }
 }

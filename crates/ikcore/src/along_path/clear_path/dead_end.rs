@@ -37,9 +37,7 @@ impl Layers<'_> {
     fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> String {
         let tip_path = passage.problem.tip_path;
         let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
-        let said = |contact: &Contact| {
-            format!("link '{}' is {} {}", contact.link, contact.depth(space.margin()), contact.other)
-        };
+        let said = |contact: &Contact| contact.in_words(space.margin());
         let hands = if tip_path.fixes_pose() { vec![passage.problem.robot.frame_of_tip(0)] } else { vec![] };
         let hopeless = postures.first().and_then(|q| space.blocked_at(q, &hands));
         let what = match hopeless {
@@ -66,6 +64,6 @@ impl Layers<'_> {
 }
 
 fn least_deep(space: &ClearSpace<'_>, postures: &[Point]) -> Option<NearestContact> {
-    let nearest = postures.iter().filter_map(|q| space.nearest(q));
+    let nearest = postures.iter().filter_map(|q| space.clearance(q).nearest);
     nearest.max_by(|one, other| one.contact.distance.total_cmp(&other.contact.distance))
 }

@@ -17,10 +17,10 @@ const RESERVE: f64 = 5e-5;
 /// Postures stay this far from their limits where a motion has left them, relative to the range.
 const INSET: f64 = 1e-3;
 
-/// A place on the path, and the posture there.
-pub(super) type Place<'q> = (f64, &'q [f64]);
+/// A point on the path, and the posture there.
+pub(super) type PathPosture<'q> = (f64, &'q [f64]);
 
-/// More clearance around a place on the path.
+/// More clearance around a point on the path.
 #[derive(Debug, Clone, Copy)]
 struct Extra {
     fraction: f64,
@@ -46,7 +46,7 @@ impl<'a> Passage<'a> {
         Self { problem, space, bounds: limits.clone(), limits, extras: vec![], scratch: Linearization::default() }
     }
 
-    /// Keeps this much more than the margin (m) around a place.
+    /// Keeps this much more than the margin (m) around a point.
     pub fn keep_more(&mut self, fraction: f64, reach: f64, distance: f64) {
         self.extras.push(Extra { fraction, reach, distance });
     }
@@ -94,7 +94,7 @@ impl<'a> Passage<'a> {
         })
     }
 
-    /// What is kept beyond the margin at a place (m).
+    /// What is kept beyond the margin at a point (m).
     pub fn kept_beyond_margin(&self, fraction: f64) -> f64 {
         let near = self.extras.iter().filter(|extra| (extra.fraction - fraction).abs() <= extra.reach);
         near.map(|extra| extra.distance).fold(RESERVE, f64::max)
@@ -136,11 +136,11 @@ impl<'a> Passage<'a> {
     }
 
     /// Whether the arm can move along the path between two clear postures: those between are near, and clear.
-    pub fn leads(&mut self, from: Place<'_>, to: Place<'_>) -> bool {
+    pub fn leads(&mut self, from: PathPosture<'_>, to: PathPosture<'_>) -> bool {
         self.leads_by(from, to, HALVINGS)
     }
 
-    fn leads_by(&mut self, from: Place<'_>, to: Place<'_>, halvings: usize) -> bool {
+    fn leads_by(&mut self, from: PathPosture<'_>, to: PathPosture<'_>, halvings: usize) -> bool {
         let fraction = 0.5 * (from.0 + to.0);
         let middle: Point = from.1.iter().zip(to.1).map(|(from, to)| 0.5 * (from + to)).collect();
         let apart = largest_difference(from.1, to.1);

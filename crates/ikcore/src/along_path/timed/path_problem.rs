@@ -5,6 +5,7 @@ use crate::along_path::deviation::TipDeviation;
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
+use crate::message::Setting;
 use crate::plan::AlongPathOptions;
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
@@ -12,7 +13,7 @@ use crate::timing::{JointPath, MotionLimits, TimingLimits, coarse_duration, time
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-const METHOD: &str = "method=\"timed\"";
+const METHOD: Setting = Setting::Method("timed");
 
 /// Segments of the timing per piece of the spline when the alternatives at corners are compared.
 const SEGMENTS_A_PIECE: usize = 4;
@@ -124,7 +125,7 @@ fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) 
     let (value, accuracy) = (number(value), number(accuracy));
     let problem =
         format!("start_q {what} {value} {unit}{tolerance_band} from the path's first point, allowed {accuracy} {unit}");
-    Err(Error::Infeasible { problem })
+    Err(Error::Infeasible { problem: problem.into() })
 }
 
 fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {

@@ -107,7 +107,7 @@ impl TipPath {
         task.validate()?;
         if task.region.is_some() {
             let problem =
-                "along a path the task takes no region: weights= and tolerance= say how far the tip may be off";
+                "along a path the task takes no region: its weights and tolerance say how far the tip may be off";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         task.target(&self.pose(0.0))?;

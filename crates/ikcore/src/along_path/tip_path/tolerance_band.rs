@@ -42,7 +42,7 @@ impl ToleranceBand {
         if accuracy > least {
             let (accuracy, least) = (number(accuracy), number(least));
             let problem = format!("accuracy {accuracy} is more than the smallest tolerance of the task, {least}");
-            return Err(Error::Contradiction { problem });
+            return Err(Error::Contradiction { problem: problem.into() });
         }
         let allowed = |k: usize| match components.tolerance {
             _ if components.weights[k] == 0.0 => f64::INFINITY,

@@ -87,7 +87,7 @@ mod tests {
         let (l, p) = (unit(&[0.3, -0.4, 0.8]), [0.7, 0.2, -0.9]);
         let (axis, point, turn) = (unit(&[0.5, 0.5, 0.1]), [-0.3, 0.6, 0.4], Angle::by(1.3));
         let frame = turn.about_line(&axis, &point);
-        let exact = LineFunctions::new(&frame.turn::<Baseline>(&l), &frame.place::<Baseline>(&p)).numbers();
+        let exact = LineFunctions::new(&frame.turn::<Baseline>(&l), &frame.transform::<Baseline>(&p)).numbers();
         let moved = LineFunctions::new(&l, &p).moved(&frame).numbers();
         let [still, cosine, sine] = LineFunctions::new(&l, &p).turning(&axis, &point).map(|part| part.numbers());
         for k in 0..14 {

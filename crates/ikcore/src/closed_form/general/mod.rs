@@ -179,7 +179,7 @@ impl General {
 
     /// Converts the displacement to coordinates about the centre, in units of the arm's size.
     fn local(&self, goal: &Frame) -> Frame {
-        let origin = scaled(&sub(&goal.place::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
+        let origin = scaled(&sub(&goal.transform::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
         Frame { origin, ..*goal }
     }
 

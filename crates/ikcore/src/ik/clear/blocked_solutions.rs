@@ -45,7 +45,7 @@ impl BlockedSolutions {
 
     /// Stored candidates in descending order of clearance.
     pub fn by_clearance(&self, space: &ClearSpace<'_>) -> Vec<(NearestContact, Point)> {
-        let nearest = |q: &Point| Some((space.nearest(q)?, q.clone()));
+        let nearest = |q: &Point| Some((space.clearance(q).nearest?, q.clone()));
         let mut all: Vec<(NearestContact, Point)> = self.kept.iter().filter_map(nearest).collect();
         all.sort_by(|(a, _), (b, _)| b.contact.distance.total_cmp(&a.contact.distance));
         all

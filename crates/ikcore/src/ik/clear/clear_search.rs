@@ -123,8 +123,7 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
     pub fn in_collision(&self, exhausted: Exhausted) -> Option<Box<Solution>> {
         let (nearest, q) = self.blocked.by_clearance(self.space).into_iter().next()?;
         let margin = self.space.margin();
-        let said =
-            |contact: &Contact| format!("link '{}' is {} {}", contact.link, contact.depth(margin), contact.other);
+        let said = |contact: &Contact| contact.in_words(margin);
         let obstruction = match (self.blocked_for_good(), exhausted) {
             (Some(Blocked::Hand(contact)), _) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(contact))
@@ -146,7 +145,8 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         };
         let mut solution = Box::new(self.attempt.solution(exhausted.status(), q));
         solution.obstruction = obstruction;
-        solution.nearest = Some(Box::new(Nearest { bodies: Some(nearest), open_mesh: self.space.first_open_mesh() }));
+        solution.nearest =
+            Some(Box::new(Nearest { clearance: Some(nearest).into(), open_mesh: self.space.first_open_mesh() }));
         Some(solution)
     }
 

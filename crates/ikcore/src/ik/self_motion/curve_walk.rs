@@ -97,10 +97,10 @@ impl<'w, 'p> Walk<'w, 'p> {
         self.evaluations
     }
 
-    /// Restarts at `place` in the opposite direction.
-    pub fn turn_back_at(&mut self, place: &CurvePoint) {
-        let along = place.along.iter().map(|slope| -slope).collect();
-        self.here = CurvePoint { q: place.q.clone(), along };
+    /// Restarts at `point` in the opposite direction.
+    pub fn turn_back_at(&mut self, point: &CurvePoint) {
+        let along = point.along.iter().map(|slope| -slope).collect();
+        self.here = CurvePoint { q: point.q.clone(), along };
         self.bend.fill(0.0);
         self.length = self.longest;
     }

@@ -2,9 +2,9 @@
 
 use super::curve::SelfMotion;
 use super::cut::parts;
-use super::place::{EXACT, placed};
 use super::seeds::{Seeds, by_closed_form};
 use super::trace::{TracedCurve, traced};
+use super::unwrapping::{EXACT, unwrapped};
 use super::wrapped_limits::WrappedLimits;
 use crate::error::{Error, Result};
 use crate::ik::attempt::Attempt;
@@ -70,7 +70,7 @@ pub fn self_motion(
     let SelfMotionOptions { start, spacing, limits, seed } = options;
     let [least, most] = SPACINGS;
     if !(least..=most).contains(spacing) {
-        return Err(Error::out_of_range("spacing", &format!("from {least} to {most}"), *spacing));
+        return Err(Error::out_of_range("spacing", format!("from {least} to {most}"), *spacing));
     }
     let each = SolveOptions { limits: limits.clone(), seed: *seed, ..SolveOptions::default() };
     let context = SolveContext::new(robot, &each)?;
@@ -93,7 +93,7 @@ pub fn self_motion(
     for curve in &mut curves {
         make_exact(curve, &mut attempt);
         for part in parts(curve, &limits) {
-            found.extend(placed(part, *spacing, &mut attempt, &limits, start.as_deref()));
+            found.extend(unwrapped(part, *spacing, &mut attempt, &limits, start.as_deref()));
         }
     }
     found.iter_mut().for_each(|curve| curve.complete = complete);
@@ -115,7 +115,7 @@ fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
             "self_motion needs one joint more than the target: robot '{}' has {} joints, and this target takes {needed}",
             robot.name(),
             robot.dof()
-        ),
+        ).into(),
     })
 }
 

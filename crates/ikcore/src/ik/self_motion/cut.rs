@@ -33,8 +33,8 @@ pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part
         let ends_inside = pieces.last().is_some_and(|[_, to]| *to == 1.0);
         for [from, to] in pieces {
             if !(from == 0.0 && open) {
-                let place = if from == 0.0 { begin.q.clone() } else { at(&ways, from) };
-                parts.push(Part { points: vec![place], closed: false, cut: [from > 0.0, false] });
+                let point = if from == 0.0 { begin.q.clone() } else { at(&ways, from) };
+                parts.push(Part { points: vec![point], closed: false, cut: [from > 0.0, false] });
             }
             if let Some(part) = parts.last_mut() {
                 part.points.push(if to == 1.0 { end.q.clone() } else { at(&ways, to) });

@@ -2,15 +2,15 @@
 //!
 //! `curves` is the call. `seeds` finds configurations on the curves: by the closed form, which omits no branch, or by search.
 //! `trace` walks along a curve past the joint limits by the steps of `curve_walk`; `cut` clips it to the limits, which
-//! `wrapped_limits` holds up to whole turns; `place` turns the parts into a `curve`.
+//! `wrapped_limits` holds up to whole turns; `unwrapping` turns the parts into a `curve`.
 
 mod curve;
 mod curve_walk;
 mod curves;
 mod cut;
-mod place;
 mod seeds;
 mod trace;
+mod unwrapping;
 mod wrapped_limits;
 
 pub use curve::SelfMotion;

@@ -10,6 +10,7 @@ use super::package::Packages;
 use crate::error::{Error, Result, shortened};
 use crate::load::cover_cache::covered_mesh;
 use crate::load::mesh::read_mesh;
+use crate::message::{Setting, message};
 use crate::robot::{Bodies, Body, BodySource, LinkCapsule, LinkMesh, MeshFit, Robot};
 use crate::shape::Geometry;
 
@@ -39,9 +40,7 @@ pub(super) fn of(document: &Document, robot: &Robot, wanted: CollisionShapes, pa
     for link in robot.all_link_names().filter_map(|name| document.capsules.get(name)) {
         for Primitive { capsule, exact } in &link.primitives {
             bodies.push(match wanted {
-                CollisionShapes::Hulls => {
-                    Body { link: capsule.link.clone(), shape: exact.clone(), source: BodySource::Primitive }
-                }
+                CollisionShapes::Hulls => Body::new(capsule.link.clone(), exact.clone(), BodySource::Primitive),
                 _ => Body::from_capsule(capsule.clone(), BodySource::Primitive)?,
             });
         }
@@ -89,7 +88,7 @@ fn hull(mesh: &UrdfMesh, path: &Path) -> Result<Option<Body>> {
     let UrdfMesh { link, file, scale, origin } = mesh;
     let shape = read_mesh(path, *scale)?;
     let Geometry::Mesh(triangles) = shape.geometry() else { return Ok(None) };
-    let body = |shape| Body { link: link.clone(), shape, source: BodySource::Mesh(file.clone()) };
+    let body = |shape| Body::new(link.clone(), shape, BodySource::Mesh(file.clone()));
     Ok(triangles.convex_hull(origin).map(body))
 }
 
@@ -112,12 +111,12 @@ fn found(mesh: &UrdfMesh, packages: &Packages) -> Result<PathBuf> {
     let UrdfMesh { link, file, .. } = mesh;
     packages.find(file).map_err(|looked| {
         let places = looked.iter().map(|place| place.display().to_string()).take(3).collect::<Vec<_>>().join(", ");
-        let problem = format!(
-            "the mesh '{}' of link '{link}' is not found: give package_dirs, or collision=\"primitives\" to do without; looked \
-             for {}",
-            shortened(file),
-            if places.is_empty() { "no folder" } else { &places }
-        );
+        let places = if places.is_empty() { "no folder" } else { &places };
+        let problem = message![
+            format!("the mesh '{}' of link '{link}' is not found: give package_dirs, or ", shortened(file)),
+            Setting::Primitives,
+            format!(" to do without; looked for {places}"),
+        ];
         Error::Urdf { line: None, problem }
     })
 }

@@ -22,7 +22,7 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
     let mut moving = moving_on(document, &path);
     if moving.is_empty() {
         let problem = format!("no joint moves between base '{base}' and tip '{tip}'");
-        return Err(Error::Urdf { line: None, problem });
+        return Err(Error::Urdf { line: None, problem: problem.into() });
     }
     for tip in further {
         let beside = moving_on(document, &tree.path(base, tip)?);

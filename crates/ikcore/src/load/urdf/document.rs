@@ -115,7 +115,7 @@ impl Document {
 
     /// Creates an error located at a joint.
     pub(super) fn error_at(&self, joint: usize, problem: String) -> Error {
-        Error::Urdf { line: self.joint_lines.get(joint).copied(), problem }
+        Error::Urdf { line: self.joint_lines.get(joint).copied(), problem: problem.into() }
     }
 }
 

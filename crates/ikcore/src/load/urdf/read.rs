@@ -114,7 +114,7 @@ fn read_urdf(path: &str) -> Result<String> {
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
         let problem = format!("'{path}' is a xacro file: run `xacro {path} > {stem}.urdf` and load the result");
-        return Err(Error::Urdf { line: None, problem });
+        return Err(Error::Urdf { line: None, problem: problem.into() });
     }
     Ok(text)
 }
@@ -123,5 +123,5 @@ fn not_utf8(error: &FromUtf8Error) -> Error {
     let (bytes, valid) = (error.as_bytes(), error.utf8_error().valid_up_to());
     let line = 1 + bytes[..valid].iter().filter(|byte| **byte == b'\n').count();
     let problem = format!("byte 0x{:02x} is not UTF-8; save the file with the encoding UTF-8", bytes[valid]);
-    Error::Urdf { line: u32::try_from(line).ok(), problem }
+    Error::Urdf { line: u32::try_from(line).ok(), problem: problem.into() }
 }

@@ -79,7 +79,7 @@ impl Srdf {
             "it is for another robot: '{}' has no two links that it disables, such as '{first}'{hint}; its links: {links}",
             robot.name()
         );
-        Err(Error::Srdf { line: None, problem })
+        Err(Error::Srdf { line: None, problem: problem.into() })
     }
 
     /// Returns the disabled pairs; `disable_default_collisions` of a link disables it with all other links.

@@ -38,7 +38,7 @@ impl<'a> Tree<'a> {
                 let quoted: Vec<String> = roots.iter().map(|name| format!("'{name}'")).collect();
                 let roots = listed(quoted.iter().map(String::as_str));
                 let problem = format!("no joint leads to any of the links {roots}: a tree has one root");
-                return Err(Error::Urdf { line: None, problem });
+                return Err(Error::Urdf { line: None, problem: problem.into() });
             }
         }
         Ok(tree)
@@ -136,7 +136,7 @@ impl<'a> Tree<'a> {
     pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
-            return Err(Error::Urdf { line: None, problem });
+            return Err(Error::Urdf { line: None, problem: problem.into() });
         }
         let mut up: Vec<usize> = self.joints_above(base).collect();
         let mut down: Vec<usize> = self.joints_above(tip).collect();

@@ -3,6 +3,7 @@
 use roxmltree::Node;
 
 use crate::error::{Error, Result, shortened};
+use crate::message::Message;
 
 /// Advice for unexpanded xacro.
 const EXPAND: &str = "run `xacro robot.xacro > robot.urdf` and load the result";
@@ -30,7 +31,7 @@ pub(super) fn not_xml(error: &roxmltree::Error) -> Error {
         }
         _ => format!("not XML: {error}"),
     };
-    Error::Urdf { line: Some(error.pos().row), problem }
+    Error::Urdf { line: Some(error.pos().row), problem: problem.into() }
 }
 
 /// Returns the line of an element, from 1.
@@ -53,7 +54,7 @@ pub(super) fn lines<'a, 'x: 'a>(text: &str, nodes: impl Iterator<Item = Node<'a,
 }
 
 /// Creates an error located at an element.
-pub(super) fn error_at(node: Node, problem: impl Into<String>) -> Error {
+pub(super) fn error_at(node: Node, problem: impl Into<Message>) -> Error {
     Error::Urdf { line: Some(line(node)), problem: problem.into() }
 }
 

@@ -6,7 +6,7 @@
 //! both) with the velocity just updated, as in line 7 of its Algorithm 1. [`BeetleSwarm::literal`] has no inertia
 //! weight.
 
-use super::best_places::BestPlaces;
+use super::best_positions::BestPositions;
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
 use super::velocities::Velocities;
@@ -105,7 +105,7 @@ impl BeetleSwarm {
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
-    memory: BestPlaces,
+    memory: BestPositions,
     velocities: Velocities,
     /// Right and left antenna of each beetle, alternating.
     antennae: Members,
@@ -120,7 +120,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let beetles = self.schedule.population;
         *state = State {
-            memory: BestPlaces::new(beetles, x0.len()),
+            memory: BestPositions::new(beetles, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             antennae: Members::new(2 * beetles, x0.len()),
             step: self.step,

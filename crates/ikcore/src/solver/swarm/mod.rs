@@ -1,11 +1,11 @@
 //! Population methods: swarms, colonies and evolution. They need only objective values.
 //!
-//! `schedule` is the size of a population and its stopping rule; `population` holds its members, `best_places` the best
+//! `schedule` is the size of a population and its stopping rule; `population` holds its members, `best_positions` the best
 //! position of each member, `velocities` the velocities of the two methods that have them. Every other file is one algorithm.
 
 mod bee_colony;
 mod beetle_swarm;
-mod best_places;
+mod best_positions;
 mod differential_evolution;
 mod firefly;
 mod genetic;

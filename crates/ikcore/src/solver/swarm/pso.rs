@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::best_places::BestPlaces;
+use super::best_positions::BestPositions;
 use super::population::{Generation, Population, tile};
 use super::schedule::Schedule;
 use super::velocities::Velocities;
@@ -169,7 +169,7 @@ pub(crate) fn constriction(phi: f64) -> f64 {
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
-    memory: BestPlaces,
+    memory: BestPositions,
     velocities: Velocities,
     tiled: TiledBounds,
 }
@@ -180,7 +180,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
     fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         *state = State {
-            memory: BestPlaces::new(self.schedule.population, x0.len()),
+            memory: BestPositions::new(self.schedule.population, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             tiled: TiledBounds::new(evaluator.bounds(), &population),
             population,

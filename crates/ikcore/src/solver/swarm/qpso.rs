@@ -1,7 +1,7 @@
 //! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004). Particles have no velocity: they are drawn around an
 //! attractor, with a spread proportional to their distance from the mean best position.
 
-use super::best_places::BestPlaces;
+use super::best_positions::BestPositions;
 use super::population::{Generation, Members, Population, tile};
 use super::schedule::Schedule;
 use crate::error::{Result, require_positive};
@@ -42,7 +42,7 @@ impl Qpso {
 #[derive(Debug, Clone, Default)]
 pub struct State {
     population: Population,
-    memory: BestPlaces,
+    memory: BestPositions,
     scratch: Scratch,
 }
 
@@ -51,7 +51,7 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
 
     fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        let memory = BestPlaces::new(self.schedule.population, x0.len());
+        let memory = BestPositions::new(self.schedule.population, x0.len());
         *state = State { scratch: Scratch::new(&population.members), population, memory };
         Ok(())
     }
@@ -92,7 +92,7 @@ impl Scratch {
 const LAST_PLACE: f64 = 1.0 / (1_u64 << 27) as f64;
 
 /// Computes the mean best position m = (sum over particles of p) / M.
-fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
+fn find_mean(memory: &BestPositions, mean: &mut [f64]) {
     mean.fill(0.0);
     for p in memory.members.points() {
         mean.iter_mut().zip(p).for_each(|(mean, p)| *mean += p);
@@ -103,7 +103,7 @@ fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
 
 impl Qpso {
     /// Draws x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), with phi, u and the sign drawn for each coordinate.
-    fn draw_particles(&self, points: &mut [f64], memory: &BestPlaces, scratch: &mut Scratch, rng: &mut LazyRng) {
+    fn draw_particles(&self, points: &mut [f64], memory: &BestPositions, scratch: &mut Scratch, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut scratch.leader);
         tile(&scratch.mean, &mut scratch.means);
         rng.fill(&mut scratch.draws);

@@ -3,7 +3,7 @@
 //! Shared data is repeated for each particle, so that an update is one long loop over all coordinates, which the
 //! compiler vectorises for any dimension.
 
-use super::best_places::BestPlaces;
+use super::best_positions::BestPositions;
 use super::population::{Population, tile};
 use crate::rng::{LazyRng, split};
 
@@ -41,7 +41,13 @@ impl Velocities {
     }
 
     /// Updates v = w v + c1 r1 (p - x) + c2 r2 (g - x), with r1 and r2 drawn for each coordinate, and clamps it to the limits.
-    pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPlaces, rng: &mut LazyRng) {
+    pub fn update(
+        &mut self,
+        [w, c1, c2]: [f64; 3],
+        population: &Population,
+        memory: &BestPositions,
+        rng: &mut LazyRng,
+    ) {
         tile(memory.members.point(memory.leader), &mut self.leader);
         rng.fill(&mut self.draws);
         let count = self.all.len();

@@ -150,7 +150,7 @@ impl ControlSession {
             Stage::Start => true,
             _ if target.is_oriented() != self.target.is_oriented() => {
                 let problem = format!("target: expected {}, as before, got {}", self.target.kind(), target.kind());
-                return Err(Error::Contradiction { problem });
+                return Err(Error::Contradiction { problem: problem.into() });
             }
             Stage::Ready => {
                 let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];

@@ -122,7 +122,7 @@ impl Znnbas {
         require_at_least_one("delay_steps", self.delay_steps)?;
         for (what, ticks) in [("delay_steps", self.delay_steps), ("sensor_delay", self.sensor_delay)] {
             if ticks > MOST_TICKS {
-                return Err(Error::out_of_range(what, &format!("at most {MOST_TICKS} ticks"), ticks as f64));
+                return Err(Error::out_of_range(what, format!("at most {MOST_TICKS} ticks"), ticks as f64));
             }
         }
         Ok(())

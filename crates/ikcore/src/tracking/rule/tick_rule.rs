@@ -73,7 +73,7 @@ impl TickRule {
     pub(in crate::tracking) fn require_tips(&self, robot: &Robot) -> Result<()> {
         match self {
             Self::MidStep => Ok(()),
-            Self::Solver(_) => robot.require_one_tip("solver="),
+            Self::Solver(_) => robot.require_one_tip("a given solver"),
             Self::WeightedPseudoInverse(_) => robot.require_one_tip("WeightedPseudoInverse"),
         }
     }

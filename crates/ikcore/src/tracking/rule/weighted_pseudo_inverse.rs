@@ -101,7 +101,7 @@ impl WeightedPseudoInverse {
             if let Some(got) = length.filter(|length| *length != robot.dof()) {
                 let (what, expected) =
                     (format!("{what} for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
-                return Err(Error::WrongLength { what, expected, got });
+                return Err(Error::WrongLength { what: what.into(), expected, got });
             }
         }
         Ok(())

@@ -1,0 +1,98 @@
+//! Settings that messages name.
+
+use std::fmt;
+
+/// Setting of a call, or advice about one. It has plain words here; an interface has its own spelling.
+#[non_exhaustive]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Setting {
+    /// Limit of this kind: "velocity", "acceleration" or "jerk".
+    Limit(&'static str),
+    /// Budget of a search.
+    Budget,
+    /// Planner: "minmax", "timed" or "tpbso".
+    Method(&'static str),
+    /// Planner that has a solver of its own.
+    MethodWithSolver,
+    /// Tip of a robot that has several.
+    Tip,
+    /// Common task of all tips.
+    OneTask,
+    /// Tasks of each of several tips.
+    TaskOfEachTip,
+    /// Preferred solution: "nearest" or "best".
+    Prefer(&'static str),
+    /// Solutions at all whole turns.
+    AllTurns,
+    /// Error for an invalid item of a batch.
+    RaiseInvalid,
+    /// Approach from rest to a moving path.
+    Ease,
+    /// Motion out of a contact first.
+    FreeStart,
+    /// Joint velocity at the start.
+    StartVelocity,
+    /// Configuration at the start.
+    StartConfiguration,
+    /// New timing of a plan.
+    Retime,
+    /// Distance to keep.
+    Margin,
+    /// Bodies that a margin is kept from.
+    Surroundings,
+    /// Region of a map.
+    Region,
+    /// Task of a map: of a position, and perhaps of a direction.
+    MapTask {
+        /// Whether a direction is possible.
+        pointing: bool,
+    },
+    /// Collision shapes without meshes.
+    Primitives,
+    /// Collision shapes that are fitted to meshes.
+    Fitted,
+    /// Capsules along links or at ends that are given.
+    GiveCapsules,
+    /// Capsules that the robot has, and no other shapes.
+    CapsulesAlone,
+    /// Further capsules.
+    MoreCapsules,
+    /// Capsules of one radius along the links.
+    CapsulesAlongLinks,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Limit(kind) => {
+                let article = if *kind == "acceleration" { "an" } else { "a" };
+                return write!(f, "{article} {kind} limit");
+            }
+            Self::Method(name) => return write!(f, "the method '{name}'"),
+            Self::Prefer(which) => return write!(f, "the preference '{which}'"),
+            Self::Budget => "budget",
+            Self::MethodWithSolver => "the method 'tpbso'",
+            Self::Tip => "its tip",
+            Self::OneTask => "one task for all tips",
+            Self::TaskOfEachTip => "each of several tips has a task of its own",
+            Self::AllTurns => "taking all whole turns",
+            Self::RaiseInvalid => "make invalid items an error",
+            Self::Ease => "an eased start",
+            Self::FreeStart => "free_start",
+            Self::StartVelocity => "start velocity",
+            Self::StartConfiguration => "it instead of a target",
+            Self::Retime => "a new timing of the plan",
+            Self::Margin => "a margin",
+            Self::Surroundings => "obstacles (perhaps none) or self-collision",
+            Self::Region => "a region",
+            Self::MapTask { pointing: true } => "a pointing or a position task",
+            Self::MapTask { pointing: false } => "a position task",
+            Self::Primitives => "primitive shapes alone",
+            Self::Fitted => "shapes fitted to its meshes",
+            Self::GiveCapsules => "give it capsules",
+            Self::CapsulesAlone => "giving it the capsules that it has",
+            Self::MoreCapsules => "giving it more of them",
+            Self::CapsulesAlongLinks => "with_capsules_along_links",
+        })
+    }
+}

@@ -1,0 +1,44 @@
+//! Messages of the core in the words of Python: the settings that they name are spelt as keywords and calls.
+
+use ikcore::message::{Message, Setting};
+
+/// Returns a message in the words of Python.
+pub fn said(message: &Message) -> String {
+    message.worded(spelt)
+}
+
+/// Returns the spelling of a setting in Python.
+pub fn spelt(setting: &Setting) -> String {
+    let words = match setting {
+        Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
+        Setting::Method(name) => return format!("method=\"{name}\""),
+        Setting::Prefer(which) => return format!("prefer=\"{which}\""),
+        Setting::Budget => "budget in stop=Stop(...)",
+        Setting::MethodWithSolver => "method=TPBSO(solver=...)",
+        Setting::Tip => "tip=",
+        Setting::OneTask => "task= for all tips",
+        Setting::TaskOfEachTip => "task= of several tips is a dict, such as {tip: tasks.Position()}",
+        Setting::AllTurns => "turns=True",
+        Setting::RaiseInvalid => "use on_invalid=\"raise\"",
+        Setting::Ease => "ease=True",
+        Setting::FreeStart => "free_start=True",
+        Setting::StartVelocity => "start_qd",
+        Setting::StartConfiguration => "start_q",
+        Setting::Retime => "plan.retime(limits)",
+        Setting::Margin => "margin=",
+        Setting::Surroundings => "obstacles= (a list, which may be empty) or self_collision=True",
+        Setting::Region => "region=(corner, corner)",
+        Setting::MapTask { pointing: true } => "task=tasks.Pointing() or tasks.Position()",
+        Setting::MapTask { pointing: false } => "task=tasks.Position()",
+        Setting::Primitives => "collision=\"primitives\"",
+        Setting::Fitted => "collision=\"fit\"",
+        Setting::GiveCapsules => {
+            "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])"
+        }
+        Setting::CapsulesAlone => "robot.with_capsules(robot.capsules)",
+        Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
+        Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
+        _ => return setting.to_string(),
+    };
+    words.into()
+}

@@ -1,0 +1,22 @@
+"""Messages in the words of the command line: its options in place of the keywords of Python."""
+
+_OPTIONS = {
+    **{f"limits=Limits({kind}=...)": f"--{kind}-limit" for kind in ("velocity", "acceleration", "jerk")},
+    **{f'method="{name}"': f"--method {name}" for name in ("minmax", "timed", "tpbso")},
+    "budget in stop=Stop(...)": "budget (--max-evaluations)",
+    "ease=True": "--ease",
+    "free_start=True": "--free-start",
+    "margin=": "--margin",
+    "obstacles= (a list, which may be empty) or self_collision=True": "--scene",
+    "one of them as tip=": "one of them as --tip",
+    "plan.retime(limits)": "`beetle-ik plan retime`",
+    "with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])": "by --link-radius",
+}
+
+
+def in_options(text: object) -> str:
+    """Returns a message of the library with options where it names keywords that have one."""
+    message = str(text)
+    for keyword, option in _OPTIONS.items():
+        message = message.replace(keyword, option)
+    return message
