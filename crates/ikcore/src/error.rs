@@ -443,6 +443,33 @@ pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
 }
 
+/// Checks that `value` is finite and not negative.
+pub(crate) fn require_not_negative(what: &str, value: f64) -> Result<()> {
+    let holds = value.is_finite() && value >= 0.0;
+    if holds { Ok(()) } else { Err(Error::out_of_range(what, "zero or more and finite", value)) }
+}
+
+/// Checks that `value` is above 0 and at most 1.
+pub(crate) fn require_factor(what: &str, value: f64) -> Result<()> {
+    let holds = value > 0.0 && value <= 1.0;
+    if holds { Ok(()) } else { Err(Error::out_of_range(what, "above 0 and at most 1", value)) }
+}
+
+/// Checks that `value` is between 0 and 1.
+pub(crate) fn require_fraction(what: &str, value: f64) -> Result<()> {
+    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Error::out_of_range(what, "between 0 and 1", value)) }
+}
+
+/// Checks that `value` is at least 0 and below 1.
+pub(crate) fn require_proper_fraction(what: &str, value: f64) -> Result<()> {
+    if (0.0..1.0).contains(&value) { Ok(()) } else { Err(Error::out_of_range(what, "at least 0 and below 1", value)) }
+}
+
+/// Checks that `count` is not zero.
+pub(crate) fn require_at_least_one(what: &str, count: usize) -> Result<()> {
+    if count > 0 { Ok(()) } else { Err(Error::out_of_range(what, "at least 1", 0.0)) }
+}
+
 /// Length up to which a message repeats a text (characters).
 const ECHO_LENGTH: usize = 200;
 

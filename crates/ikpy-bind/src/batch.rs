@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use ikcore::batch::{self, Batch, BatchItem, BatchOptions, OnInvalid, Targets};
+use ikcore::batch::{self, Batch, BatchOptions, OnInvalid, Targets};
+use ikcore::ik::{Solution, SolveReport};
+use ikcore::objective::Point;
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -28,7 +30,7 @@ use crate::wording::said;
 /// batches.
 #[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
 pub struct PyBatchSolution {
-    items: Vec<BatchItem>,
+    items: Vec<SolveReport>,
     dof: usize,
     /// The best configurations found (m, n) (rad, m), inside the limits; NaN in rows whose `status` is INVALID.
     #[pyo3(get)]
@@ -97,7 +99,8 @@ impl PyBatchSolution {
         match select("a batch", index, self.items.len())? {
             Selection::One(i) => {
                 let q = self.q.bind(py).readonly();
-                let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
+                let q = Point::from_slice(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
+                let solution = Solution { q, report: self.items[i].clone() };
                 let tips = self.tips.select(&[i]);
                 Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py), tips))?.into_any())
             }
@@ -146,7 +149,7 @@ impl PyBatchSolution {
             status: column(py, &items, |item| item.status as u8),
             position_error: column(py, &items, |item| item.error.position),
             rotation_error: column(py, &items, |item| item.error.rotation),
-            clearance: column(py, &items, BatchItem::clearance),
+            clearance: column(py, &items, SolveReport::clearance),
             iterations: column(py, &items, |item| item.iterations as i64),
             restarts: column(py, &items, |item| item.restarts as i64),
             evaluations: column(py, &items, |item| item.evaluations as i64),
@@ -174,7 +177,7 @@ pub fn batch_message(counts: Vec<usize>) -> String {
     said(&batch::message_of_counts(&counts))
 }
 
-fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchItem) -> T) -> Py<PyArray1<T>> {
+fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveReport) -> T) -> Py<PyArray1<T>> {
     row(py, items.iter().map(of).collect()).unbind()
 }
 

@@ -84,7 +84,7 @@ impl PyMapGrid {
     /// Number of orientations of each voxel.
     #[getter]
     fn orientations(&self) -> usize {
-        self.core.orientations().len()
+        self.core.orientations().count()
     }
 
     /// Number of rolls of each direction.
@@ -130,7 +130,7 @@ impl PyMapGrid {
             )));
         };
         let (place, azimuth) = (voxels.centre(voxel), voxels.azimuth(voxel));
-        let count = self.core.orientations().len();
+        let count = self.core.orientations().count();
         let poses = (0..count).flat_map(|i| rows(&self.core.pose(place, azimuth, i)));
         table(py, poses.collect(), &[count, 4, 4])
     }
@@ -157,7 +157,7 @@ impl PyMapGrid {
 
     fn __repr__(&self) -> String {
         let shape = shape_text(&self.core.voxels().shape());
-        let orientations = counted(self.core.orientations().len(), "orientation");
+        let orientations = counted(self.core.orientations().count(), "orientation");
         format!("<MapGrid: {shape} voxels of {} m, {orientations}>", self.voxel())
     }
 

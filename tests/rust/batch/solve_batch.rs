@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::common::chains::RandomChain;
 use crate::common::{bits, message, robot};
 use ikcore::batch::{Batch, BatchOptions, OnInvalid, Targets, solve_batch};
-use ikcore::ik::{Solution, SolveOptions, solve};
+use ikcore::ik::{Solution, SolveOptions, SolveReport, solve};
 use ikcore::math::pose;
 use ikcore::nalgebra::Matrix4;
 use ikcore::rng;
@@ -36,9 +36,9 @@ fn solved(robot: &Robot, targets: &[[f64; 16]], options: &BatchOptions<'_>) -> B
 type Facts = (Vec<u64>, Status, [u64; 2], [usize; 3]);
 
 fn facts(solution: &Solution) -> Facts {
-    let Solution { q, status, error, iterations, restarts, evaluations, .. } = solution;
+    let SolveReport { status, error, iterations, restarts, evaluations, .. } = &solution.report;
     let errors = [error.position.to_bits(), error.rotation.to_bits()];
-    (bits(q), *status, errors, [*iterations, *restarts, *evaluations])
+    (bits(&solution.q), *status, errors, [*iterations, *restarts, *evaluations])
 }
 
 fn all_facts(batch: &Batch) -> Vec<Facts> {

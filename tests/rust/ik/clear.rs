@@ -305,7 +305,7 @@ fn nearest_bodies_left_for_later_are_those_found_at_once() {
         let mut later = solved(&robot, &target, &SolveOptions { nearest_later: true, ..options.clone() });
         assert!(later.status != Status::Solved || later.nearest.is_none());
         later.find_nearest(&robot, &options.surroundings).unwrap();
-        assert_eq!((later.q, later.nearest), (at_once.q, at_once.nearest));
+        assert_eq!((&later.q, &later.nearest), (&at_once.q, &at_once.nearest));
     }
 }
 

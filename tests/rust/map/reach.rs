@@ -28,7 +28,7 @@ fn poses<'a>(grid: &'a MapGrid, chunks: &'a [MapChunk]) -> impl Iterator<Item = 
         voxels.enumerate().flat_map(move |(place, voxel)| {
             let (centre, azimuth) = (grid.voxels().centre(voxel), grid.voxels().azimuth(voxel));
             let bits = &chunk.reached[place * grid.bytes()..][..grid.bytes()];
-            (0..grid.orientations().len()).map(move |i| {
+            (0..grid.orientations().count()).map(move |i| {
                 let pose = grid.pose(centre, azimuth, i);
                 assert_eq!(grid.locate(&pose), Some((voxel, i)));
                 (bits[i / 8] >> (i % 8) & 1 == 1, Target::Pose(pose))
@@ -89,13 +89,13 @@ fn limits_of_the_first_joint_count_at_each_azimuth() {
 fn planar_arms_and_tasks_have_maps() {
     let planar = Robot::planar(&[0.5, 0.4, 0.3]).unwrap();
     let grid = MapGrid::new(&planar, &MapLayout { voxel: 0.2, ..LAYOUT }, &MapOptions::default()).unwrap();
-    assert_eq!((grid.voxels().shape()[2], grid.orientations().len()), (1, 2));
+    assert_eq!((grid.voxels().shape()[2], grid.orientations().count()), (1, 2));
     let [reached, missed, alone] = compared(&planar, &MapLayout { voxel: 0.2, ..LAYOUT }, &MapOptions::default());
     assert!(reached > 50 && missed == 0 && alone == 0, "{reached} {missed} {alone}");
     for kind in [TaskKind::Position, TaskKind::Pointing { axis: [0.0, 1.0, 1.0] }] {
         let options = MapOptions { task: Some(kind.into()), evaluations: 400, ..MapOptions::default() };
         let grid = MapGrid::new(&robot("ur5e"), &LAYOUT, &options).unwrap();
-        assert_eq!(grid.orientations().len(), if kind == TaskKind::Position { 1 } else { 6 });
+        assert_eq!(grid.orientations().count(), if kind == TaskKind::Position { 1 } else { 6 });
         let [reached, missed, alone] = compared(&robot("ur5e"), &LAYOUT, &options);
         assert!(reached > 20 && missed * 50 <= reached && alone == 0, "{kind:?}: {reached} {missed} {alone}");
     }

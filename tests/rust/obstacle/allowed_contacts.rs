@@ -141,7 +141,9 @@ fn a_robot_stands_on_a_floor_that_its_base_may_touch() {
     }
     let stands = on_floor(&robot, 0.0, &["link_1", "base"]).unwrap();
     assert_eq!(stands.status, Status::Solved, "{}", stands.message());
-    let Neighbor::Obstacle(..) = stands.nearest.unwrap().clearance.nearest.unwrap().contact.other else { return };
+    let Neighbor::Obstacle(..) = stands.report.nearest.unwrap().clearance.nearest.unwrap().contact.other else {
+        return;
+    };
     // A floor above the hand stays in the way of the other links.
     let sunk = on_floor(&robot, 0.8, &["link_1", "base"]).unwrap();
     assert_eq!(sunk.status, Status::InCollision);

@@ -13,7 +13,7 @@ use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, BestPoint, DerivativeFree, Evaluator, Monitor, Status, Stop, Unattended};
-use ikcore::task::{Aims, Target, TipCriterion, Tolerance};
+use ikcore::task::{Aims, CheckedTask, Target, Tolerance};
 
 /// Evaluations between two polls of monitor and clock, plus the largest group handed in at once.
 const POLL: usize = 256 + 16;
@@ -147,7 +147,7 @@ impl LeastSquares for Probe {
 }
 
 static ARM: LazyLock<Robot> = LazyLock::new(|| robot("iiwa14"));
-static TASK: LazyLock<TipCriterion> = LazyLock::new(|| Tolerance::default().into());
+static TASK: LazyLock<CheckedTask> = LazyLock::new(|| Tolerance::default().into());
 static POSE: LazyLock<Target> = LazyLock::new(|| pose_at(&ARM, &[0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1]));
 
 /// Objective, start and rules of a run.

@@ -319,20 +319,20 @@ fn a_reset_in_motion_goes_on_from_there() {
     let arm = robot("panda");
     let mut session = session(&arm, moderate(&arm, 50.0), 0.002);
     let (qd, qdd) = ([0.4, 0.0, 0.0, -0.2, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    session.reset_moving(&START, Some(&qd), Some(&qdd)).unwrap();
+    session.reset(&START, Some(&qd), Some(&qdd)).unwrap();
     assert!(session.qd().iter().zip(&qd).all(|(a, b)| (a - b).abs() < 1e-12));
     session.step(&Target::Position([0.3, 0.4, 0.5]), &mut Unattended).unwrap();
     let changes = session.qd().iter().zip(&qd).map(|(a, b)| (a - b) / 0.002).collect::<Vec<_>>();
     assert!(changes.iter().zip(&qdd).all(|(a, b)| (a - b).abs() <= 50.0 * 0.002), "{changes:?}");
 
-    let error = session.reset_moving(&START, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.6]), None).unwrap_err().to_string();
+    let error = session.reset(&START, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.6]), None).unwrap_err().to_string();
     let says = "joint 'panda_joint7' at 0.8000 with velocity 1.600 and acceleration 0 cannot stop inside its limits; start \
                 slower or farther inside";
     assert!(error.ends_with(&says["joint 'panda_joint7'".len()..]), "{error}");
     let mut near_its_limit = START;
     near_its_limit[6] = 2.85;
-    assert!(session.reset_moving(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]), None).is_err());
-    assert!(session.reset_moving(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]), None).is_ok());
+    assert!(session.reset(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]), None).is_err());
+    assert!(session.reset(&near_its_limit, Some(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]), None).is_ok());
 }
 
 #[test]

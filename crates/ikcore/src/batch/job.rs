@@ -7,11 +7,11 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::batch_options::BatchOptions;
-use super::results::{Batch, BatchItem};
+use super::results::Batch;
 use super::targets::Targets;
 use super::workers;
 use crate::error::{Error, Result};
-use crate::ik::{Query, SolveContext, solve_query};
+use crate::ik::{Query, SolveContext, SolveReport, solve_query};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::TargetRow;
@@ -95,7 +95,7 @@ impl<'a> Job<'a> {
         &self,
         first: usize,
         qs: &mut [f64],
-        items: &mut [BatchItem],
+        items: &mut [SolveReport],
         monitor: &mut dyn Monitor,
         mut done: impl FnMut(&mut dyn Monitor),
     ) {
@@ -107,14 +107,14 @@ impl<'a> Job<'a> {
         let mut stopwatch = Stopwatch::start();
         for ((row, item), q) in items.iter_mut().enumerate().zip(qs.chunks_mut(self.dof)) {
             *item = match self.read(first + row) {
-                Err(_) => BatchItem::untouched(Status::Invalid),
+                Err(_) => SolveReport::unsolved(Status::Invalid),
                 Ok((targets, start)) => {
                     let query =
                         Query { targets: &targets, start, stream: (self.first_row + first + row) as u64, stopwatch };
                     let solution = solve_query(&self.context, &query, monitor);
                     q.copy_from_slice(&solution.q);
                     stopwatch = stopwatch.started_later(solution.elapsed);
-                    BatchItem::from(solution)
+                    solution.report
                 }
             };
             done(monitor);
@@ -137,7 +137,7 @@ impl<'a> Job<'a> {
         let groups = batch.q.par_chunks_mut(GROUP * self.dof).zip(batch.items.par_chunks_mut(GROUP)).enumerate();
         workers::run_on(pool, total, monitor, |shared| {
             groups.for_each(|(i, (qs, items))| {
-                self.solve_rows(i * GROUP, qs, items, &mut shared.monitor(), |_| shared.count());
+                self.solve_rows(i * GROUP, qs, items, &mut shared.monitor(), |_| shared.count(1));
             });
         });
     }

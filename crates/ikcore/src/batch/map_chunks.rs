@@ -34,7 +34,7 @@ pub fn map_chunks(
             let rings = rings_of(grid, *ranges);
             let results = rings.par_iter().with_max_len(1).map(|ring| {
                 let result = looks.ring(ring, &mut shared.monitor());
-                shared.count_all(ring.voxels.len());
+                shared.count(ring.voxels.len());
                 result
             });
             let results: Vec<_> = results.collect();

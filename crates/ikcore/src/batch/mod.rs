@@ -18,6 +18,6 @@ mod workers;
 pub use batch_options::{BatchOptions, OnInvalid};
 pub use map_chunks::map_chunks;
 pub use plan_batch::{PlanProblem, plan_batch, plan_status};
-pub use results::{Batch, BatchItem, message_of_counts};
+pub use results::{Batch, message_of_counts};
 pub use solve_batch::solve_batch;
 pub use targets::Targets;

@@ -59,7 +59,7 @@ pub fn plan_batch(
     workers::run_on(&*pool::pool(threads)?, problems.len(), monitor, |shared| {
         let each = problems.par_iter().with_max_len(1).map(|problem| {
             let result = shared.interruptible(|| planned(problem, &mut shared.monitor()));
-            shared.count();
+            shared.count(1);
             result
         });
         each.collect_into_vec(&mut results);

@@ -33,13 +33,8 @@ impl Shared {
         interruptible(move || !stopped.load(Ordering::Relaxed), work)
     }
 
-    /// Counts one finished item.
-    pub(super) fn count(&self) {
-        self.count_all(1);
-    }
-
-    /// Counts several finished items.
-    pub(super) fn count_all(&self, items: usize) {
+    /// Counts finished items.
+    pub(super) fn count(&self, items: usize) {
         self.done.fetch_add(items, Ordering::Relaxed);
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::attempt::{APPROACHES, Attempt};
-use super::out_of_reach::{ended, is_wide, obstruction};
+use super::out_of_reach::{is_wide, obstruction, unreachable_result};
 use super::preference::{AT_LIMIT, Preference};
 use super::solution::Solution;
 use super::solutions::Solutions;
@@ -14,6 +14,7 @@ use crate::closed_form::{
 };
 use crate::math::Frame;
 use crate::math::comparison::larger;
+use crate::math::vector::largest_difference;
 use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, MultiStart};
 use crate::task::{Target, TipError, Tolerance};
@@ -73,11 +74,11 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
     }
     let context = attempt.context;
     let (robot, bounds) = (context.robot(), context.bounds());
-    let mut taker = Taker {
+    let mut collector = BranchCollector {
         turns: NearestTurns::new(robot, bounds, reference),
         descent,
         verified_is_solved: tolerance.position.min(tolerance.rotation) >= VERIFIED,
-        nearly: is_wide(attempt),
+        may_reach_by_tolerance: is_wide(attempt),
         found: AllBranches {
             solutions: Solutions::new(robot.dof()),
             obstruction: None,
@@ -90,12 +91,12 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
     let count = match robot.family(pose) {
         Some(_) if redundancy == 0 => return None,
         Some(family) => {
-            taker.sample(&family, redundancy);
+            collector.sample(&family, redundancy);
             None
         }
-        None => Some(taker.take_all(pose)?),
+        None => Some(collector.take_all(pose)?),
     };
-    let mut found = taker.found;
+    let mut found = collector.found;
     found.complete &= robot.proves_branches();
     if found.solutions.is_empty() {
         found.obstruction = found.complete.then(|| obstruction(attempt, count));
@@ -120,43 +121,45 @@ pub(super) fn nearest_of_all_branches(
     }
     let obstruction = all.obstruction?;
     let from = attempt.first_start(start);
-    Some(ended(attempt, from, obstruction))
+    Some(unreachable_result(attempt, from, obstruction))
 }
 
 /// Collector of the branches inside the limits.
-struct Taker<'a, 'm, 'p> {
+struct BranchCollector<'a, 'm, 'p> {
     attempt: &'a mut Attempt<'m, 'p>,
     turns: NearestTurns<'a>,
     descent: LevenbergMarquardt,
     /// Whether the tolerances are no tighter than the verification of branches.
     verified_is_solved: bool,
     /// Whether the tolerances may be met although no branch is inside the limits.
-    nearly: bool,
+    may_reach_by_tolerance: bool,
     found: AllBranches,
 }
 
-impl Taker<'_, '_, '_> {
+impl BranchCollector<'_, '_, '_> {
     /// Takes the solutions of a redundant arm at `count` values of its parameter, or at more values if there is none.
     fn sample(&mut self, family: &PoseFamily<'_>, count: usize) {
         let [lower, upper] = self.attempt.context.sampling_ranges();
         let limits = family.limits(lower, upper);
         let arcs = family.arcs(&limits);
         // Outside the arcs there is no solution: without arcs the pose is out of reach, unless tolerances are wide.
-        self.found.complete = arcs.is_empty() && !self.nearly;
+        self.found.complete = arcs.is_empty() && !self.may_reach_by_tolerance;
         for finer in [1, FINER, FINER * FINER] {
             self.take_values(family, &limits, arcs.spread(count.saturating_mul(finer)));
             if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
                 return;
             }
-            if finer == 1 && family.is_excluded(&limits, &arcs) && !self.nearly {
+            if finer == 1 && family.is_excluded(&limits, &arcs) && !self.may_reach_by_tolerance {
                 self.found.complete = true;
                 return;
             }
         }
         if let Some(decisive) = family.decisive(&limits) {
             self.take_values(family, &limits, decisive.values.into_iter());
-            self.found.complete =
-                decisive.is_sure && self.found.solutions.is_empty() && !self.found.interrupted && !self.nearly;
+            self.found.complete = decisive.is_sure
+                && self.found.solutions.is_empty()
+                && !self.found.interrupted
+                && !self.may_reach_by_tolerance;
         }
     }
 
@@ -168,8 +171,8 @@ impl Taker<'_, '_, '_> {
             for (q, error) in branches.iter() {
                 let outside = self.take_inside(q, error);
                 if AT_LIMIT < outside && outside < NEAR_LIMIT && self.found.solutions.is_empty() {
-                    self.nearly = true;
-                    self.take_beyond(q);
+                    self.may_reach_by_tolerance = true;
+                    self.take_by_descent(q);
                 }
             }
             looks += 1;
@@ -182,9 +185,9 @@ impl Taker<'_, '_, '_> {
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
-        self.nearly |= branches.nearly;
-        if self.found.solutions.is_empty() && self.nearly {
-            self.take_beside();
+        self.may_reach_by_tolerance |= branches.nearly;
+        if self.found.solutions.is_empty() && self.may_reach_by_tolerance {
+            self.take_within_tolerance();
         }
         if branches.doubt == Doubt::Open && !self.found.singular {
             self.take_scattered();
@@ -225,7 +228,7 @@ impl Taker<'_, '_, '_> {
         } else {
             // Rounding in the closed form may exceed the tolerances.
             self.found.complete = false;
-            self.take_beyond(near);
+            self.take_by_descent(near);
         }
         outside
     }
@@ -245,11 +248,11 @@ impl Taker<'_, '_, '_> {
         if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
             // A descent decides if the arm is far from singular.
             if weak.change > FAR_FROM_FREE {
-                return self.take_beyond(q);
+                return self.take_by_descent(q);
             }
             self.found.complete = false;
             let along = self.least_outside_along(q, &weak.direction);
-            self.take_beyond(&along);
+            self.take_by_descent(&along);
         }
     }
 
@@ -282,7 +285,7 @@ impl Taker<'_, '_, '_> {
     /// Takes the branches of a pose within the tolerances if the pose itself has none inside the limits: at the edge of the
     /// reach, or just outside the poses that an arm with few joints can reach.
     #[cold]
-    fn take_beside(&mut self) {
+    fn take_within_tolerance(&mut self) {
         self.found.complete = false;
         let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
@@ -292,7 +295,7 @@ impl Taker<'_, '_, '_> {
         let reached = context.robot().tip(&q);
         let branches = context.robot().branches(&reached);
         for (q, _) in branches.iter().flat_map(ArmBranches::iter) {
-            self.take_beyond(q);
+            self.take_by_descent(q);
         }
         if self.found.solutions.is_empty() {
             self.found.solutions.push(&q, self.attempt.problem.assess(&q).error.into());
@@ -304,14 +307,14 @@ impl Taker<'_, '_, '_> {
     fn take_scattered(&mut self) {
         let mut start = self.attempt.first_start(None);
         for _ in 0..SCATTERED {
-            self.take_beyond(&start);
+            self.take_by_descent(&start);
             self.attempt.next_start(&mut start);
         }
     }
 
     /// Takes the solution of a descent from `q`.
     #[cold]
-    fn take_beyond(&mut self, q: &[f64]) {
+    fn take_by_descent(&mut self, q: &[f64]) {
         let mut near = Point::from_slice(q);
         self.turns.bring_near(&mut near);
         let bounds = self.attempt.context.bounds();
@@ -319,7 +322,7 @@ impl Taker<'_, '_, '_> {
         let mut q = self.attempt.descend_beyond(&self.descent, near, VERIFIED, bounds);
         self.turns.bring_near(&mut q);
         let assessment = self.attempt.problem.assess(&q);
-        let known = |other: &[f64]| other.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME);
+        let known = |other: &[f64]| largest_difference(other, &q) < SAME;
         if assessment.score.solved && !self.found.solutions.iter().any(|other| known(other.q)) {
             self.found.solutions.push(&q, assessment.error.into());
         }

@@ -4,7 +4,7 @@ use super::budget::Budget;
 use super::context::SolveContext;
 use super::goal_descent::GoalDescent;
 use super::preference::{Miss, Preference};
-use super::solution::Solution;
+use super::solution::{Solution, SolveReport};
 use crate::closed_form::{ArmConfigurations, VERIFIED};
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
@@ -44,7 +44,12 @@ impl<'m, 'p> Attempt<'m, 'p> {
 
     /// Caller's start, or the indexed configuration nearest to the target.
     pub fn first_start(&mut self, start: Option<&[f64]>) -> Point {
-        self.context.first_start(self.problem, start, self.rng)
+        if let Some(start) = start {
+            return Point::from_slice(start);
+        }
+        let mut x0 = Point::from_elem(0.0, self.context.robot().dof());
+        self.problem.propose_start(0, self.context.bounds(), self.rng, &mut x0);
+        x0
     }
 
     /// Writes another start into `x`.
@@ -239,7 +244,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     /// Result at `q` with known errors.
     #[inline]
     pub fn result(&self, status: Status, q: Point, error: TipError) -> Solution {
-        Solution {
+        let report = SolveReport {
             status,
             error,
             obstruction: String::new(),
@@ -248,8 +253,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
             restarts: self.budget.restarts,
             evaluations: self.budget.evaluations,
             elapsed: self.budget.elapsed(),
-            q,
-        }
+        };
+        Solution { q, report }
     }
 
     /// Changes the status of a solved `solution` to [`Status::HeldInRegion`] if the region keeps the tip from the exact target.

@@ -5,20 +5,19 @@ use std::sync::{LazyLock, OnceLock};
 
 use smallvec::SmallVec;
 
+use super::checked_tasks::{asked_tasks, reduce};
 use super::preference::Preference;
 use super::solve_options::{Prefer, SolveOptions};
-use super::tip_tasks::{asked_tasks, reduce};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::sampling_range;
 use crate::message::{Setting, message};
-use crate::objective::{Bounds, Objective, Point};
+use crate::objective::Bounds;
 use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
-use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Stopwatch};
-use crate::task::{Aims, Goals, Target, TargetRow, TipCriterion};
+use crate::task::{Aims, CheckedTask, Goals, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +40,7 @@ pub(crate) struct SolveContext<'a> {
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     /// Task of each target; one for a robot with one tip.
-    tasks: SmallVec<[TipCriterion; 1]>,
+    tasks: SmallVec<[CheckedTask; 1]>,
     goals: Goals,
     bounds: Bounds,
     /// Preference of queries without a start, computed on first use.
@@ -184,16 +183,6 @@ impl<'a> SolveContext<'a> {
             }),
             _ => Ok(()),
         }
-    }
-
-    /// Caller's start, or the indexed configuration nearest to the target.
-    pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
-        if let Some(start) = start {
-            return Point::from_slice(start);
-        }
-        let mut x0 = Point::from_elem(0.0, self.robot().dof());
-        problem.propose_start(0, &self.bounds, rng, &mut x0);
-        x0
     }
 }
 

@@ -3,7 +3,7 @@
 use super::all_branches::nearest_of_all_branches;
 use super::attempt::Attempt;
 use super::first_of_family::FamilySearch;
-use super::out_of_reach::{ended, is_wide, obstruction};
+use super::out_of_reach::{is_wide, obstruction, unreachable_result};
 use super::preference::Miss;
 use super::solution::Solution;
 use crate::closed_form::ArmConfigurations;
@@ -61,7 +61,7 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
                 Some(start) => Some(Point::from_slice(start)),
             };
             let from = from.unwrap_or_else(|| attempt.first_start(None));
-            Some(ended(attempt, from, obstruction))
+            Some(unreachable_result(attempt, from, obstruction))
         }
         // Nearly singular pose, or tolerances below the rounding of the closed form.
         Err(_) => nearest_of_all_branches(attempt, &preference, start),

@@ -6,7 +6,7 @@ use super::all_branches::nearest_of_all_branches;
 use super::attempt::Attempt;
 use super::context::SolveContext;
 use super::near_misses::{LOOKED, from_near_misses};
-use super::out_of_reach::{ended, is_wide, obstruction};
+use super::out_of_reach::{is_wide, obstruction, unreachable_result};
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
@@ -213,6 +213,6 @@ impl<'a> FamilySearch<'a> {
         }
         let obstruction = obstruction(attempt, None);
         let from = attempt.first_start(self.start);
-        Some(ended(attempt, from, obstruction))
+        Some(unreachable_result(attempt, from, obstruction))
     }
 }

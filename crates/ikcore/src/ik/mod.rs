@@ -2,7 +2,7 @@
 //!
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of one
 //! target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form and takes the branch
-//! chosen by `preference`. `nearest`, `best` and `clear` choose among several solutions, `tip_tasks` holds the tasks of several
+//! chosen by `preference`. `nearest`, `best` and `clear` choose among several solutions, `checked_tasks` holds the tasks of several
 //! tips. `goal_descent` moves a solution along its self-motion, `self_motion` traces the whole of it, `solve_all` collects
 //! solutions (`all_branches` by the closed form). [`problem`](crate::problem) explains why a target was missed.
 
@@ -10,6 +10,7 @@ mod all_branches;
 mod attempt;
 mod best;
 mod budget;
+mod checked_tasks;
 mod clear;
 mod context;
 mod first_branch;
@@ -25,18 +26,17 @@ mod solutions;
 mod solve;
 mod solve_all;
 mod solve_options;
-mod tip_tasks;
 mod weak_direction;
 mod whole_turns;
 
+pub use checked_tasks::tip_errors;
+pub(crate) use checked_tasks::{checked_tasks, reduce};
 pub(crate) use context::{Query, SolveContext};
 pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
-pub use solution::{Nearest, Solution};
+pub use solution::{Nearest, Solution, SolveReport};
 pub use solutions::{SolutionView, Solutions};
 pub(crate) use solve::solve_query;
 pub use solve::{solve, solve_tips};
 pub use solve_all::{AllOptions, SolutionSet, nearest_miss, solve_all, solve_all_tips};
 pub use solve_options::{Prefer, SolveOptions};
-pub use tip_tasks::tip_errors;
-pub(crate) use tip_tasks::{checked_tasks, reduce};
 pub(crate) use whole_turns::bring_near;

@@ -9,6 +9,7 @@ use super::attempt::Attempt;
 use super::preference::{Miss, Preference};
 use super::solution::Solution;
 use crate::closed_form::{ArmConfigurations, FamilyLimits, ParameterArcs, PoseFamily};
+use crate::math::vector::largest_difference;
 use crate::objective::Point;
 use crate::solver::{LevenbergMarquardt, Status};
 
@@ -52,7 +53,7 @@ struct NearMiss {
 
 impl NearMiss {
     fn leads_to_the_same_as(&self, other: &Point) -> bool {
-        other.iter().zip(&self.q).all(|(a, b)| (a - b).abs() < APART)
+        largest_difference(other, &self.q) < APART
     }
 }
 
@@ -65,13 +66,13 @@ pub(super) fn from_near_misses(
     arcs: &ParameterArcs,
     open: &[f64],
 ) -> Result<Solution, Miss> {
-    let mut look = Look::new(family, preference);
+    let mut search = NearMissSearch::new(family, preference);
     let mut misses: Vec<NearMiss> = Vec::new();
     // Only the end of an arc is inside all limits if another joint reaches its limit just as joint 4 does.
     let others = arcs.iter().flatten().copied().chain(arcs.spread(LOOKED));
     for (number, value) in open.iter().copied().chain(others).enumerate() {
         let near = if number < open.len() { TOUCHING } else { AT_A_SOLUTION };
-        for miss in look.at(value) {
+        for miss in search.at(value) {
             if miss.outside < near
                 && let Some(solution) = descended(attempt, &miss)
             {
@@ -94,7 +95,7 @@ pub(super) fn from_near_misses(
         }
         tried.push(miss.q.clone());
         let miss = if miss.outside < TOUCHING {
-            let refined = look.refined(miss, arcs.length() / LOOKED as f64);
+            let refined = search.refined(miss, arcs.length() / LOOKED as f64);
             if refined.outside > APART_FROM_LIMITS {
                 continue;
             }
@@ -116,7 +117,7 @@ fn descended(attempt: &mut Attempt<'_, '_>, miss: &NearMiss) -> Option<Solution>
 }
 
 /// Search for near misses of one pose.
-struct Look<'a> {
+struct NearMissSearch<'a> {
     family: &'a PoseFamily<'a>,
     preference: &'a Preference,
     /// Limits widened by [`NEAR`].
@@ -124,7 +125,7 @@ struct Look<'a> {
     likely: ArmConfigurations,
 }
 
-impl<'a> Look<'a> {
+impl<'a> NearMissSearch<'a> {
     fn new(family: &'a PoseFamily<'a>, preference: &'a Preference) -> Self {
         let [lower, upper] = preference.ranges();
         let wider = |ends: &[f64], by: f64| ends.iter().map(|end| end + by).collect::<Point>();

@@ -42,16 +42,18 @@ pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> St
 
 /// Result without a solution, at a configuration a few steps nearer to the target than `from`.
 #[cold]
-pub(super) fn ended(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
-    let (q, Assessment { error, score }) = approached(attempt, from);
+pub(super) fn unreachable_result(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
+    let (q, Assessment { error, score }) = stepped_towards(attempt, from);
     if score.solved {
         return attempt.result(Status::Solved, q, error.into());
     }
-    Solution { obstruction, ..attempt.result(Status::OutOfReach, q, error.into()) }
+    let mut solution = attempt.result(Status::OutOfReach, q, error.into());
+    solution.obstruction = obstruction;
+    solution
 }
 
 /// Takes a few steps of damped least squares from `q`, and returns the last one that lowered the error.
-fn approached(attempt: &mut Attempt<'_, '_>, mut q: Point) -> (Point, Assessment) {
+fn stepped_towards(attempt: &mut Attempt<'_, '_>, mut q: Point) -> (Point, Assessment) {
     let Attempt { context, problem, budget, .. } = attempt;
     let limits = [context.bounds().lower(), context.bounds().upper()];
     let (mut linearization, mut damping) = (Linearization::default(), DAMPING);

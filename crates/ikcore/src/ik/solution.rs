@@ -1,5 +1,6 @@
 //! Result of one target.
 
+use std::ops::{Deref, DerefMut};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -12,18 +13,25 @@ use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
 
-/// Best configuration found, and how the search ended.
+/// Best configuration found, with the report on its search, whose fields are read like those of the solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Configuration (n,) (rad, m), inside the limits.
     pub q: Point,
+    /// Report on the search.
+    pub report: SolveReport,
+}
+
+/// Report on the search for one target.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SolveReport {
     /// Reason for the end of the search.
     pub status: Status,
-    /// Errors at `q`, by forward kinematics.
+    /// Errors of the solution, by forward kinematics; NaN if nothing was solved.
     pub error: TipError,
     /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
-    /// Nearest two bodies at `q`, if obstacles or self-collision were checked; `None` while deferred by
+    /// Nearest two bodies, if obstacles or self-collision were checked; `None` while deferred by
     /// [`SolveOptions::nearest_later`](super::SolveOptions).
     pub nearest: Option<Box<Nearest>>,
     /// Iterations over all starts.
@@ -52,6 +60,20 @@ impl Nearest {
     }
 }
 
+impl Deref for Solution {
+    type Target = SolveReport;
+
+    fn deref(&self) -> &SolveReport {
+        &self.report
+    }
+}
+
+impl DerefMut for Solution {
+    fn deref_mut(&mut self) -> &mut SolveReport {
+        &mut self.report
+    }
+}
+
 impl Solution {
     /// Computes the nearest two bodies if they were deferred.
     ///
@@ -65,8 +87,24 @@ impl Solution {
         }
         Ok(())
     }
+}
 
-    /// Smallest distance at `q` (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
+impl SolveReport {
+    /// Report on a target that was not solved.
+    pub(crate) fn unsolved(status: Status) -> Self {
+        Self {
+            status,
+            error: TipError { position: f64::NAN, rotation: f64::NAN },
+            obstruction: String::new(),
+            nearest: None,
+            iterations: 0,
+            restarts: 0,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+        }
+    }
+
+    /// Smallest distance at the solution (m), negative by the depth of an overlap; infinite if nothing can touch, NaN if nothing was
     /// checked.
     pub fn clearance(&self) -> f64 {
         self.nearest.as_ref().map_or(f64::NAN, |nearest| nearest.clearance.distance)

@@ -8,11 +8,11 @@ use super::all_branches::{AllBranches, all_branches};
 use super::attempt::{APPROACHES, Attempt};
 use super::clear::{clear_solution, made_clear};
 use super::context::SolveContext;
-use super::solution::{Nearest, Solution};
+use super::solution::{Nearest, Solution, SolveReport};
 use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
 use super::whole_turns::{all_turns, bring_near, count_of_turns};
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_at_least_one, require_positive};
 use crate::message::{Message, Setting, message};
 use crate::objective::{Bounds, Point};
 use crate::obstacle::ClearSpace;
@@ -125,8 +125,8 @@ impl SolutionSet {
 
     /// Solution number `i`, counted from 0, with the counts of all; `None` beyond the last.
     pub fn solution(&self, i: usize) -> Option<Solution> {
-        self.solutions.get(i).map(|SolutionView { q, error }| Solution {
-            q: Point::from_slice(q),
+        let SolutionView { q, error } = self.solutions.get(i)?;
+        let report = SolveReport {
             status: Status::Solved,
             error,
             obstruction: String::new(),
@@ -135,7 +135,8 @@ impl SolutionSet {
             restarts: self.restarts,
             evaluations: self.evaluations,
             elapsed: self.elapsed,
-        })
+        };
+        Some(Solution { q: Point::from_slice(q), report })
     }
 }
 
@@ -171,9 +172,7 @@ pub fn solve_all_tips(
 ) -> Result<SolutionSet> {
     let AllOptions { each, limit, separation, redundancy, turns } = options;
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
-    if *limit == Some(0) {
-        return Err(Error::out_of_range("limit", "at least 1", 0.0));
-    }
+    limit.map_or(Ok(()), |limit| require_at_least_one("limit", limit))?;
     let context = SolveContext::new(robot, each)?;
     let start = each.start.as_deref();
     let targets = context.read(targets)?;

@@ -77,21 +77,17 @@ impl Manipulability {
 
     /// Ellipsoid of tip velocities at `q`, which has one finite entry per joint.
     pub fn ellipsoid(&self, robot: &Robot, q: &[f64]) -> Ellipsoid {
-        Ellipsoid::new(&decompose(robot, self, q), self.rank)
+        let mut columns = Columns::default();
+        robot.tip_and_jacobian_of(self.tip, q, &mut columns);
+        let columns = &mut columns[..q.len()];
+        self.motion.select(columns);
+        Ellipsoid::new(&SingularValues::of(columns), self.rank)
     }
 
     /// Product of the `rank` largest singular values.
     pub(super) fn product(&self, values: &SingularValues) -> f64 {
         values.lengths[..self.rank].iter().product()
     }
-}
-
-fn decompose(robot: &Robot, measure: &Manipulability, q: &[f64]) -> SingularValues {
-    let mut columns = Columns::default();
-    robot.tip_and_jacobian_of(measure.tip, q, &mut columns);
-    let columns = &mut columns[..q.len()];
-    measure.motion.select(columns);
-    SingularValues::of(columns)
 }
 
 /// Yoshikawa's index of `motion` at `q` (n,).

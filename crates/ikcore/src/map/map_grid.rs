@@ -97,7 +97,7 @@ impl MapGrid {
 
     /// Number of bytes for the bits of one voxel.
     pub fn bytes(&self) -> usize {
-        self.orientations.len().div_ceil(8)
+        self.orientations.count().div_ceil(8)
     }
 
     /// Pose of orientation `i` at `point` (m), rotated to `azimuth` (rad) about z.

@@ -3,7 +3,7 @@
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
 use super::map_options::MapOptions;
-use super::map_test::{MapRobots, MapTest, Seen};
+use super::map_test::{MapRobots, MapTest, OrientationResult};
 use super::rings::Ring;
 use super::second_look::SecondLook;
 use crate::error::Result;
@@ -34,8 +34,8 @@ impl<'a> MapLooks<'a> {
         if !test.may_reach(ring) {
             return result;
         }
-        let count = test.grid.orientations().len();
-        let mut all: Vec<Seen> = Vec::with_capacity(count);
+        let count = test.grid.orientations().count();
+        let mut all: Vec<OrientationResult> = Vec::with_capacity(count);
         for i in 0..count {
             if !monitor.keep_going() {
                 return result;

@@ -31,7 +31,7 @@ pub(crate) struct MapTest<'a> {
     own: SolveContext<'a>,
     /// Solve context with the first joint free to turn, if azimuths are equivalent.
     pub(super) turning: Option<(UprightAxis, SolveContext<'a>)>,
-    way: Way,
+    method: Method,
     reach: Reach,
     pub(super) ranges: Vec<MappedJoint>,
     options: &'a MapOptions,
@@ -39,7 +39,7 @@ pub(crate) struct MapTest<'a> {
 }
 
 /// Method of finding solutions.
-enum Way {
+enum Method {
     /// Closed form with all branches.
     Branches,
     /// Closed form at parameter values of a redundant arm, within these limits.
@@ -102,10 +102,10 @@ impl<'a> MapTest<'a> {
         let asked = own.read(&[Target::Pose(any)])?;
         let at_once = robot.solves_at_once() == Some(true) && own.asks_for_pose(&asked[0]);
         let (low, high): (Vec<f64>, Vec<f64>) = robot.joints().iter().map(|joint| joint.sampling_range()).unzip();
-        let way = match robot.family(&any) {
-            _ if !at_once => Way::Search,
-            Some(family) => Way::Family(Box::new(family.limits(&low, &high))),
-            None => Way::Branches,
+        let method = match robot.family(&any) {
+            _ if !at_once => Method::Search,
+            Some(family) => Method::Family(Box::new(family.limits(&low, &high))),
+            None => Method::Branches,
         };
         let range = |(j, joint): (usize, &Joint)| MappedJoint {
             lower: joint.lower,
@@ -115,12 +115,12 @@ impl<'a> MapTest<'a> {
         let ranges = own.robot().joints().iter().enumerate().map(range).collect();
         let reach = robot.reach(&lower, &upper);
         let measure = Manipulability::of(own.robot(), Motion::Pose);
-        Ok(Self { grid, own, turning, way, reach, ranges, options, measure })
+        Ok(Self { grid, own, turning, method, reach, ranges, options, measure })
     }
 
     /// Whether a pose may be reachable although no solution was found.
     pub(super) fn leaves_poses_open(&self) -> bool {
-        !matches!(self.way, Way::Branches)
+        !matches!(self.method, Method::Branches)
     }
 
     /// Whether the reach of the tip includes the position of a ring.
@@ -139,22 +139,28 @@ impl<'a> MapTest<'a> {
     }
 
     /// Tests orientation `i` of a ring in the first pass.
-    pub(super) fn first_look(&self, ring: &Ring, i: usize, result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
+    pub(super) fn first_look(
+        &self,
+        ring: &Ring,
+        i: usize,
+        result: &mut RingResult,
+        monitor: &mut dyn Monitor,
+    ) -> OrientationResult {
         let pose = self.grid.pose(ring.point, self.azimuth(ring), i);
-        let mut found = self.found(ring, Seen::default(), result);
-        match &self.way {
-            Way::Branches => {
+        let mut found = self.found(ring, OrientationResult::default(), result);
+        match &self.method {
+            Method::Branches => {
                 if let Some(branches) = self.robot().branches(&pose) {
                     found.take_branches(&branches);
                 }
             }
-            Way::Family(limits) => {
+            Method::Family(limits) => {
                 if let Some(family) = self.robot().family(&pose) {
                     found.take_family(&family, limits, self.options.evaluations);
                 }
             }
-            Way::Search => {
-                let stream = ring.stream.wrapping_mul(self.grid.orientations().len() as u64).wrapping_add(i as u64);
+            Method::Search => {
+                let stream = ring.stream.wrapping_mul(self.grid.orientations().count() as u64).wrapping_add(i as u64);
                 found.search(&pose, stream, monitor);
             }
         }
@@ -165,7 +171,7 @@ impl<'a> MapTest<'a> {
     pub(super) fn found<'t>(
         &'t self,
         ring: &'t Ring,
-        seen: Seen,
+        seen: OrientationResult,
         result: &'t mut RingResult,
     ) -> OrientationTest<'t, 'a> {
         OrientationTest { test: self, azimuths: &ring.azimuths, seen, quality: &mut result.quality }
@@ -187,7 +193,7 @@ impl<'a> MapTest<'a> {
 
 /// Results for an orientation of a ring.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Seen {
+pub(super) struct OrientationResult {
     /// Azimuths at which the orientation is reached, one bit each.
     pub reached: u64,
     /// Some solutions of the orientation.
@@ -200,7 +206,7 @@ pub(super) struct Seen {
 pub(super) struct OrientationTest<'t, 'a> {
     test: &'t MapTest<'a>,
     azimuths: &'t [f64],
-    pub seen: Seen,
+    pub seen: OrientationResult,
     /// Manipulability and clearance of the best configuration at each azimuth.
     quality: &'t mut [Vec<f32>; 2],
 }
@@ -296,16 +302,16 @@ impl OrientationTest<'_, '_> {
     fn search(&mut self, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) {
         let MapTest { own, turning, .. } = self.test;
         let Some((axis, context)) = turning else {
-            if let Some(solution) = searched(own, pose, stream, monitor) {
+            if let Some(solution) = solved(own, pose, None, stream, monitor) {
                 self.take(&solution.q);
             }
             return;
         };
-        let Some(solution) = searched(context, pose, stream, monitor) else { return };
+        let Some(solution) = solved(context, pose, None, stream, monitor) else { return };
         self.take(&solution.q);
         for index in 0..self.azimuths.len() {
             if self.seen.reached >> index & 1 == 0
-                && let Some(solution) = searched(own, &axis.turned(pose, self.azimuths[index]), stream, monitor)
+                && let Some(solution) = solved(own, &axis.turned(pose, self.azimuths[index]), None, stream, monitor)
             {
                 self.take_at(index, &solution.q);
             }
@@ -322,10 +328,16 @@ impl OrientationTest<'_, '_> {
     }
 }
 
-/// Searches for a solution of a pose.
-fn searched(context: &SolveContext<'_>, pose: &Frame, stream: u64, monitor: &mut dyn Monitor) -> Option<Solution> {
+/// Searches for a solution of a pose, from `start` if there is one.
+pub(super) fn solved(
+    context: &SolveContext<'_>,
+    pose: &Frame,
+    start: Option<&[f64]>,
+    stream: u64,
+    monitor: &mut dyn Monitor,
+) -> Option<Solution> {
     let targets = context.read(&[Target::Pose(*pose)]).ok()?;
-    let query = Query { targets: &targets, start: None, stream, stopwatch: Stopwatch::start() };
-    let solution = solve_query(context, &query, monitor);
+    let solution =
+        solve_query(context, &Query { targets: &targets, start, stream, stopwatch: Stopwatch::start() }, monitor);
     (solution.status == Status::Solved).then_some(solution)
 }

@@ -50,13 +50,8 @@ impl OrientationSet {
     }
 
     /// Number of orientations.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.directions.len() * self.rolls
-    }
-
-    /// Returns false: there is at least one orientation.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Number of rolls of each direction.
@@ -146,7 +141,7 @@ mod tests {
     #[test]
     fn each_orientation_is_the_nearest_to_itself() {
         for set in sets() {
-            for i in 0..set.len() {
+            for i in 0..set.count() {
                 let axes = set.axes(i);
                 let [x, y, z] = axes;
                 assert!(norm(&std::array::from_fn(|k| cross(&x, &y)[k] - z[k])) < 1e-14, "right-handed");

@@ -5,13 +5,11 @@
 
 use super::map_chunk::RingResult;
 use super::map_grid::MapGrid;
-use super::map_test::{MapRobots, MapTest, Seen};
+use super::map_test::{MapRobots, MapTest, OrientationResult, solved};
 use super::rings::Ring;
 use crate::error::Result;
-use crate::ik::{Query, SolveContext, solve_query};
-use crate::math::Frame;
-use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::Target;
+use crate::ik::SolveContext;
+use crate::solver::Monitor;
 
 /// Number of neighbours of an orientation that starts are taken from.
 const NEAR: usize = 12;
@@ -50,7 +48,7 @@ impl<'a> SecondLook<'a> {
         &self,
         test: &MapTest<'_>,
         ring: &Ring,
-        all: &mut [Seen],
+        all: &mut [OrientationResult],
         result: &mut RingResult,
         monitor: &mut dyn Monitor,
     ) {
@@ -63,7 +61,7 @@ impl<'a> SecondLook<'a> {
                     continue;
                 }
                 let before = all[i].reached;
-                let look = Look { second: self, test, ring, i };
+                let look = NeighbourDescent { second: self, test, ring, i };
                 all[i] = look.at(all, result, monitor);
                 found_now[i] = all[i].reached != before;
             }
@@ -76,24 +74,24 @@ impl<'a> SecondLook<'a> {
 }
 
 /// Second look at orientation number `i` of a ring.
-struct Look<'l, 'a> {
+struct NeighbourDescent<'l, 'a> {
     second: &'l SecondLook<'a>,
     test: &'l MapTest<'a>,
     ring: &'l Ring,
     i: usize,
 }
 
-impl Look<'_, '_> {
+impl NeighbourDescent<'_, '_> {
     /// Descends to the orientation from nearby solutions, and returns its updated results.
-    fn at(&self, all: &[Seen], result: &mut RingResult, monitor: &mut dyn Monitor) -> Seen {
+    fn at(&self, all: &[OrientationResult], result: &mut RingResult, monitor: &mut dyn Monitor) -> OrientationResult {
         let Self { test, ring, i, .. } = *self;
         let pose = test.grid.pose(ring.point, test.azimuth(ring), i);
         let mut found = test.found(ring, all[i].clone(), result);
         if found.seen.reached == 0 {
             let context = self.second.turning.as_ref().unwrap_or(&self.second.own);
             for start in self.starts(all).take(DESCENTS) {
-                if let Some(q) = descended(context, &pose, &self.inside(start, None), monitor) {
-                    found.take(&q);
+                if let Some(solution) = solved(context, &pose, Some(&self.inside(start, None)), 0, monitor) {
+                    found.take(&solution.q);
                 }
                 if found.seen.reached != 0 {
                     break;
@@ -112,8 +110,9 @@ impl Look<'_, '_> {
                     break;
                 }
                 let turned = axis.turned(&pose, *azimuth);
-                if let Some(q) = descended(&self.second.own, &turned, &self.inside(start, Some(*azimuth)), monitor) {
-                    found.take_at(index, &q);
+                let inside = self.inside(start, Some(*azimuth));
+                if let Some(solution) = solved(&self.second.own, &turned, Some(&inside), 0, monitor) {
+                    found.take_at(index, &solution.q);
                 }
             }
         }
@@ -121,7 +120,7 @@ impl Look<'_, '_> {
     }
 
     /// Solutions of the nearby orientations.
-    fn starts<'s>(&self, all: &'s [Seen]) -> impl Iterator<Item = &'s Vec<f64>> {
+    fn starts<'s>(&self, all: &'s [OrientationResult]) -> impl Iterator<Item = &'s Vec<f64>> {
         self.second.near[self.i].iter().flat_map(move |other| &all[*other as usize].solutions)
     }
 
@@ -139,17 +138,9 @@ impl Look<'_, '_> {
     }
 }
 
-/// Descends from `start` to a solution of a pose.
-fn descended(context: &SolveContext<'_>, pose: &Frame, start: &[f64], monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
-    let targets = context.read(&[Target::Pose(*pose)]).ok()?;
-    let query = Query { targets: &targets, start: Some(start), stream: 0, stopwatch: Stopwatch::start() };
-    let solution = solve_query(context, &query, monitor);
-    (solution.status == Status::Solved).then(|| solution.q.to_vec())
-}
-
 /// Indices of the neighbours of each orientation of a grid, the nearest first.
 fn near_orientations(grid: &MapGrid) -> Vec<Vec<u32>> {
-    let count = grid.orientations().len();
+    let count = grid.orientations().count();
     let axes: Vec<_> = (0..count).map(|i| grid.orientations().axes(i)).collect();
     // Trace of the rotation between two orientations: 1 + 2 cos(angle).
     let nearness = |i: usize, other: usize| -> f64 {

@@ -60,9 +60,9 @@ impl Secant {
 
 /// Jacobian estimates of several tasks.
 #[derive(Debug, Clone, Default)]
-pub struct Secants(SmallVec<[Secant; 1]>);
+pub struct SecantBlocks(SmallVec<[Secant; 1]>);
 
-impl Secants {
+impl SecantBlocks {
     /// Creates zero Jacobians for this many tasks.
     pub fn new(tasks: usize) -> Self {
         Self(smallvec![Secant::default(); tasks])

@@ -55,10 +55,8 @@ impl Linearization {
 
     /// Writes J'r, the gradient of r'r / 2, into `gradient`, which has one entry per entry of x.
     pub fn gradient(&self, gradient: &mut [f64]) {
-        self.first.gradient(gradient);
-        for block in &self.more {
-            block.add_gradient(gradient);
-        }
+        gradient.fill(0.0);
+        self.blocks().for_each(|block| block.add_gradient(gradient));
     }
 
     /// Writes the [bounded step](BoxStep) from `x` in the box \[`lower`, `upper`\] into `out`.
@@ -127,13 +125,7 @@ impl Linearization {
 }
 
 impl TaskBlock {
-    /// Writes J'r into `gradient`.
-    fn gradient(&self, gradient: &mut [f64]) {
-        for (slope, column) in gradient.iter_mut().zip(&*self.columns) {
-            *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
-        }
-    }
-
+    /// Adds J'r to `gradient`.
     fn add_gradient(&self, gradient: &mut [f64]) {
         for (slope, column) in gradient.iter_mut().zip(&*self.columns) {
             *slope += column.iter().zip(&self.residual).map(|(c, r)| c * r).sum::<f64>();

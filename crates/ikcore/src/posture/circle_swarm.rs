@@ -2,9 +2,9 @@
 //! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization".
 
 use super::linkage::{Linkage, Point2};
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_at_least_one, require_positive};
 use crate::rng::LazyRng;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, constriction};
 
 /// Largest number of particles or generations.
 const MOST: usize = 1_000_000;
@@ -75,9 +75,7 @@ impl CircleSwarm {
     /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self) -> Result<()> {
         for (what, count) in [("population", self.population), ("generations", self.generations)] {
-            if count == 0 {
-                return Err(Error::out_of_range(what, "at least 1", 0.0));
-            }
+            require_at_least_one(what, count)?;
             if count > MOST {
                 return Err(Error::out_of_range(what, format!("at most {MOST}"), count as f64));
             }
@@ -87,12 +85,6 @@ impl CircleSwarm {
         }
         let phi = self.c1 + self.c2;
         if phi > 4.0 { Ok(()) } else { Err(Error::out_of_range("c1 + c2", "above 4", phi)) }
-    }
-
-    /// Constriction factor chi of eq. (18), where the printed equation lacks the absolute value.
-    fn constriction(&self) -> f64 {
-        let phi = self.c1 + self.c2;
-        2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
     /// Searches for the best posture of `linkage`; `None` if the swarm finds none.
@@ -155,7 +147,8 @@ impl Swarm<'_> {
     /// Moves a particle by one generation: eq. (17), then projection onto the circles; redrawn if that fails (step 5).
     fn advance(&mut self, particle: &mut Particle) -> Option<()> {
         let CircleSwarm { c1, c2, velocity_limit, signed, .. } = *self.options;
-        let chi = self.options.constriction();
+        // Eq. (18), where the printed equation lacks the absolute value.
+        let chi = constriction(self.options.c1 + self.options.c2);
         let lowest = if signed { -1.0 } else { 0.0 };
         for (i, (point, velocity)) in particle.points.iter_mut().zip(&mut particle.velocities).enumerate() {
             for k in 0..2 {

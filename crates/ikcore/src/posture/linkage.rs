@@ -104,11 +104,6 @@ impl Linkage {
         self.lengths.len()
     }
 
-    /// Robot that forms the linkage.
-    pub fn robot(&self) -> &Robot {
-        &self.robot
-    }
-
     /// Returns the joint points between base and tip, one fewer than links, from the headings (rad) of all links but
     /// the last two. For a positive `side` the last point is to the left of the line to the target, else to the right;
     /// `None` if the last two links cannot close the linkage.

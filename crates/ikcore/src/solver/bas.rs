@@ -16,7 +16,7 @@ use smallvec::SmallVec;
 use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Result, require_at_least_one, require_positive};
 use crate::math::comparison::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
@@ -69,16 +69,12 @@ impl Bas {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         require_positive("c1", self.c1)?;
         require_positive("c2", self.c2)?;
-        for (name, count) in [("explorations", self.explorations), ("max_passes", self.max_passes)] {
-            if count == 0 {
-                return Err(Error::out_of_range(name, "at least 1", 0.0));
-            }
-        }
-        Ok(())
+        require_at_least_one("explorations", self.explorations)?;
+        require_at_least_one("max_passes", self.max_passes)
     }
 }
 

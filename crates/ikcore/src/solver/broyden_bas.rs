@@ -7,9 +7,9 @@
 use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Result, require_at_least_one, require_positive};
 use crate::math::box_step::LEAST_DAMPING;
-use crate::math::secant::{Secants, antenna};
+use crate::math::secant::{SecantBlocks, antenna};
 use crate::objective::{Point, Residual, TaskResiduals};
 
 /// Options of Broyden's method with antenna differences.
@@ -47,13 +47,10 @@ impl BroydenBas {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         require_positive("antenna_length", self.antenna_length)?;
-        if self.max_evaluations_per_step == 0 {
-            return Err(Error::out_of_range("max_evaluations_per_step", "at least 1", 0.0));
-        }
-        Ok(())
+        require_at_least_one("max_evaluations_per_step", self.max_evaluations_per_step)
     }
 }
 
@@ -63,7 +60,7 @@ pub struct State {
     x: Point,
     value: f64,
     residual: TaskResiduals,
-    jacobian: Secants,
+    jacobian: SecantBlocks,
     damping: f64,
     /// Steps since the last antennae that left more than half of the residual.
     slow: usize,
@@ -79,7 +76,7 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
         let mut residual = TaskResiduals::new();
         let value = evaluator.residual(&mut x, &mut residual)?;
         evaluator.before_steps()?;
-        let jacobian = Secants::new(residual.len());
+        let jacobian = SecantBlocks::new(residual.len());
         *state = State { x, value, residual, jacobian, damping: LEAST_DAMPING, slow: 0, fresh: false };
         state.put_out_antennae(evaluator)
     }

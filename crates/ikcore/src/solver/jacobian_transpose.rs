@@ -66,28 +66,27 @@ pub struct State {
     x: Point,
     value: f64,
     linearization: Linearization,
-    gradient: Point,
 }
 
 impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
     type State = State;
 
     fn start(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
-        let State { x, value, linearization, gradient } = state;
-        (*x, *gradient) = (Point::from_slice(x0), Point::from_elem(0.0, x0.len()));
+        let State { x, value, linearization } = state;
+        *x = Point::from_slice(x0);
         *value = evaluator.linearize(x, linearization)?;
         Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
-        let State { x, value, linearization, gradient } = state;
+        let State { x, value, linearization } = state;
         if !value.is_finite() {
             return Err(Status::Stalled);
         }
-        linearization.gradient(gradient);
-        let size = self.size(linearization, gradient);
-        let mut next = x.clone();
-        next.iter_mut().zip(&*gradient).for_each(|(x, slope)| *x -= size * slope);
+        let mut next = Point::from_elem(0.0, x.len());
+        linearization.gradient(&mut next);
+        let size = self.size(linearization, &next);
+        next.iter_mut().zip(&*x).for_each(|(next, x)| *next = x - size * *next);
         // A zero gradient makes the size NaN.
         if next.iter().any(|x| !x.is_finite()) {
             return Err(Status::Stalled);

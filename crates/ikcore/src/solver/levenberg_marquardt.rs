@@ -4,7 +4,7 @@
 use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_factor, require_positive, require_proper_fraction};
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Options of Levenberg-Marquardt.
@@ -41,13 +41,8 @@ impl LevenbergMarquardt {
         if !(self.increase > 1.0 && self.increase.is_finite()) {
             return Err(Error::out_of_range("increase", "above 1 and finite", self.increase));
         }
-        if !(self.decrease > 0.0 && self.decrease <= 1.0) {
-            return Err(Error::out_of_range("decrease", "above 0 and at most 1", self.decrease));
-        }
-        if !(0.0..1.0).contains(&self.min_gain) {
-            return Err(Error::out_of_range("min_gain", "at least 0 and below 1", self.min_gain));
-        }
-        Ok(())
+        require_factor("decrease", self.decrease)?;
+        require_proper_fraction("min_gain", self.min_gain)
     }
 }
 

@@ -56,6 +56,7 @@ pub use newton_raphson::NewtonRaphson;
 pub use status::Status;
 pub use stop::Stop;
 pub use stopwatch::Stopwatch;
+pub(crate) use swarm::constriction;
 pub use swarm::{
     BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, ParticleAcceptance, Pso, PsoForm,
     Qpso, Schedule, TrialUpdate, Walls,

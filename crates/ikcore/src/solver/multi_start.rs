@@ -4,7 +4,7 @@ use super::domain::Domain;
 use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_at_least_one};
 use crate::objective::{Objective, Point};
 
 /// Rule for abandoning an attempt and restarting.
@@ -41,11 +41,8 @@ impl<S> MultiStart<S> {
     /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self) -> Result<()> {
         let RestartRule { max_starts, patience, min_reduction } = self.rule;
-        for (name, count) in [("max_starts", max_starts), ("patience", patience)] {
-            if count == 0 {
-                return Err(Error::out_of_range(name, "at least 1", 0.0));
-            }
-        }
+        require_at_least_one("max_starts", max_starts)?;
+        require_at_least_one("patience", patience)?;
         if !(min_reduction >= 1.0 && min_reduction.is_finite()) {
             return Err(Error::out_of_range("min_reduction", "at least 1 and finite", min_reduction));
         }

@@ -4,7 +4,7 @@
 use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
-use crate::error::{Error, Result};
+use crate::error::{Result, require_factor};
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Options of Newton-Raphson.
@@ -24,12 +24,9 @@ impl NewtonRaphson {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
-        if self.step_fraction > 0.0 && self.step_fraction <= 1.0 {
-            return Ok(());
-        }
-        Err(Error::out_of_range("step_fraction", "above 0 and at most 1", self.step_fraction))
+        require_factor("step_fraction", self.step_fraction)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_at_least_one};
 
 /// Budgets of a run, which ends when the first of them is spent. Counts are repeatable, a time limit is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,11 +38,8 @@ impl Stop {
     /// # Errors
     /// [`Error::OutOfRange`] for a budget of zero.
     pub fn validate(&self) -> Result<()> {
-        for (name, count) in [("max_evaluations", self.max_evaluations), ("max_iterations", self.max_iterations)] {
-            if count == 0 {
-                return Err(Error::out_of_range(name, "at least 1", 0.0));
-            }
-        }
+        require_at_least_one("max_evaluations", self.max_evaluations)?;
+        require_at_least_one("max_iterations", self.max_iterations)?;
         match self.value_below {
             Some(value) if value.is_nan() => Err(Error::out_of_range("value_below", "a number", value)),
             _ => Ok(()),

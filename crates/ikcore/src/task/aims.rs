@@ -3,208 +3,28 @@
 use smallvec::SmallVec;
 
 use super::assessment::Assessment;
+use super::checked_task::CheckedTask;
 use super::criterion::Criterion;
+use super::named_task::Subject;
 use super::target::Target;
-use super::tip_error::{SquaredError, TipError, Tolerance};
-use super::tip_task::{Task, TaskKind};
+use super::tip_error::{SquaredError, TipError};
 use crate::error::{Error, Result};
-use crate::math::Columns;
-use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
-use crate::math::so3::cross;
 use crate::objective::{Linearization, Score, TaskBlock};
 use crate::robot::Robot;
-
-/// Frame that a target refers to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Subject {
-    /// Tip of this number.
-    Tip(usize),
-    /// Tip `of`, relative to tip `from`.
-    Pair {
-        /// Number of the reference tip.
-        from: usize,
-        /// Number of the moving tip.
-        of: usize,
-    },
-}
-
-/// Task of a tip, or of a pair of tips.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NamedTask {
-    /// Frame that the target refers to.
-    pub subject: Subject,
-    /// Part of the target to reach. `None` means all of it.
-    pub task: Option<Task>,
-    /// Tolerances within which the target counts as reached.
-    pub tolerance: Tolerance,
-}
-
-/// Validated task.
-#[derive(Debug, Clone)]
-pub struct TipCriterion {
-    /// Frame that the target refers to.
-    pub(crate) subject: Subject,
-    /// Part of the target to reach. `None` means all of it.
-    kind: Option<TaskKind>,
-    /// Criterion for reaching the target, with weights.
-    pub(crate) criterion: Criterion,
-    /// Tool of the task, in the frame of the moving tip.
-    tool: Option<Box<Frame>>,
-    /// Weight of the residual relative to other tasks.
-    weight: f64,
-}
-
-impl NamedTask {
-    /// Task of the only tip of a robot.
-    #[inline]
-    pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
-        Self { subject: Subject::Tip(0), task, tolerance }
-    }
-
-    /// Checks the task.
-    ///
-    /// # Errors
-    /// Errors of [`Task::validate`] and of the tolerances.
-    #[inline]
-    pub(crate) fn validated(&self) -> Result<TipCriterion> {
-        let Self { subject, task, tolerance } = *self;
-        task.map_or(Ok(()), |task| task.validate())?;
-        let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
-        criterion.validate()?;
-        let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
-        Ok(TipCriterion { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
-    }
-}
-
-impl<T: Into<Criterion>> From<T> for TipCriterion {
-    /// Task of reaching the whole target of the only tip, by this criterion.
-    fn from(criterion: T) -> Self {
-        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), tool: None, weight: 1.0 }
-    }
-}
-
-impl Subject {
-    /// Whether the subject is a pair of tips.
-    pub(crate) fn is_pair(&self) -> bool {
-        matches!(self, Self::Pair { .. })
-    }
-}
-
-impl TipCriterion {
-    /// Removes the tool, which the robot carries.
-    pub(crate) fn leave_tool(&mut self) {
-        self.tool = None;
-    }
-
-    /// Sets the weight of the residual relative to other tasks.
-    pub(crate) fn weighing(self, weight: f64) -> Self {
-        Self { weight, ..self }
-    }
-
-    /// Assesses `frame`, the frame of the subject.
-    fn assess(&self, target: &Target, frame: &Frame) -> Assessment {
-        self.weighted(target.assess_tip(frame, &self.criterion))
-    }
-
-    /// Assesses like [`assess`](Self::assess) and writes residual and Jacobian, from the geometric Jacobian of `dof` columns in
-    /// `block`.
-    fn linearize(&self, target: &Target, frame: &Frame, dof: usize, block: &mut TaskBlock) -> Assessment {
-        let assessment = target.linearize_tip(frame, dof, &self.criterion, block);
-        if self.weight != 1.0 {
-            let entries = block.columns[..dof].iter_mut().chain(std::iter::once(&mut block.residual)).flatten();
-            entries.for_each(|entry| *entry *= self.weight);
-        }
-        self.weighted(assessment)
-    }
-
-    fn weighted(&self, mut assessment: Assessment) -> Assessment {
-        assessment.score.value *= self.weight * self.weight;
-        assessment
-    }
-
-    /// Reduces `target` to the part that its task uses.
-    ///
-    /// # Errors
-    /// [`Error::WrongTarget`].
-    pub(crate) fn reduce(&self, target: &mut Target) -> Result<()> {
-        if let Some(kind) = &self.kind {
-            *target = kind.target(target)?;
-        }
-        Ok(())
-    }
-
-    /// Target of the tip itself, given a target of its tool.
-    pub(crate) fn without_tool(&self, target: &Target) -> Target {
-        match (&self.tool, target) {
-            (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
-            _ => *target,
-        }
-    }
-
-    /// Frame of the subject at `q`.
-    fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
-        let tip = |tip: usize| robot.tip_of(tip, q);
-        let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
-        match self.subject {
-            Subject::Tip(of) => at_tool(tip(of)),
-            Subject::Pair { from, of } => tip(from).inverse().then::<NoFma>(&at_tool(tip(of))),
-        }
-    }
-
-    /// Frame of the subject at `q`, and its geometric Jacobian.
-    fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
-        let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
-        let mut frame = robot.tip_and_jacobian_of(of, q, columns);
-        if let Some(tool) = &self.tool {
-            let moved = frame.then::<NoFma>(tool);
-            let lever = std::array::from_fn(|k| moved.origin[k] - frame.origin[k]);
-            columns[..q.len()].iter_mut().for_each(|column| add_moment(column, &lever, 1.0));
-            frame = moved;
-        }
-        match self.subject {
-            Subject::Tip(_) => frame,
-            Subject::Pair { from, .. } => {
-                let mut own = Columns::default();
-                let base = robot.tip_and_jacobian_of(from, q, &mut own);
-                seen_from(&base, &mut own[..q.len()], &frame, &mut columns[..q.len()]);
-                base.inverse().then::<NoFma>(&frame)
-            }
-        }
-    }
-}
-
-/// Adds to the linear rows of a column, times `factor`, the velocity of a point at `lever` due to its angular rows.
-fn add_moment(column: &mut [f64; 6], lever: &[f64; 3], factor: f64) {
-    let moment = cross(&[column[3], column[4], column[5]], lever);
-    (0..3).for_each(|k| column[k] += factor * moment[k]);
-}
-
-/// Transforms `columns`, the Jacobian of `frame`, to the Jacobian relative to `base`, whose Jacobian is `own`: with p the
-/// vector between the frames, v = R'(v_frame - v_base - w_base x p) and w = R'(w_frame - w_base).
-fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[f64; 6]]) {
-    let lever = std::array::from_fn(|k| frame.origin[k] - base.origin[k]);
-    for (column, own) in columns.iter_mut().zip(own) {
-        add_moment(own, &lever, 1.0);
-        let relative: [f64; 6] = std::array::from_fn(|k| column[k] - own[k]);
-        let along = |half: usize| base.axes.map(|axis| (0..3).map(|k| axis[k] * relative[3 * half + k]).sum::<f64>());
-        column[..3].copy_from_slice(&along(0));
-        column[3..].copy_from_slice(&along(1));
-    }
-}
 
 /// Tasks and their targets, in the same order.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Aims<'a> {
     /// Tasks; one for a robot with one tip.
-    pub tasks: &'a [TipCriterion],
+    pub tasks: &'a [CheckedTask],
     /// Target of each task.
     pub targets: &'a [Target],
 }
 
 impl<'a> Aims<'a> {
     /// Task and target of the only tip.
-    pub fn of_one(task: &'a TipCriterion, target: &'a Target) -> Self {
+    pub fn of_one(task: &'a CheckedTask, target: &'a Target) -> Self {
         Self { tasks: std::slice::from_ref(task), targets: std::slice::from_ref(target) }
     }
 
@@ -223,13 +43,13 @@ impl<'a> Aims<'a> {
     }
 
     /// Iterates over tasks with their targets.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a TipCriterion, &'a Target)> + use<'a> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a CheckedTask, &'a Target)> + use<'a> {
         self.tasks.iter().zip(self.targets)
     }
 
     /// Assesses `q`: the sum of the values, solved if all tasks are solved, with the largest errors.
     pub(crate) fn assess(&self, robot: &Robot, q: &[f64]) -> Assessment {
-        let assess = |(task, target): (&TipCriterion, &Target)| task.assess(target, &task.frame(robot, q));
+        let assess = |(task, target): (&CheckedTask, &Target)| task.assess(target, &task.frame(robot, q));
         self.iter().map(assess).fold(nothing_asked(), together)
     }
 
@@ -290,7 +110,7 @@ impl<'a> Aims<'a> {
     /// Calls `keep` with the residual of each task at `q`, and returns the assessment.
     pub(crate) fn residuals(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 6])) -> Assessment {
         let mut block = TaskBlock::default();
-        let residual = |(task, target): (&TipCriterion, &Target)| {
+        let residual = |(task, target): (&CheckedTask, &Target)| {
             let assessment = task.linearize(target, &task.frame(robot, q), 0, &mut block);
             keep(block.residual);
             assessment
@@ -300,7 +120,7 @@ impl<'a> Aims<'a> {
 
     /// Errors of each task at `q`.
     pub(crate) fn errors(&self, robot: &Robot, q: &[f64]) -> SmallVec<[TipError; 4]> {
-        let error = |(task, target): (&TipCriterion, &Target)| {
+        let error = |(task, target): (&CheckedTask, &Target)| {
             TipError::from(target.assess_tip(&task.frame(robot, q), &task.criterion).error)
         };
         self.iter().map(error).collect()
@@ -362,7 +182,7 @@ mod tests {
     use super::*;
     use crate::load::UrdfOptions;
     use crate::math::pose;
-    use crate::task::{Region, TaskKind};
+    use crate::task::{NamedTask, Region, Task, TaskKind, Tolerance};
 
     /// Robot with a rotating chest and two arms of three joints.
     fn robot() -> Robot {

@@ -2,14 +2,17 @@
 //!
 //! A [`Task`] turns the caller's target into a [`Target`] and a [`Criterion`], which decides when the target is reached
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
-//! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q; `aims`
-//! applies it to the tasks of one tip or several. [`Goals`] are costs in the null space of the task.
+//! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q. A
+//! `named_task` is for a tip or a pair of tips; validated, it is a `checked_task`; `aims` are such tasks with their targets.
+//! [`Goals`] are costs in the null space of the task.
 
 mod aims;
 mod assessment;
+mod checked_task;
 mod components;
 mod criterion;
 mod goal;
+mod named_task;
 mod region;
 mod region_assessment;
 pub(crate) mod residual;
@@ -20,11 +23,13 @@ mod tip_assessment;
 mod tip_error;
 mod tip_task;
 
-pub use aims::{Aims, NamedTask, Subject, TipCriterion};
+pub use aims::Aims;
 pub use assessment::Assessment;
+pub use checked_task::CheckedTask;
 pub use components::Components;
 pub use criterion::Criterion;
 pub use goal::{Goal, Goals};
+pub use named_task::{NamedTask, Subject};
 pub use region::{Outside, Region};
 pub use target::{Target, TargetRow};
 pub(crate) use target_segment::TargetSegment;

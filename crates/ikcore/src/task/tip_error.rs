@@ -55,7 +55,7 @@ pub struct SquaredError {
 impl SquaredError {
     /// Sum of both squared errors.
     #[inline(always)]
-    pub(super) fn sum(&self) -> f64 {
+    pub(crate) fn sum(&self) -> f64 {
         self.position.unwrap_or(0.0) + self.rotation.unwrap_or(0.0)
     }
 

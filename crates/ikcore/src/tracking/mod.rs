@@ -21,7 +21,7 @@
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | progress towards its target of an arm held by obstacles |
 //! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
-//! | `tip_paths`, `tip_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
+//! | `tip_paths`, `current_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
@@ -35,6 +35,7 @@ mod commanded_motion;
 mod constrained_step;
 mod controller;
 mod coupled_stop;
+mod current_tasks;
 mod late_sensor;
 mod limited_state;
 mod model_free;
@@ -52,7 +53,6 @@ mod target_filter;
 mod target_stream;
 mod tip_paths;
 mod tip_pose;
-mod tip_tasks;
 mod track;
 mod track_options;
 mod tracked_arm;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::tip_pose::TipPose;
-use crate::error::{Error, Result};
+use crate::error::{Result, require_not_negative};
 use crate::math::so3::rotated;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
@@ -50,10 +50,10 @@ impl KinematicPlant {
     /// A plant whose sensor has this standard deviation (m) on each axis.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for noise that is negative or not finite; [`Error::SeveralTips`].
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for noise that is negative or not finite; [`Error::SeveralTips`](crate::Error::SeveralTips).
     pub fn new(robot: Robot, noise: f64, seed: u64) -> Result<Self> {
         robot.require_one_tip("KinematicPlant")?;
-        require_noise("noise", noise)?;
+        require_not_negative("noise", noise)?;
         // The controller uses stream 0 of the same seed.
         Ok(Self { robot, noise, rotation_noise: None, rng: rng::stream(seed, 1) })
     }
@@ -61,9 +61,9 @@ impl KinematicPlant {
     /// Replaces the sensor by one that measures poses, with noise of this standard deviation (rad) about each axis of the base.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for noise that is negative or not finite.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for noise that is negative or not finite.
     pub fn with_orientation(self, rotation_noise: f64) -> Result<Self> {
-        require_noise("rotation_noise", rotation_noise)?;
+        require_not_negative("rotation_noise", rotation_noise)?;
         Ok(Self { rotation_noise: Some(rotation_noise), ..self })
     }
 
@@ -132,11 +132,4 @@ pub(super) fn check(tip: &TipPose, target: &TipPose) -> Result<(), Fault> {
         return Err(Fault(format!("returned a position (3,), but the path has orientations: {remedy}")));
     }
     Ok(())
-}
-
-fn require_noise(what: &str, noise: f64) -> Result<()> {
-    if noise.is_finite() && noise >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::out_of_range(what, "zero or more and finite", noise))
 }

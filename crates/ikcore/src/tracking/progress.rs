@@ -34,30 +34,30 @@ const SLOPE: f64 = 0.02;
 
 /// Commands admitted in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Pace {
+pub(super) enum Admitted {
     /// All commands of the rule.
     #[default]
-    Free,
+    All,
     /// Commands that bring the rest configuration nearer to the target.
-    Nearer,
+    Approaching,
     /// Commands of the stop.
-    Rest,
+    Stopping,
 }
 
 /// Progress of an arm towards its target, which may move. Errors are square roots of the squared ones.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArmProgress {
     /// Time factor of this arm relative to a quick one.
-    slower: f64,
-    pace: Pace,
+    patience_factor: f64,
+    admitted: Admitted,
     /// Error before the last command, to the target of that tick; `None` before the first.
     before: Option<f64>,
     /// Decrease of the error by commands since the arm last came nearer.
-    gained: f64,
+    progress_made: f64,
     /// Increase of the error by motion of the target since then.
-    news: f64,
+    target_change: f64,
     /// Time elapsed since then (s).
-    waited: f64,
+    time_waited: f64,
     /// Time since obstacles last held the arm (s); `None` if they do not hold it.
     held_ago: Option<f64>,
     /// Whether obstacles were replaced since the arm began to come nearer.
@@ -67,14 +67,14 @@ pub(super) struct ArmProgress {
 impl ArmProgress {
     /// Initial progress of an arm with these limits.
     pub fn new(limits: &Limits) -> Self {
-        let slower = (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT);
+        let patience_factor = (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT);
         Self {
-            slower,
-            pace: Pace::Free,
+            patience_factor,
+            admitted: Admitted::All,
             before: None,
-            gained: 0.0,
-            news: 0.0,
-            waited: 0.0,
+            progress_made: 0.0,
+            target_change: 0.0,
+            time_waited: 0.0,
             held_ago: None,
             replaced: false,
         }
@@ -83,35 +83,35 @@ impl ArmProgress {
     /// Forgets all progress.
     pub fn restart(&mut self) {
         (self.before, self.held_ago) = (None, None);
-        self.begin(Pace::Free);
+        self.begin(Admitted::All);
     }
 
     /// Begins a tick of `dt` (s), with the errors after the last command: `after` to its own target, `now` to the new one.
     pub fn begin_tick(&mut self, [after, now]: [f64; 2], dt: f64) {
         let before = self.before.replace(now);
-        self.gained += before.map_or(f64::INFINITY, |before| before - after);
-        self.news += now - after;
-        self.waited += dt / self.slower;
+        self.progress_made += before.map_or(f64::INFINITY, |before| before - after);
+        self.target_change += now - after;
+        self.time_waited += dt / self.patience_factor;
         self.held_ago = self.held_ago.map(|ago| ago + dt).filter(|ago| *ago <= HELD_FOR);
         if self.held_ago.is_none() {
-            self.pace = Pace::Free;
+            self.admitted = Admitted::All;
         }
-        let is_new = !(self.news.abs() <= NEW * after);
-        match self.pace {
-            _ if is_new => self.begin(Pace::Free),
-            Pace::Free if self.gained > (NEARER * after).max(LEAST) => self.begin(Pace::Free),
-            Pace::Free if self.waited >= PATIENCE && self.held_ago.is_some() => {
-                self.begin(Pace::Nearer);
+        let is_new = !(self.target_change.abs() <= NEW * after);
+        match self.admitted {
+            _ if is_new => self.begin(Admitted::All),
+            Admitted::All if self.progress_made > (NEARER * after).max(LEAST) => self.begin(Admitted::All),
+            Admitted::All if self.time_waited >= PATIENCE && self.held_ago.is_some() => {
+                self.begin(Admitted::Approaching);
                 self.replaced = false;
             }
-            Pace::Nearer if self.gained > MUCH_NEARER * after => self.begin(Pace::Nearer),
-            Pace::Nearer if self.waited >= LAST_PATIENCE => self.begin(Pace::Rest),
-            Pace::Free | Pace::Nearer | Pace::Rest => {}
+            Admitted::Approaching if self.progress_made > MUCH_NEARER * after => self.begin(Admitted::Approaching),
+            Admitted::Approaching if self.time_waited >= LAST_PATIENCE => self.begin(Admitted::Stopping),
+            Admitted::All | Admitted::Approaching | Admitted::Stopping => {}
         }
     }
 
-    fn begin(&mut self, pace: Pace) {
-        (self.pace, self.gained, self.news, self.waited) = (pace, 0.0, 0.0, 0.0);
+    fn begin(&mut self, admitted: Admitted) {
+        (self.admitted, self.progress_made, self.target_change, self.time_waited) = (admitted, 0.0, 0.0, 0.0);
     }
 
     /// Records that obstacles were replaced.
@@ -131,8 +131,8 @@ impl ArmProgress {
     }
 
     /// Commands admitted in this tick.
-    pub fn pace(&self) -> Pace {
-        self.pace
+    pub fn admitted(&self) -> Admitted {
+        self.admitted
     }
 }
 

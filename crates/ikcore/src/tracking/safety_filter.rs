@@ -13,7 +13,7 @@ use std::sync::Arc;
 use super::around_arm::{Around, ObstacleVelocities, Response};
 use super::constrained_step::{ConstrainedStep, Resting, StepRequest, Towards};
 use super::coupled_stop::CoupledStop;
-use super::progress::{ArmProgress, Pace, is_nearer};
+use super::progress::{Admitted, ArmProgress, is_nearer};
 use super::step_context::StepContext;
 use crate::error::Result;
 use crate::limits::Limits;
@@ -56,7 +56,7 @@ pub struct FilterWork {
 
 /// Outcome of the filter for a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Kept {
+pub(super) struct FilterOutcome {
     /// Whether the command was changed.
     pub changed: bool,
     /// Whether obstacles or links caused the change.
@@ -142,17 +142,17 @@ impl SafetyFilter {
 
     /// Changes the command `q` of the rule to one that keeps the arm clear and holds pairs of tips. Pairs that cannot be held
     /// yet are ordinary tasks until they reach their relative pose.
-    pub fn keep(&mut self, context: &StepContext<'_>, q: &mut Point) -> Kept {
+    pub fn filter(&mut self, context: &StepContext<'_>, q: &mut Point) -> FilterOutcome {
         let wanted = q.clone();
         match context.errors() {
             Some(errors) => self.progress.begin_tick(errors, context.dt),
             None => self.progress.restart(),
         }
-        let held = if context.aims.has_pairs() { self.keep_held(context, q) } else { None };
+        let held = if context.aims.has_pairs() { self.filter_with_pairs(context, q) } else { None };
         let by_obstacles = held.unwrap_or_else(|| {
             self.stop.clear();
             q.copy_from_slice(&wanted);
-            self.keep_clear(context, q)
+            self.filter_for_clearance(context, q)
         });
         if let Some(around) = &mut self.around {
             around.since += context.dt;
@@ -160,11 +160,11 @@ impl SafetyFilter {
         if by_obstacles || self.goal_is_held {
             self.progress.note_held();
         }
-        Kept { changed: *q != wanted, by_obstacles }
+        FilterOutcome { changed: *q != wanted, by_obstacles }
     }
 
     /// Changes the command `q` to one that keeps the arm clear. Returns whether obstacles held it back.
-    fn keep_clear(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
+    fn filter_for_clearance(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
         if self.around.is_none() {
             return false;
         }
@@ -173,16 +173,16 @@ impl SafetyFilter {
         let rest = stop.rest();
         let wanted = q.clone();
         let blocked = self.set_rows(context, (&rest, stop.ticks_to_stop()), &wanted);
-        let pace = self.pace(&brake);
-        self.move_beside_rows(context, (pace, blocked), [&rest, &brake], q);
-        let nearer_than = (pace != Pace::Free).then_some(&rest);
-        let allowed = pace != Pace::Rest
+        let admitted = self.admitted(&brake);
+        self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
+        let nearer_than = (admitted != Admitted::All).then_some(&rest);
+        let allowed = admitted != Admitted::Stopping
             && (self.allows(context, nearer_than, q) || {
                 self.correct(context, q);
                 self.allows(context, nearer_than, q)
             });
         let best = q.clone();
-        let mut parts = PARTS.into_iter().filter(|_| pace != Pace::Rest);
+        let mut parts = PARTS.into_iter().filter(|_| admitted != Admitted::Stopping);
         let allowed = allowed
             || parts.any(|part| {
                 write_within(&brake, &best, part, q);
@@ -191,7 +191,7 @@ impl SafetyFilter {
         if !allowed {
             q.copy_from_slice(&brake);
         }
-        if pace == Pace::Free {
+        if admitted == Admitted::All {
             return *q != wanted;
         }
         let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
@@ -200,22 +200,22 @@ impl SafetyFilter {
 
     /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether obstacles changed it;
     /// `None` if the pairs cannot be held.
-    fn keep_held(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
+    fn filter_with_pairs(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
         let mut brake = self.stop.next().cloned().unwrap_or_else(|| context.braking());
         context.tick_box.bounds.clip(&mut brake);
         let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
         let wanted = q.clone();
         let mut blocked = self.set_rows(context, (&rest, self.stop.ticks_to_stop()), &wanted);
-        let pace = self.pace(&brake);
-        self.move_beside_rows(context, (pace, blocked), [&rest, &brake], q);
+        let admitted = self.admitted(&brake);
+        self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
         let best = q.clone();
-        for part in [1.0].into_iter().chain(PARTS).filter(|_| pace != Pace::Rest) {
+        for part in [1.0].into_iter().chain(PARTS).filter(|_| admitted != Admitted::Stopping) {
             write_within(&brake, &best, part, q);
             if !(self.rows.hold(&context.request(Towards::Start), q) && self.finds_stop(context, q)) {
                 continue;
             }
             let (stop, dt) = (&self.next_stop, context.dt);
-            if pace == Pace::Nearer && !stop.rest().is_some_and(|to| is_nearer(context, &rest, to)) {
+            if admitted == Admitted::Approaching && !stop.rest().is_some_and(|to| is_nearer(context, &rest, to)) {
                 continue;
             }
             let end = 1.0 + stop.ticks_to_stop();
@@ -235,26 +235,26 @@ impl SafetyFilter {
 
     /// Decides which commands are admitted; `brake` is the braking command. An arm that is too near to a body or has to evade
     /// moves in any case.
-    fn pace(&mut self, brake: &[f64]) -> Pace {
+    fn admitted(&mut self, brake: &[f64]) -> Admitted {
         if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
             self.progress.restart();
         }
-        self.progress.pace()
+        self.progress.admitted()
     }
 
     /// Moves the command `q` into the rows: to the nearest command, or to the one after which the arm rests nearest to the
     /// target. Braking by `brake` would end at `rest`.
-    fn move_beside_rows(
+    fn move_into_rows(
         &mut self,
         context: &StepContext<'_>,
-        (pace, blocked): (Pace, bool),
+        (admitted, blocked): (Admitted, bool),
         [rest, brake]: [&[f64]; 2],
         q: &mut Point,
     ) {
-        match pace {
-            Pace::Free if blocked => self.step_beside_rows(context, q),
-            Pace::Free | Pace::Rest => {}
-            Pace::Nearer => {
+        match admitted {
+            Admitted::All if blocked => self.step_into_rows(context, q),
+            Admitted::All | Admitted::Stopping => {}
+            Admitted::Approaching => {
                 let slope = Response::new(context, rest).slope;
                 let resting = Resting { rest, slope: &slope, command: brake };
                 self.rows.write_resting(&context.request(Towards::Target), &resting, q);
@@ -337,7 +337,7 @@ impl SafetyFilter {
     }
 
     /// Moves `q` to the command that satisfies the rows and disturbs the task least.
-    fn step_beside_rows(&mut self, context: &StepContext<'_>, q: &mut Point) {
+    fn step_into_rows(&mut self, context: &StepContext<'_>, q: &mut Point) {
         // Under acceleration limits the proposed command is only on the way to the target. A far target must not compete with
         // the separation of overlapping bodies.
         let at_once = context.limited.is_none() && self.rows.wanted.is_empty();

@@ -6,7 +6,7 @@ use super::around_arm::ObstacleVelocities;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::safety_filter::{FilterWork, Kept, SafetyFilter};
+use super::safety_filter::{FilterOutcome, FilterWork, SafetyFilter};
 use super::step::Step;
 use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
@@ -185,7 +185,7 @@ impl Session {
         } else {
             self.run_rule(sampled_ago, monitor)
         };
-        let held = !found.interrupted && !self.stopping && self.keep(&mut found);
+        let held = !found.interrupted && !self.stopping && self.filter(&mut found);
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
@@ -273,9 +273,9 @@ impl Session {
 
     /// Changes the command `found` by the rule to one that keeps the arm clear and holds pairs of tips. Returns whether
     /// obstacles or other links caused the change.
-    fn keep(&mut self, found: &mut TickResult) -> bool {
+    fn filter(&mut self, found: &mut TickResult) -> bool {
         let Some(safety) = &mut self.safety else { return false };
-        let Kept { changed, by_obstacles } = safety.keep(&self.arm.context(), &mut found.q);
+        let FilterOutcome { changed, by_obstacles } = safety.filter(&self.arm.context(), &mut found.q);
         if changed {
             self.arm.assess(found);
             if self.arm.limited.is_none() {
@@ -388,21 +388,13 @@ impl Session {
         self.running = self.rule.start(self.arm.limited.is_some(), !self.arm.has_one_tip());
     }
 
-    /// Resets the session to `q` (n,) at t = 0, at rest.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new) for a start.
-    pub fn reset(&mut self, q: &[f64]) -> Result<()> {
-        self.reset_moving(q, None, None)
-    }
-
     /// Resets the session to `q` (n,) at t = 0, with velocities `qd` (n,) (rad/s, m/s) and accelerations `qdd` (n,) (rad/s^2,
     /// m/s^2); `None` means zero. Both are differences of commands in the last tick.
     ///
     /// # Errors
     /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
     /// stop inside its limits.
-    pub fn reset_moving(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
+    pub fn reset(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
         self.arm.reset(q, [qd, qdd])?;
         self.stopping = false;
         self.start_rule();

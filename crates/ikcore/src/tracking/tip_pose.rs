@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;
 use crate::math::so3::{rotated, rotation_between};
-use crate::math::vector::{median, norm, squared_distance};
+use crate::math::vector::median;
 use crate::math::{Frame, Pose};
-use crate::task::TipError;
+use crate::task::residual::{pose, position};
+use crate::task::{SquaredError, TipError};
 
 /// Position or pose of a tip. Not `Copy`, because a copy always moves the 13 words of a pose.
 #[derive(Debug, PartialEq)]
@@ -142,18 +143,19 @@ impl TipPose {
         }
     }
 
+    /// Squared errors of position and, if both have one, orientation.
     #[inline]
-    fn squared_distance(&self, target: &Self) -> f64 {
-        squared_distance(target.position(), self.position())
+    fn squared_errors(&self, target: &Self) -> SquaredError {
+        match (self, target) {
+            (Self::Pose(tip), Self::Pose(target)) => pose::error(target, tip),
+            _ => SquaredError { position: Some(position::error(target.position(), self.position())), rotation: None },
+        }
     }
 
     /// Squared error r'r: a radian counts as much as a metre.
     #[inline]
     pub(super) fn squared_error(&self, target: &Self) -> f64 {
-        match self.rotation(target) {
-            Some([x, y, z]) => self.squared_distance(target) + (x * x + y * y + z * z),
-            None => self.squared_distance(target),
-        }
+        self.squared_errors(target).sum()
     }
 
     /// Norm of the residual, |r|.
@@ -165,10 +167,7 @@ impl TipPose {
     /// Position and orientation error.
     #[inline]
     pub(super) fn error(&self, target: &Self) -> TipError {
-        TipError {
-            position: self.squared_distance(target).sqrt(),
-            rotation: self.rotation(target).map_or(f64::NAN, |phi| norm(&phi)),
-        }
+        self.squared_errors(target).into()
     }
 
     /// Median of three, in each direction.

@@ -7,7 +7,7 @@ use crate::limits::{LimitAt, Limits};
 use crate::message::Setting;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
-use crate::task::{Goal, NamedTask, Task, TipCriterion, Tolerance};
+use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
@@ -39,7 +39,7 @@ pub struct TrackOptions {
 
 impl TrackOptions {
     /// Task of the only tip, which decides whether a tick is in its band.
-    pub(super) fn only_task(&self) -> Result<TipCriterion> {
+    pub(super) fn only_task(&self) -> Result<CheckedTask> {
         NamedTask::of_only(self.task, self.tolerance).validated()
     }
 

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use super::current_tasks::CurrentTasks;
 use super::limited_state::LimitedState;
 use super::repeated_targets::RepeatedTargets;
 use super::rule::TickResult;
 use super::step_context::StepContext;
 use super::target_stream::TargetStream;
-use super::tip_tasks::TipTasks;
 use super::track_options::TrackOptions;
 use crate::error::Result;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -24,7 +24,7 @@ pub(super) struct TrackedArm {
     pub tick_box: TickBox,
     /// State and reachable set under acceleration or jerk limits.
     pub limited: Option<LimitedState>,
-    pub tasks: TipTasks,
+    pub tasks: CurrentTasks,
     pub targets: TargetStream,
     pub dt: f64,
     pub ticks: usize,
@@ -41,7 +41,7 @@ impl TrackedArm {
     /// # Errors
     /// Errors of wrong tasks, limits or settings of targets, and of a start outside limits or region.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        let (tasks, limits) = (TipTasks::new(robot, options)?, options.limits_for(robot));
+        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot));
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
         let limited = LimitedState::new(&limits, dt);

@@ -207,7 +207,7 @@ impl PyTracker {
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
         let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
-        self.session().reset_moving(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
+        self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
 
     /// Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If

@@ -28,12 +28,12 @@ pub(super) struct Arcs<'r, 'a> {
     limits: &'r WrappedLimits<'a>,
     goals: &'r mut Goals,
     /// Cost and gradient at the end of the last step, if within the limits.
-    last: Option<Asked>,
+    last: Option<GoalValue>,
     candidates: Vec<Candidate>,
 }
 
 /// Cost of the goals at a configuration, and its gradient.
-struct Asked {
+struct GoalValue {
     cost: f64,
     gradient: Point,
 }
@@ -55,7 +55,7 @@ impl<'r, 'a> Arcs<'r, 'a> {
     }
 
     /// Adds the candidates of the step from `begin` to `end`, whose chord is `length` long.
-    pub fn look(&mut self, begin: &CurvePoint, end: &CurvePoint, length: f64) {
+    pub fn add_step(&mut self, begin: &CurvePoint, end: &CurvePoint, length: f64) {
         let ways: SmallVec<[Cubic; MAX_DOF]> = (0..begin.q.len())
             .map(|j| {
                 let from = self.limits.near_middle(j, begin.q[j]);
@@ -66,20 +66,20 @@ impl<'r, 'a> Arcs<'r, 'a> {
         let mut last = self.last.take();
         for [from, to] in self.limits.pieces(&ways) {
             let before = last.take().filter(|_| from == 0.0);
-            let asked = [before.unwrap_or_else(|| self.ask(&ways, from)), self.ask(&ways, to)];
-            self.promise(&ways, [from, to], &asked);
-            let [_, after] = asked;
+            let values = [before.unwrap_or_else(|| self.evaluate(&ways, from)), self.evaluate(&ways, to)];
+            self.add_candidate(&ways, [from, to], &values);
+            let [_, after] = values;
             self.last = (to == 1.0).then_some(after);
         }
     }
 
     /// Adds the minimum of the cubic through the costs at both ends of a piece.
-    fn promise(&mut self, ways: &[Cubic], [from, to]: [f64; 2], asked: &[Asked; 2]) {
-        let slope = |asked: &Asked, fraction: f64| -> f64 {
+    fn add_candidate(&mut self, ways: &[Cubic], [from, to]: [f64; 2], values: &[GoalValue; 2]) {
+        let slope = |end: &GoalValue, fraction: f64| -> f64 {
             let along: Point = ways.iter().map(|way| way.slope(fraction)).collect();
-            (to - from) * dot(&along, &asked.gradient)
+            (to - from) * dot(&along, &end.gradient)
         };
-        let [left, right] = asked;
+        let [left, right] = values;
         let cost = Cubic::new([left.cost, right.cost], [slope(left, from), slope(right, to)]);
         let lowest = cost.lowest();
         let fall = left.cost.min(right.cost) - cost.at(lowest);
@@ -87,10 +87,10 @@ impl<'r, 'a> Arcs<'r, 'a> {
         self.candidates.push(Candidate { cost: cost.at(lowest) - DOUBT * fall, q });
     }
 
-    fn ask(&mut self, ways: &[Cubic], fraction: f64) -> Asked {
+    fn evaluate(&mut self, ways: &[Cubic], fraction: f64) -> GoalValue {
         let q = self.place(ways, fraction);
         let mut gradient = Point::from_elem(0.0, q.len());
-        Asked { cost: self.goals.cost(self.robot, None, &q, &mut gradient), gradient }
+        GoalValue { cost: self.goals.cost(self.robot, None, &q, &mut gradient), gradient }
     }
 
     fn place(&self, ways: &[Cubic], fraction: f64) -> Point {

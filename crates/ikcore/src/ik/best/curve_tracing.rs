@@ -99,7 +99,7 @@ fn walk_on(
         let there = walk.here();
         let chord = difference(&there.q, &from.q);
         let length = norm(&chord);
-        arcs.look(&from, there, length);
+        arcs.add_step(&from, there, length);
         passed.push((from.q, chord));
         // Overlap of begin and end, so that no part of the curve is missed.
         if count > 3 && there.has_closed_at(&begin, length, limits) {

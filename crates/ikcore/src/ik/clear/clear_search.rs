@@ -143,15 +143,11 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
                 format!("{} at the best of {count} solutions tried, and others may exist", said(&nearest.contact))
             }
         };
-        let solution = self.attempt.solution(exhausted.status(), q);
-        Some(Box::new(Solution {
-            obstruction,
-            nearest: Some(Box::new(Nearest {
-                clearance: Some(nearest).into(),
-                open_mesh: self.space.first_open_mesh(),
-            })),
-            ..solution
-        }))
+        let mut solution = Box::new(self.attempt.solution(exhausted.status(), q));
+        solution.obstruction = obstruction;
+        solution.nearest =
+            Some(Box::new(Nearest { clearance: Some(nearest).into(), open_mesh: self.space.first_open_mesh() }));
+        Some(solution)
     }
 
     /// Result like [`in_collision`](Self::in_collision), or `last`, which is not clear either, if no distance is known.

@@ -26,12 +26,11 @@ pub(in crate::ik) fn clear_solution<'p>(
         (Prefer::Best, start) => search.least_cost(&mut context.goals().clone(), start),
         (_, start) => search.first(start).map(|q| search.improved(q, start)),
     };
-    let solution = found.map_or_else(|missed| *missed, |q| attempt.solution(Status::Solved, q));
-    if solution.nearest.is_some() || context.options().nearest_later {
-        return solution;
+    let mut solution = found.map_or_else(|missed| *missed, |q| attempt.solution(Status::Solved, q));
+    if solution.nearest.is_none() && !context.options().nearest_later {
+        solution.nearest = Some(Box::new(Nearest::at(space, &solution.q)));
     }
-    let nearest = Some(Box::new(Nearest::at(space, &solution.q)));
-    Solution { nearest, ..solution }
+    solution
 }
 
 /// Returns `solution` if it is clear, or a clear one near it on its self-motion; otherwise sets the status

@@ -3,7 +3,7 @@
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
-use crate::error::{Error, Result};
+use crate::error::{Result, require_at_least_one};
 use crate::objective::Objective;
 use crate::solver::Status;
 use crate::solver::driver::Solver;
@@ -30,13 +30,10 @@ impl BeeColony {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.schedule.validate(2)?;
-        match self.limit {
-            Some(0) => Err(Error::out_of_range("limit", "at least 1", 0.0)),
-            _ => Ok(()),
-        }
+        self.limit.map_or(Ok(()), |limit| require_at_least_one("limit", limit))
     }
 }
 

@@ -10,7 +10,7 @@ use super::best_positions::BestPositions;
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
 use super::velocities::Velocities;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Result, require_factor, require_fraction, require_positive};
 use crate::math::comparison::sign;
 use crate::objective::Objective;
 use crate::solver::Status;
@@ -83,7 +83,7 @@ impl BeetleSwarm {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.schedule.validate(2)?;
         for (name, value) in [
@@ -95,15 +95,9 @@ impl BeetleSwarm {
         ] {
             require_positive(name, value)?;
         }
-        for (name, share) in [("inertia", self.inertia), ("velocity_share", self.velocity_share)] {
-            if !(0.0..=1.0).contains(&share) {
-                return Err(Error::out_of_range(name, "between 0 and 1", share));
-            }
-        }
-        if !(self.step_decay > 0.0 && self.step_decay <= 1.0) {
-            return Err(Error::out_of_range("step_decay", "above 0 and at most 1", self.step_decay));
-        }
-        Ok(())
+        require_fraction("inertia", self.inertia)?;
+        require_fraction("velocity_share", self.velocity_share)?;
+        require_factor("step_decay", self.step_decay)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_fraction};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
 use crate::solver::Status;
@@ -51,10 +51,7 @@ impl DifferentialEvolution {
         if !(self.weight > 0.0 && self.weight <= 2.0) {
             return Err(Error::out_of_range("weight", "above 0 and at most 2", self.weight));
         }
-        if !(0.0..=1.0).contains(&self.crossover_rate) {
-            return Err(Error::out_of_range("crossover_rate", "between 0 and 1", self.crossover_rate));
-        }
-        Ok(())
+        require_fraction("crossover_rate", self.crossover_rate)
     }
 }
 

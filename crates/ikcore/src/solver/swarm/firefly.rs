@@ -6,7 +6,7 @@
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Result, require_factor, require_not_negative, require_positive};
 use crate::objective::{Objective, Point};
 use crate::rng::split;
 use crate::solver::Status;
@@ -45,18 +45,13 @@ impl Firefly {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.schedule.validate(2)?;
         require_positive("attractiveness", self.attractiveness)?;
         require_positive("randomness", self.randomness)?;
-        if !(self.absorption >= 0.0 && self.absorption.is_finite()) {
-            return Err(Error::out_of_range("absorption", "zero or more and finite", self.absorption));
-        }
-        if !(self.randomness_decay > 0.0 && self.randomness_decay <= 1.0) {
-            return Err(Error::out_of_range("randomness_decay", "above 0 and at most 1", self.randomness_decay));
-        }
-        Ok(())
+        require_not_negative("absorption", self.absorption)?;
+        require_factor("randomness_decay", self.randomness_decay)
     }
 
     /// Schedule in turns.
@@ -121,7 +116,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
             let beta = self.attractiveness_at(x, x_j, scales);
             fly(x, x_j, beta, *randomness, widths, draws, to);
         }
-        moved.evaluate_first(moving.len(), evaluator)?;
+        evaluator.evaluate_all(&mut moved.points[..moving.len() * x_j.len()], &mut moved.values[..moving.len()])?;
         for (place, i) in moving.iter().enumerate() {
             members.take(*i, moved, place);
         }

@@ -7,7 +7,7 @@
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_factor, require_fraction, require_positive, require_proper_fraction};
 use crate::objective::Objective;
 use crate::rng::LazyRng;
 use crate::solver::Status;
@@ -57,24 +57,15 @@ impl Genetic {
     /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.schedule.validate(2)?;
-        if !(0.0..1.0).contains(&self.elite_share) {
-            return Err(Error::out_of_range("elite_share", "at least 0 and below 1", self.elite_share));
-        }
-        if !(0.0..=1.0).contains(&self.crossover_share) {
-            return Err(Error::out_of_range("crossover_share", "between 0 and 1", self.crossover_share));
-        }
+        require_proper_fraction("elite_share", self.elite_share)?;
+        require_fraction("crossover_share", self.crossover_share)?;
         if !(1..=self.schedule.population).contains(&self.tournament) {
             let requirement = format!("between 1 and the population of {}", self.schedule.population);
             return Err(Error::out_of_range("tournament", &requirement, self.tournament as f64));
         }
-        if !(self.mutation_rate > 0.0 && self.mutation_rate <= 1.0) {
-            return Err(Error::out_of_range("mutation_rate", "above 0 and at most 1", self.mutation_rate));
-        }
+        require_factor("mutation_rate", self.mutation_rate)?;
         require_positive("mutation_scale", self.mutation_scale)?;
-        if !(self.mutation_decay > 0.0 && self.mutation_decay <= 1.0) {
-            return Err(Error::out_of_range("mutation_decay", "above 0 and at most 1", self.mutation_decay));
-        }
-        Ok(())
+        require_factor("mutation_decay", self.mutation_decay)
     }
 
     /// Number of survivors; at least one member is always a child.

@@ -20,6 +20,7 @@ pub use beetle_swarm::{BeetleDirection, BeetleSwarm};
 pub use differential_evolution::{DifferentialEvolution, TrialUpdate};
 pub use firefly::Firefly;
 pub use genetic::Genetic;
+pub(crate) use pso::constriction;
 pub use pso::{ParticleAcceptance, Pso, PsoForm, Walls};
 pub use qpso::Qpso;
 pub use schedule::Schedule;

@@ -61,18 +61,6 @@ impl Members {
         (1..self.values.len()).fold(0, |best, i| if self.values[i] < self.values[best] { i } else { best })
     }
 
-    /// Clips the first `count` members to the box, and evaluates them in bulk.
-    ///
-    /// # Errors
-    /// The evaluator's [`Status`].
-    pub fn evaluate_first<O: Objective + ?Sized>(
-        &mut self,
-        count: usize,
-        evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Status> {
-        evaluator.evaluate_all(&mut self.points[..count * self.dimension], &mut self.values[..count])
-    }
-
     /// Clips the members from `first` on to the box, and evaluates them in bulk.
     ///
     /// # Errors

@@ -153,13 +153,16 @@ impl Pso {
         match self.form {
             PsoForm::Inertia(weight) => [weight, self.c1, self.c2],
             PsoForm::Constriction => {
-                // Constriction factor chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000).
-                let phi = self.c1 + self.c2;
-                let chi = 2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs();
+                let chi = constriction(self.c1 + self.c2);
                 [chi, chi * self.c1, chi * self.c2]
             }
         }
     }
+}
+
+/// Constriction factor chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)| of phi = c1 + c2, eq. (4) of Eberhart and Shi (2000).
+pub(crate) fn constriction(phi: f64) -> f64 {
+    2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
 }
 
 /// State of the swarm between generations.

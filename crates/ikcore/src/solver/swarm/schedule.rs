@@ -1,6 +1,6 @@
 //! Schedule of a population: its size and its stopping rule.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_at_least_one};
 
 /// Size of a population, and its stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,11 +33,7 @@ impl Schedule {
             let requirement = format!("between {fewest} and {LARGEST_POPULATION}");
             return Err(Error::out_of_range("population", &requirement, population as f64));
         }
-        for (name, count) in [("max_generations", max_generations), ("stall_generations", stall_generations)] {
-            if count == 0 {
-                return Err(Error::out_of_range(name, "at least 1", 0.0));
-            }
-        }
-        Ok(())
+        require_at_least_one("max_generations", max_generations)?;
+        require_at_least_one("stall_generations", stall_generations)
     }
 }

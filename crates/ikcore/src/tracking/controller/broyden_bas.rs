@@ -10,12 +10,13 @@
 //! With a delayed sensor every further step costs the whole delay. The first step of a tick therefore also corrects the
 //! prediction error of the last tick's first step, which changes little along a smooth path.
 
-use super::control_tick::{ControlTick, TickProgress};
+use super::control_tick::{ControlTick, RunningController, TickProgress};
 use super::noise::Noise;
 use crate::math::box_step::{LEAST_DAMPING, ROWS};
 use crate::math::secant::{Secant, antenna};
 use crate::math::vector::norm;
 use crate::objective::Point;
+use crate::rng::LazyRng;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 use crate::task::Tolerance;
@@ -54,10 +55,10 @@ pub(super) struct BroydenBasState {
     fresh: bool,
     noise: Noise,
     /// Remaining repetitions of the last command, for a sensor with delay.
-    due: usize,
+    repetitions_left: usize,
     /// Prediction error of the last tick's first step (m, rad), and whether the next step is the first of its tick; for a
     /// sensor with delay.
-    lead: [f64; ROWS],
+    first_step_error: [f64; ROWS],
     first_step: bool,
     /// Measurements in this tick.
     measurements: usize,
@@ -67,20 +68,70 @@ pub(super) struct BroydenBasState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
     /// Repeated measurement at the start, `measured` once or twice before.
-    Repeat { measured: usize },
+    RepeatStart { measured: usize },
     /// Measurement at the accepted configuration, before antennae are put out.
-    Stand,
+    Remeasure,
     /// Antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
     /// Step towards the target.
     Step,
     /// Repetition of the step, because its measurement missed the prediction.
-    Again,
+    RepeatStep,
+}
+
+impl RunningController for BroydenBasState {
+    fn begin(&mut self, _target: &TipPose, tip: &TipPose) {
+        self.tip.clone_from(tip);
+        self.earlier[0].clone_from(tip);
+        self.next = Purpose::RepeatStart { measured: 1 };
+    }
+
+    fn choose_command(&mut self, tick: ControlTick<'_>, _rng: &mut LazyRng) {
+        if self.repetitions_left > 0 {
+            tick.bounds.clip(&mut self.sent);
+            return;
+        }
+        self.repetitions_left = 1 + self.options.sensor_delay;
+        self.return_to_box(tick);
+        self.sent.copy_from_slice(&self.q);
+        self.purpose = match self.next {
+            Purpose::Antenna { joint } => self.put_out_antenna(joint, tick),
+            Purpose::Step | Purpose::RepeatStep => {
+                self.step(tick);
+                self.next
+            }
+            measuring @ (Purpose::RepeatStart { .. } | Purpose::Remeasure) => measuring,
+        };
+    }
+
+    fn sent(&self) -> &[f64] {
+        &self.sent
+    }
+
+    fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
+        self.measurements += 1;
+        let spent = self.measurements >= self.options.max_evaluations_per_step;
+        self.repetitions_left -= 1;
+        let verdict = if self.repetitions_left == 0 { self.learn(tick, tip) } else { TickProgress::GoOn };
+        if spent || verdict == TickProgress::TickOver {
+            (self.measurements, self.first_step) = (0, true);
+            return TickProgress::TickOver;
+        }
+        TickProgress::GoOn
+    }
+
+    fn accepted(&self) -> &[f64] {
+        &self.q
+    }
+
+    fn measured(&self) -> (&[f64], &TipPose) {
+        (&self.q, &self.tip)
+    }
 }
 
 impl BroydenBasState {
-    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: Tolerance) -> Box<Self> {
-        Box::new(Self {
+    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: Tolerance) -> Self {
+        Self {
             options,
             tolerance,
             jacobian: Secant::default(),
@@ -88,61 +139,25 @@ impl BroydenBasState {
             tip: TipPose::UNKNOWN,
             earlier: [const { TipPose::UNKNOWN }; 2],
             sent: start.into(),
-            purpose: Purpose::Stand,
+            purpose: Purpose::Remeasure,
             next: Purpose::Antenna { joint: 0 },
             damping: LEAST_DAMPING,
             slow: 0,
             failed: 0,
             fresh: false,
             noise: Noise::default(),
-            due: 0,
-            lead: [0.0; ROWS],
+            repetitions_left: 0,
+            first_step_error: [0.0; ROWS],
             first_step: true,
             measurements: 0,
-        })
-    }
-
-    pub(super) fn begin(&mut self, tip: &TipPose) {
-        self.tip.clone_from(tip);
-        self.earlier[0].clone_from(tip);
-        self.next = Purpose::Repeat { measured: 1 };
-    }
-
-    pub(super) fn accepted(&self) -> &[f64] {
-        &self.q
-    }
-
-    pub(super) fn measured(&self) -> (&[f64], &TipPose) {
-        (&self.q, &self.tip)
-    }
-
-    pub(super) fn sent(&self) -> &[f64] {
-        &self.sent
-    }
-
-    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>) {
-        if self.due > 0 {
-            tick.bounds.clip(&mut self.sent);
-            return;
         }
-        self.due = 1 + self.options.sensor_delay;
-        self.return_to_box(tick);
-        self.sent.copy_from_slice(&self.q);
-        self.purpose = match self.next {
-            Purpose::Antenna { joint } => self.put_out_antenna(joint, tick),
-            Purpose::Step | Purpose::Again => {
-                self.step(tick);
-                self.next
-            }
-            measuring @ (Purpose::Repeat { .. } | Purpose::Stand) => measuring,
-        };
     }
 
     /// Clips the accepted configuration to the box, where a limit may have closed in on it, and has it measured again.
     fn return_to_box(&mut self, tick: ControlTick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
-            self.next = Purpose::Stand;
+            self.next = Purpose::Remeasure;
         }
     }
 
@@ -168,7 +183,7 @@ impl BroydenBasState {
     fn step(&mut self, tick: ControlTick<'_>) {
         let mut residual = self.tip.residual(tick.target);
         if self.first_step {
-            residual.iter_mut().zip(&self.lead).for_each(|(r, lead)| *r += lead);
+            residual.iter_mut().zip(&self.first_step_error).for_each(|(r, error)| *r += error);
         }
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
@@ -183,32 +198,20 @@ impl BroydenBasState {
         self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
-        self.measurements += 1;
-        let spent = self.measurements >= self.options.max_evaluations_per_step;
-        self.due -= 1;
-        let verdict = if self.due == 0 { self.learn(tick, tip) } else { TickProgress::GoOn };
-        if spent || verdict == TickProgress::TickOver {
-            (self.measurements, self.first_step) = (0, true);
-            return TickProgress::TickOver;
-        }
-        TickProgress::GoOn
-    }
-
     /// Processes the measurement `tip` of the last command.
     fn learn(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let verdict = match self.purpose {
-            Purpose::Repeat { measured: 1 } => {
+            Purpose::RepeatStart { measured: 1 } => {
                 self.earlier[1].clone_from(tip);
-                self.next = Purpose::Repeat { measured: 2 };
+                self.next = Purpose::RepeatStart { measured: 2 };
                 TickProgress::GoOn
             }
-            Purpose::Repeat { .. } => {
+            Purpose::RepeatStart { .. } => {
                 let [first, second] = &self.earlier;
                 self.know_start([first.clone(), second.clone(), tip.clone()]);
                 TickProgress::GoOn
             }
-            Purpose::Stand => {
+            Purpose::Remeasure => {
                 self.tip.clone_from(tip);
                 self.next = Purpose::Antenna { joint: 0 };
                 TickProgress::GoOn
@@ -217,8 +220,8 @@ impl BroydenBasState {
                 self.set_column(joint, tip);
                 TickProgress::GoOn
             }
-            Purpose::Step | Purpose::Again if tip.is_oriented() => self.process_step::<6>(tick, tip),
-            Purpose::Step | Purpose::Again => self.process_step::<3>(tick, tip),
+            Purpose::Step | Purpose::RepeatStep if tip.is_oriented() => self.process_step::<6>(tick, tip),
+            Purpose::Step | Purpose::RepeatStep => self.process_step::<3>(tick, tip),
         };
         let near_enough = self.tolerance.at_least(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && self.tip.error(tick.target).within(&near_enough);
@@ -242,7 +245,7 @@ impl BroydenBasState {
 
     /// Processes the measurement of a step, possibly a repeated one. The residual has `R` rows, three for positions.
     fn process_step<const R: usize>(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
-        let repeated = self.purpose == Purpose::Again;
+        let repeated = self.purpose == Purpose::RepeatStep;
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict::<R>(dq());
@@ -254,7 +257,7 @@ impl BroydenBasState {
         let mut noisy = self.noise.explains(motion);
         if surprising && !repeated && !noisy {
             self.earlier[0].clone_from(tip);
-            self.next = Purpose::Again;
+            self.next = Purpose::RepeatStep;
             return TickProgress::GoOn;
         }
         if surprising && repeated {
@@ -265,10 +268,10 @@ impl BroydenBasState {
             }
         }
         if self.first_step && self.options.sensor_delay > 0 {
-            self.lead = [0.0; ROWS];
+            self.first_step_error = [0.0; ROWS];
             if !noisy && !surprising {
                 let fraction = self.noise.fraction(miss);
-                self.lead[..R].copy_from_slice(&surprise.map(|missed| fraction * missed));
+                self.first_step_error[..R].copy_from_slice(&surprise.map(|missed| fraction * missed));
             }
         }
         self.first_step = false;
@@ -290,7 +293,7 @@ impl BroydenBasState {
             let slow = after > 0.25 * before && !noisy && !self.noise.explains(after.sqrt());
             self.slow = if slow { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
-                self.next = Purpose::Stand;
+                self.next = Purpose::Remeasure;
             }
             return TickProgress::GoOn;
         }
@@ -301,7 +304,7 @@ impl BroydenBasState {
         if !self.fresh {
             // The first failure has updated the Jacobian and may have been noise.
             if self.failed >= FAILED_STEPS {
-                self.next = Purpose::Stand;
+                self.next = Purpose::Remeasure;
             }
             return TickProgress::GoOn;
         }

@@ -1,8 +1,8 @@
 //! Control session of a model-free controller, for an arm that the caller moves: clock, limits, and the alternation of commands
 //! and measurements.
 
-use super::control_tick::{ControlTick, TickProgress};
-use super::controller_choice::{Controller, RunningController};
+use super::control_tick::{ControlTick, RunningController, TickProgress};
+use super::controller_choice::Controller;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::MAX_DOF;
@@ -20,7 +20,7 @@ use crate::tracking::tip_pose::TipPose;
 /// The first command is the start itself: it only measures the tip there, and time does not advance.
 #[derive(Debug)]
 pub struct ControlSession {
-    running: RunningController,
+    running: Box<dyn RunningController>,
     limits: Limits,
     tolerance: Tolerance,
     dt: f64,

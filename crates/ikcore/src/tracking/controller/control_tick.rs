@@ -1,6 +1,9 @@
-//! Input of a controller for one tick, and whether the tick continues.
+//! Interface of a running controller: its input for one tick, and whether the tick continues.
+
+use std::fmt::Debug;
 
 use crate::objective::Bounds;
+use crate::rng::LazyRng;
 use crate::tracking::tip_pose::TipPose;
 
 /// Input of a controller for one tick.
@@ -19,4 +22,25 @@ pub(super) enum TickProgress {
     GoOn,
     /// The tick is over.
     TickOver,
+}
+
+/// Running controller with its state.
+pub(super) trait RunningController: Debug + Send + Sync {
+    /// Takes the tip measured at the start, before the first tick.
+    fn begin(&mut self, target: &TipPose, tip: &TipPose);
+
+    /// Chooses the next command.
+    fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng);
+
+    /// Last command; the start before the first.
+    fn sent(&self) -> &[f64];
+
+    /// Takes the tip measured at the last command.
+    fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress;
+
+    /// Configuration that the next tick starts from.
+    fn accepted(&self) -> &[f64];
+
+    /// Command at which the tip of the tick was measured, and that measurement.
+    fn measured(&self) -> (&[f64], &TipPose);
 }

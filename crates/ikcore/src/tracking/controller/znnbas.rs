@@ -11,7 +11,7 @@
 //! theta and waits. It is implemented as [`UpdateRule::Improving`]; the theorem holds for it while the target does not
 //! move.
 
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_at_least_one, require_positive};
 use crate::wording::words;
 
 /// Longest delay (ticks): a longer one is a mistake, and might not fit in memory.
@@ -119,9 +119,7 @@ impl Znnbas {
             }
             Antenna::Adaptive { c1 } => require_positive("c1", *c1)?,
         }
-        if self.delay_steps == 0 {
-            return Err(Error::out_of_range("delay_steps", "at least 1", 0.0));
-        }
+        require_at_least_one("delay_steps", self.delay_steps)?;
         for (what, ticks) in [("delay_steps", self.delay_steps), ("sensor_delay", self.sensor_delay)] {
             if ticks > MOST_TICKS {
                 return Err(Error::out_of_range(what, format!("at most {MOST_TICKS} ticks"), ticks as f64));

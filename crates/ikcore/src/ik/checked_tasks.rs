@@ -7,11 +7,11 @@ use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::message::Setting;
 use crate::robot::Robot;
-use crate::task::{Aims, NamedTask, Subject, Target, TargetRow, TipCriterion, TipError};
+use crate::task::{Aims, CheckedTask, NamedTask, Subject, Target, TargetRow, TipError};
 
 /// Validates the tasks of `options`; without named tips, the one task of a plain target.
 #[inline]
-pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[TipCriterion; 1]>> {
+pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<SmallVec<[CheckedTask; 1]>> {
     if options.tips.is_empty() {
         robot.require_one_tip("a plain target")?;
         return Ok(smallvec![NamedTask::of_only(options.task, options.tolerance).validated()?]);
@@ -27,7 +27,7 @@ pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<Small
 /// # Errors
 /// [`Error::OutOfRange`] for an unknown tip, [`Error::Contradiction`] for a tip or pair that is named twice; errors of wrong
 /// tasks and tolerances.
-pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
+pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<CheckedTask>> {
     let tips: Vec<&str> = robot.tips().collect();
     for (i, task) in tasks.iter().enumerate() {
         let numbers = match task.subject {
@@ -67,7 +67,7 @@ fn turned(subject: Subject) -> Subject {
 ///
 /// # Errors
 /// [`Error::WrongLength`], [`Error::WrongTarget`], or [`Error::Contradiction`] for targets that contradict each other.
-pub(crate) fn reduce(robot: &Robot, tasks: &[TipCriterion], targets: &mut [Target]) -> Result<()> {
+pub(crate) fn reduce(robot: &Robot, tasks: &[CheckedTask], targets: &mut [Target]) -> Result<()> {
     if tasks.len() != targets.len() {
         let expected = format!("{} targets, one for each task", tasks.len());
         return Err(Error::WrongLength { what: "targets".into(), expected, got: targets.len() });

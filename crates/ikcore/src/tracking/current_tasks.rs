@@ -4,19 +4,19 @@ use super::track_options::TrackOptions;
 use crate::error::{Error, Result};
 use crate::ik::{checked_tasks, reduce};
 use crate::robot::Robot;
-use crate::task::{Aims, NamedTask, Region, Target, TipCriterion};
+use crate::task::{Aims, CheckedTask, NamedTask, Region, Target};
 
 /// Weight of pairs relative to other tasks: an unreachable target then costs them little accuracy, until they are held exactly.
 const PAIR_WEIGHT: f64 = 100.0;
 
 /// Tasks of the current targets; the task of the only tip never changes.
 #[derive(Debug)]
-pub(super) struct TipTasks {
+pub(super) struct CurrentTasks {
     asked: Vec<NamedTask>,
-    tasks: Vec<TipCriterion>,
+    tasks: Vec<CheckedTask>,
 }
 
-impl TipTasks {
+impl CurrentTasks {
     /// Task of the only tip, without its tool, which the robot carries; for several tips, no task yet.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl TipTasks {
     }
 }
 
-fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
+fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<CheckedTask>> {
     if tasks.is_empty() {
         let problem = "no tip has a target: name one tip at least".into();
         return Err(Error::Contradiction { problem });
@@ -72,6 +72,6 @@ fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<TipCriterion>> {
         let problem = "a tracked region is for one tip: leave it out of the tasks of several".into();
         return Err(Error::Contradiction { problem });
     }
-    let weighed = |task: TipCriterion| if task.subject.is_pair() { task.weighing(PAIR_WEIGHT) } else { task };
+    let weighed = |task: CheckedTask| if task.subject.is_pair() { task.weighing(PAIR_WEIGHT) } else { task };
     Ok(checked_tasks(robot, tasks)?.into_iter().map(weighed).collect())
 }

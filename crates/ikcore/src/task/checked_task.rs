@@ -1,0 +1,137 @@
+//! Validated task, and its frame and Jacobian on a robot.
+
+use super::assessment::Assessment;
+use super::criterion::Criterion;
+use super::named_task::Subject;
+use super::target::Target;
+use super::tip_task::TaskKind;
+use crate::error::Result;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::cross;
+use crate::math::{Columns, Frame};
+use crate::objective::TaskBlock;
+use crate::robot::Robot;
+
+/// Validated task.
+#[derive(Debug, Clone)]
+pub struct CheckedTask {
+    /// Frame that the target refers to.
+    pub(crate) subject: Subject,
+    /// Part of the target to reach. `None` means all of it.
+    pub(super) kind: Option<TaskKind>,
+    /// Criterion for reaching the target, with weights.
+    pub(crate) criterion: Criterion,
+    /// Tool of the task, in the frame of the moving tip.
+    pub(super) tool: Option<Box<Frame>>,
+    /// Weight of the residual relative to other tasks.
+    pub(super) weight: f64,
+}
+
+impl<T: Into<Criterion>> From<T> for CheckedTask {
+    /// Task of reaching the whole target of the only tip, by this criterion.
+    fn from(criterion: T) -> Self {
+        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), tool: None, weight: 1.0 }
+    }
+}
+
+impl CheckedTask {
+    /// Removes the tool, which the robot carries.
+    pub(crate) fn leave_tool(&mut self) {
+        self.tool = None;
+    }
+
+    /// Sets the weight of the residual relative to other tasks.
+    pub(crate) fn weighing(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// Assesses `frame`, the frame of the subject.
+    pub(super) fn assess(&self, target: &Target, frame: &Frame) -> Assessment {
+        self.weighted(target.assess_tip(frame, &self.criterion))
+    }
+
+    /// Assesses like [`assess`](Self::assess) and writes residual and Jacobian, from the geometric Jacobian of `dof` columns in
+    /// `block`.
+    pub(super) fn linearize(&self, target: &Target, frame: &Frame, dof: usize, block: &mut TaskBlock) -> Assessment {
+        let assessment = target.linearize_tip(frame, dof, &self.criterion, block);
+        if self.weight != 1.0 {
+            let entries = block.columns[..dof].iter_mut().chain(std::iter::once(&mut block.residual)).flatten();
+            entries.for_each(|entry| *entry *= self.weight);
+        }
+        self.weighted(assessment)
+    }
+
+    fn weighted(&self, mut assessment: Assessment) -> Assessment {
+        assessment.score.value *= self.weight * self.weight;
+        assessment
+    }
+
+    /// Reduces `target` to the part that its task uses.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`](crate::Error::WrongTarget).
+    pub(crate) fn reduce(&self, target: &mut Target) -> Result<()> {
+        if let Some(kind) = &self.kind {
+            *target = kind.target(target)?;
+        }
+        Ok(())
+    }
+
+    /// Target of the tip itself, given a target of its tool.
+    pub(crate) fn without_tool(&self, target: &Target) -> Target {
+        match (&self.tool, target) {
+            (Some(tool), Target::Pose(frame)) => Target::Pose(frame.then::<NoFma>(&tool.inverse())),
+            _ => *target,
+        }
+    }
+
+    /// Frame of the subject at `q`.
+    pub(super) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
+        let tip = |tip: usize| robot.tip_of(tip, q);
+        let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
+        match self.subject {
+            Subject::Tip(of) => at_tool(tip(of)),
+            Subject::Pair { from, of } => tip(from).inverse().then::<NoFma>(&at_tool(tip(of))),
+        }
+    }
+
+    /// Frame of the subject at `q`, and its geometric Jacobian.
+    pub(super) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
+        let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
+        let mut frame = robot.tip_and_jacobian_of(of, q, columns);
+        if let Some(tool) = &self.tool {
+            let moved = frame.then::<NoFma>(tool);
+            let lever = std::array::from_fn(|k| moved.origin[k] - frame.origin[k]);
+            columns[..q.len()].iter_mut().for_each(|column| add_moment(column, &lever, 1.0));
+            frame = moved;
+        }
+        match self.subject {
+            Subject::Tip(_) => frame,
+            Subject::Pair { from, .. } => {
+                let mut own = Columns::default();
+                let base = robot.tip_and_jacobian_of(from, q, &mut own);
+                seen_from(&base, &mut own[..q.len()], &frame, &mut columns[..q.len()]);
+                base.inverse().then::<NoFma>(&frame)
+            }
+        }
+    }
+}
+
+/// Adds to the linear rows of a column, times `factor`, the velocity of a point at `lever` due to its angular rows.
+fn add_moment(column: &mut [f64; 6], lever: &[f64; 3], factor: f64) {
+    let moment = cross(&[column[3], column[4], column[5]], lever);
+    (0..3).for_each(|k| column[k] += factor * moment[k]);
+}
+
+/// Transforms `columns`, the Jacobian of `frame`, to the Jacobian relative to `base`, whose Jacobian is `own`: with p the
+/// vector between the frames, v = R'(v_frame - v_base - w_base x p) and w = R'(w_frame - w_base).
+fn seen_from(base: &Frame, own: &mut [[f64; 6]], frame: &Frame, columns: &mut [[f64; 6]]) {
+    let lever = std::array::from_fn(|k| frame.origin[k] - base.origin[k]);
+    for (column, own) in columns.iter_mut().zip(own) {
+        add_moment(own, &lever, 1.0);
+        let relative: [f64; 6] = std::array::from_fn(|k| column[k] - own[k]);
+        let along = |half: usize| base.axes.map(|axis| (0..3).map(|k| axis[k] * relative[3 * half + k]).sum::<f64>());
+        column[..3].copy_from_slice(&along(0));
+        column[3..].copy_from_slice(&along(1));
+    }
+}

@@ -1,0 +1,61 @@
+//! Task of a tip or of a pair of tips, as given by the caller.
+
+use super::checked_task::CheckedTask;
+use super::tip_error::Tolerance;
+use super::tip_task::Task;
+use crate::error::Result;
+use crate::math::Frame;
+
+/// Frame that a target refers to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// Tip of this number.
+    Tip(usize),
+    /// Tip `of`, relative to tip `from`.
+    Pair {
+        /// Number of the reference tip.
+        from: usize,
+        /// Number of the moving tip.
+        of: usize,
+    },
+}
+
+/// Task of a tip, or of a pair of tips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedTask {
+    /// Frame that the target refers to.
+    pub subject: Subject,
+    /// Part of the target to reach. `None` means all of it.
+    pub task: Option<Task>,
+    /// Tolerances within which the target counts as reached.
+    pub tolerance: Tolerance,
+}
+
+impl NamedTask {
+    /// Task of the only tip of a robot.
+    #[inline]
+    pub(crate) fn of_only(task: Option<Task>, tolerance: Tolerance) -> Self {
+        Self { subject: Subject::Tip(0), task, tolerance }
+    }
+
+    /// Checks the task.
+    ///
+    /// # Errors
+    /// Errors of [`Task::validate`] and of the tolerances.
+    #[inline]
+    pub(crate) fn validated(&self) -> Result<CheckedTask> {
+        let Self { subject, task, tolerance } = *self;
+        task.map_or(Ok(()), |task| task.validate())?;
+        let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
+        criterion.validate()?;
+        let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
+        Ok(CheckedTask { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
+    }
+}
+
+impl Subject {
+    /// Whether the subject is a pair of tips.
+    pub(crate) fn is_pair(&self) -> bool {
+        matches!(self, Self::Pair { .. })
+    }
+}
