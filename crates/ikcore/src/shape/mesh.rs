@@ -5,13 +5,14 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
+use super::bounding_tree::{Aabb, BoundingTree};
 use super::enclosure::{Enclosure, TriangleSurface};
+use super::nearest_piece::{NearestPiece, PieceLanes, squared_bound};
 use super::segment_lanes::{NearestFraction, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
 use super::winding::winding;
-use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
@@ -22,27 +23,14 @@ pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     enclosure: Enclosure,
-    tree: BoundingTree,
-    leaves: Vec<Leaf>,
+    tree: BoundingTree<FourTriangles>,
 }
 
-/// Four triangles: a corner and two edges of each, and their indices.
-#[derive(Debug, Clone)]
-struct Leaf {
+/// A corner and two edges of four triangles, one per lane.
+#[derive(Clone)]
+struct FourTriangles {
     corner: [F64x4; 3],
     edges: [[F64x4; 3]; 2],
-    faces: Block,
-}
-
-/// Triangle nearest to a segment.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NearestFace {
-    /// Squared distance (m^2).
-    pub squared: f64,
-    /// Fraction of the segment's length.
-    pub fraction: f64,
-    /// Index of the triangle; `None` if none is within the bound.
-    pub face: Option<usize>,
 }
 
 /// Accuracy of the depth of a segment inside a closed mesh, relative to the depth.
@@ -79,11 +67,10 @@ impl Mesh {
                 return Err(format!("face {i} of the mesh names vertex {index}, but it has {count} (from 0)"));
             }
         }
-        let corner = |i: u32| Vector3::from(vertices[i as usize]);
-        let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(face.map(corner))).collect();
-        let (tree, blocks) = BoundingTree::new(&boxes);
-        let leaves = blocks.into_iter().map(|block| Leaf::new(block, &vertices, &faces)).collect();
-        let mut mesh = Self { vertices, faces, enclosure: Enclosure::NOTHING, tree, leaves };
+        let corners = |face: &[u32; 3]| face.map(|i| Vector3::from(vertices[i as usize]));
+        let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(corners(face))).collect();
+        let tree = BoundingTree::new(&boxes, |lanes| FourTriangles::new(lanes.map(|face| corners(&faces[face]))));
+        let mut mesh = Self { vertices, faces, enclosure: Enclosure::NOTHING, tree };
         mesh.enclosure = Enclosure::of(&mesh);
         Ok(mesh)
     }
@@ -126,20 +113,20 @@ impl Mesh {
     }
 
     /// Finds the nearest triangle within the square root of `bound`.
-    pub(super) fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
-        nearest_face(self, segment, bound)
+    fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPiece {
+        self.tree.nearest(segment, bound, &mut |_| {})
     }
 
     /// Visits all triangles within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
     /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        each_near(&self.tree, &|leaf| self.leaves[leaf].faces, segment, reach, visit);
+        self.tree.each_near(segment, reach, visit);
     }
 
     /// Returns the signed distance of a point, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let nearest = self.nearest_face(&[*point; 2], f64::INFINITY);
-        let [a, b, c] = self.triangle(nearest.face.unwrap_or(0));
+        let [a, b, c] = self.triangle(nearest.index.unwrap_or(0));
         let away = point - nearest_on_triangle(point, &[a, b, c]);
         let distance = away.norm();
         let sign = if self.encloses(point) { -1.0 } else { 1.0 };
@@ -152,7 +139,7 @@ impl Mesh {
     /// to `enough` outside, a lower bound inside.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
-        let touches = surface.face.is_some() && surface.squared <= TOUCHING;
+        let touches = surface.index.is_some() && surface.squared <= TOUCHING;
         if (touches && !self.enclosure.turns.is_empty()) || self.encloses(&segment[0]) {
             return self.depth(segment);
         }
@@ -216,12 +203,7 @@ impl TriangleSurface for Mesh {
             return 0;
         }
         let mut turns = 0;
-        self.tree.along_x(point, |leaf| {
-            let faces = self.leaves[leaf].faces;
-            for face in faces.into_iter().filter(|face| *face != NONE) {
-                turns += count(face as usize) * winding(point, &self.triangle(face as usize));
-            }
-        });
+        self.tree.along_x(point, |face| turns += count(face) * winding(point, &self.triangle(face)));
         turns
     }
 }
@@ -241,57 +223,27 @@ impl Wedge {
     }
 }
 
-impl Leaf {
-    fn new(block: Block, vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
-        let mut leaf = Self { corner: [F64x4::ZERO; 3], edges: [[F64x4::ZERO; 3]; 2], faces: block };
-        for lane in 0..4 {
-            // An empty lane repeats the first triangle.
-            let face = if block[lane] == NONE { block[0] } else { block[lane] };
-            let [a, b, c] = faces[face as usize].map(|i| vertices[i as usize]);
-            for k in 0..3 {
-                leaf.corner[k].0[lane] = a[k];
-                leaf.edges[0][k].0[lane] = b[k] - a[k];
-                leaf.edges[1][k].0[lane] = c[k] - a[k];
-            }
-        }
-        leaf
+impl FourTriangles {
+    fn new(triangles: [[Vector3<f64>; 3]; 4]) -> Self {
+        let lanes = |value: &dyn Fn(&[Vector3<f64>; 3]) -> Vector3<f64>| {
+            let vectors = triangles.each_ref().map(value);
+            std::array::from_fn(|k| F64x4(vectors.map(|vector| vector[k])))
+        };
+        let edges = [lanes(&|[a, b, _]| b - a), lanes(&|[a, _, c]| c - a)];
+        Self { corner: lanes(&|[a, _, _]| *a), edges }
     }
+}
 
+impl PieceLanes for FourTriangles {
     #[inline(always)]
-    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestFraction<Four<A>> {
+    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3]) -> NearestFraction<Four<A>> {
         let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
         let start = Vec3::splat(start);
-        if is_point {
+        if *along == [0.0; 3] {
             let squared = point_to_triangle(start, &triangle);
             return NearestFraction { squared, fraction: Four::splat(0.0) };
         }
         to_triangle(start, Vec3::splat(along), &triangle)
-    }
-}
-
-by_instructions! {
-    fn nearest_face(mesh: &Mesh, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
-        let [start, along] = [segment[0].into(), (segment[1] - segment[0]).into()];
-        let query = SegmentQuery::new(segment);
-        let is_point = along == [0.0; 3];
-        let mut best = NearestFace { squared: bound, fraction: 0.0, face: None };
-        mesh.tree.search::<A>(&query, bound, |leaf, bound| {
-            let leaf = &mesh.leaves[leaf];
-            let nearest = leaf.nearest::<A>(&start, &along, is_point);
-            let squared = nearest.squared.stored().0;
-            for lane in 0..4 {
-                if squared[lane] < best.squared || (squared[lane] <= bound && best.face.is_none()) {
-                    let face = if leaf.faces[lane] == NONE { leaf.faces[0] } else { leaf.faces[lane] };
-                    best = NearestFace {
-                        squared: squared[lane],
-                        fraction: nearest.fraction.lane(lane),
-                        face: Some(face as usize),
-                    };
-                }
-            }
-            best.squared
-        });
-        best
     }
 }
 

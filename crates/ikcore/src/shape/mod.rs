@@ -51,6 +51,7 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
+mod nearest_piece;
 mod placed_body;
 mod point_cloud;
 #[cfg(test)]
