@@ -1,6 +1,6 @@
 //! Angles represented by cosine and sine; closed forms work on these and take arctangents only at the end.
 
-use super::vector::{Vector, add_scaled, cross, dot, scaled, sub};
+use crate::math::vector3::{Vector, add_scaled, cross, dot, scaled, sub};
 use crate::math::Frame;
 
 /// Rotation angle about a known axis.

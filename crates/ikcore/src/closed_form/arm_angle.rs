@@ -8,7 +8,7 @@ use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::structure::{EXACT, three_meet};
 use crate::closed_form::subproblem::distance_to_point;
-use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
+use crate::math::vector3::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
 use crate::closed_form::wrist::{Pointing, Wrist};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;

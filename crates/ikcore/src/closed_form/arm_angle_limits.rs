@@ -14,7 +14,7 @@ use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose, ElbowTurn};
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::parameter_arcs::Wave;
-use crate::closed_form::vector::{Vector, dot};
+use crate::math::vector3::{Vector, dot};
 use crate::closed_form::wrist::Wrist;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;

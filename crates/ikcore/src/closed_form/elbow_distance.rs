@@ -7,7 +7,7 @@ use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::{ParameterArcs, Wave};
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
-use crate::closed_form::vector::{Vector, dot, scaled, sub};
+use crate::math::vector3::{Vector, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::orbit::Orbit;
-use crate::closed_form::vector::{Vector, cross, dot};
+use crate::math::vector3::{Vector, cross, dot, scaled, sub};
 
 /// Ball that encloses a vector.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +59,7 @@ impl Swing {
 
     /// Returns the squared distance of a point on a circle from `other`.
     pub fn squared_distance(circle: &Orbit, other: &Vector) -> Self {
-        let way = std::array::from_fn(|k| 2.0 * (circle.centre[k] - other[k]));
+        let way = scaled(&sub(&circle.centre, other), 2.0);
         let constant = 0.25 * dot(&way, &way) + dot(&circle.sine, &circle.sine);
         Self { base: constant, ..Self::along(&way, circle) }
     }
@@ -146,7 +146,7 @@ impl Arc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{add_scaled, norm, unit};
     use crate::rng;
 
     #[test]
@@ -178,7 +178,7 @@ mod tests {
             let ball = Ball { middle: [draw(1.0), draw(1.0), draw(1.0)], radius: draw(0.5).abs() };
             let (q, half) = (draw(3.0), draw(0.5).abs());
             let off = unit(&[draw(1.0), draw(1.0), draw(1.0)]);
-            let point: Vector = std::array::from_fn(|k| ball.middle[k] + ball.radius * off[k]);
+            let point: Vector = add_scaled(&ball.middle, &off, ball.radius);
             let turned = ball.turned(&axis, Angle::by(q), half);
             let there = Angle::by(q + half * draw(1.0)).about(&axis, &point);
             assert!(norm(&sub(&there, &turned.middle)) <= turned.radius + 1e-12);

@@ -8,7 +8,7 @@ use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
 use crate::closed_form::branches::{Branches, Doubt};
 use crate::closed_form::six::{ClosedForm, Structure, samples};
 use crate::closed_form::structure::{EXACT, Pair};
-use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit};
+use crate::math::vector3::{Vector, add, cross, perpendicular, scaled, unit};
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 

@@ -59,11 +59,6 @@ impl GivenJoint {
         self.others.structure()
     }
 
-    /// Whether [`Self::add_candidates`] finds all configurations up to rounding.
-    pub fn has_exact_candidates(&self) -> bool {
-        self.others.has_exact_candidates()
-    }
-
     /// Returns all joint values, angles in (-pi, pi], whose displacements make `goal` with the given joint at `value` (rad,
     /// m).
     pub fn solve(&self, goal: &Frame, value: f64) -> Branches<7> {

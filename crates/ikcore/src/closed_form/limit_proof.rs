@@ -8,12 +8,12 @@
 use std::f64::consts::PI;
 
 use crate::closed_form::arm_angle_limits::Values;
-use crate::closed_form::axis_chain::AxisChain;
+use crate::closed_form::axis_chain::{AxisChain, reversed};
 use crate::closed_form::enclosure::{Arc, Ball, Swing, distance};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
-use crate::closed_form::vector::{Vector, across, add, cross, dot, norm, scaled, sub};
+use crate::math::vector3::{Vector, across, add, cross, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
@@ -84,11 +84,7 @@ impl LimitProof {
     /// the two axes next to the parameter's.
     pub fn new(chain: &AxisChain<7>, by_first: bool) -> Option<Self> {
         let size = chain.size();
-        let joints: [_; 7] = std::array::from_fn(|k| {
-            let mut joint = chain.joints[if by_first { k } else { 6 - k }];
-            joint.axis = if by_first { joint.axis } else { scaled(&joint.axis, -1.0) };
-            joint
-        });
+        let joints = if by_first { chain.joints } else { reversed(&chain.joints) };
         let centre = three_meet(&joints[4..], size, EXACT)?;
         let Pair::Meet(root) = Pair::of(&joints[1], &joints[2], size, EXACT) else { return None };
         let axes = joints.map(|joint| joint.axis);

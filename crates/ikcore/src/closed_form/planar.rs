@@ -6,7 +6,7 @@ use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::structure::{EXACT, Pair, three_parallel};
 use crate::closed_form::subproblem::{distance_to_point, onto_point};
-use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
+use crate::math::vector3::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;

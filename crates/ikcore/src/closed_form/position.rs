@@ -2,14 +2,13 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::axis_chain::{JointAxis, reversed};
 use crate::closed_form::branches::Doubt;
+use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{
     Linear, QuadraticForm, Turns, angle_to_plane, distance_to_point, onto_point, two_axes,
 };
-use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
-
-use crate::closed_form::axis_chain::JointAxis;
-use crate::closed_form::structure::Pair;
+use crate::math::vector3::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 
 /// Length of the common normal of two axes times the sine of their angle, as a multiple of its rounding error, below which
 /// the axes nearly meet or are nearly parallel.
@@ -98,18 +97,12 @@ impl ThreeAxes {
             (_, Pair::Meet(_)) => (Case::FirstTwoMeet, true),
             _ => (Case::General, false),
         };
+        let (joints, first) = if mirrored { (reversed(joints), last) } else { (*joints, first) };
         let mut points = joints.map(|joint| joint.point);
-        match (case, mirrored, first, last) {
-            (Case::FirstTwoMeet, false, Pair::Meet(at), _) => (points[0], points[1]) = (at, at),
-            (Case::FirstTwoMeet, true, _, Pair::Meet(at)) => (points[1], points[2]) = (at, at),
-            _ => {}
+        if let Pair::Meet(at) = first {
+            (points[0], points[1]) = (at, at);
         }
-        let mut axes = joints.map(|joint| joint.axis);
-        if mirrored {
-            axes = [scaled(&axes[2], -1.0), scaled(&axes[1], -1.0), scaled(&axes[0], -1.0)];
-            points.reverse();
-        }
-        Self { axes, points, case, mirrored, floor: 1e-11 * size }
+        Self { axes: joints.map(|joint| joint.axis), points, case, mirrored, floor: 1e-11 * size }
     }
 
     /// Returns all angles that carry `point` to `goal`; solutions outside `ranges` may be left out.

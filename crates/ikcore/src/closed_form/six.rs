@@ -12,7 +12,7 @@ use crate::closed_form::general::General;
 use crate::closed_form::spherical_wrist::SphericalWrist;
 use crate::closed_form::structure::{EXACT, NEARLY, are_sharp, three_meet, three_parallel};
 use crate::closed_form::three_parallel::ThreeParallel;
-use crate::closed_form::verify::{Verifier, values_of_six, verified};
+use crate::closed_form::verify::{Verifier, verified, write_values};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
 
@@ -40,9 +40,9 @@ pub enum Structure {
 }
 
 impl Structure {
-    /// Whether the method proves that a pose has no other solutions. The general method does not: it counts zeros of a
-    /// polynomial, and rounding may hide some.
-    pub fn proves(self) -> bool {
+    /// Whether the structure is exact: all candidates are solutions up to rounding, and a pose has no others. The general method
+    /// proves no such thing: it counts zeros of a polynomial, and rounding may hide some.
+    pub fn is_exact(self) -> bool {
         matches!(self, Self::ThreeMeet { nearly: false, .. } | Self::ThreeParallel { nearly: false, .. })
     }
 
@@ -185,7 +185,7 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         self.add_candidates(goal, &[AngleRange::ANY; 6], &mut candidates);
         let mut found = verified(&self.verifier, target, &candidates);
-        if !self.has_exact_candidates() {
+        if !self.structure.is_exact() {
             found.doubt = Doubt::Open;
         }
         match &self.further {
@@ -212,13 +212,8 @@ impl ClosedForm {
     pub fn likely(&self, target: &Frame, drives: &Drives, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
         self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
-        found.replace(drives, candidates.count, |columns| values_of_six(&self.verifier, &candidates, columns));
-        found.is_all = self.has_exact_candidates() && candidates.doubt == Doubt::None && !candidates.singular;
-    }
-
-    /// Whether candidates are solutions up to rounding.
-    pub fn has_exact_candidates(&self) -> bool {
-        !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
+        found.replace(drives, candidates.count, |columns| write_values(&self.verifier, &candidates, columns));
+        found.is_all = self.structure.is_exact() && candidates.doubt == Doubt::None && !candidates.singular;
     }
 
     /// Solves in one direction, and in the other too if the first may have missed a solution. A count with nearly coincident

@@ -6,7 +6,7 @@ use crate::closed_form::branches::Doubt;
 use crate::closed_form::position::Arms;
 use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{CLAMP, NEARLY_DOUBLE, distance_to_point, onto_point, two_axes};
-use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
+use crate::math::vector3::{Vector, add, add_scaled, cross, dot, scaled, sub};
 
 /// Precomputed first three joints.
 #[derive(Debug, Clone, Copy)]

@@ -3,12 +3,12 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
-use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::axis_chain::{AxisMotion, JointAxis, reversed};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::position::{Three, ThreeAxes};
 use crate::closed_form::sliding_arm::SlidingArm;
 use crate::closed_form::structure::Pair;
-use crate::closed_form::vector::Vector;
+use crate::math::vector3::Vector;
 use crate::closed_form::wrist::{Pointing, Wrist};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
@@ -55,11 +55,7 @@ impl SphericalWrist {
 
     /// Prepares an arm whose first three axes meet at `centre`, by taking the chain from tip to base.
     pub fn shoulder(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
-        let backwards = std::array::from_fn(|k| {
-            let joint = &joints[5 - k];
-            JointAxis::turning(joint.axis.map(|entry| -entry), joint.point)
-        });
-        Self { reversed: true, ..Self::new(&backwards, centre, size, tolerance) }
+        Self { reversed: true, ..Self::new(&reversed(joints), centre, size, tolerance) }
     }
 
     /// Adds candidates whose displacements make `goal`, as far as `ranges` may hold them.

@@ -15,7 +15,7 @@ use crate::closed_form::structure::Pair;
 use crate::closed_form::subproblem::{
     CLAMP, Linear, NEARLY_DOUBLE, Turns, angle_to_plane, line_on_circle, two_linear_equations,
 };
-use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
+use crate::math::vector3::{Vector, across, cross, dot, scaled, sub};
 use crate::closed_form::wrist::{ALIGNED, Bend, NEARLY_ALIGNED};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline};

@@ -6,7 +6,7 @@ use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::parameter_arcs::Wave;
 use crate::closed_form::subproblem::{Turns, with_radicand};
-use crate::closed_form::vector::{Vector, across, cross, dot};
+use crate::math::vector3::{Vector, across, cross, dot};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
@@ -199,7 +199,7 @@ impl Wrist {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{norm, sub, unit};
 
     fn rotation(axes: &[Vector; 3], turns: [Angle; 3]) -> Frame {
         axes.iter().zip(turns).fold(Frame::IDENTITY, |sum, (h, t)| sum.then::<Baseline>(&t.about_line(h, &[0.0; 3])))

@@ -5,11 +5,12 @@
 //! | files | contents |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
-//! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
+//! | `so3` | rotation vectors |
+//! | `vector3`, `vec3`, `vector` | vectors of three numbers, of three SIMD lanes, of n numbers |
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `columns` | columns of Jacobians |
-//! | `gram`, `ldl`, `singular_values` | small linear systems |
+//! | `gram`, `ldl`, `cholesky`, `singular_values` | small linear systems |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
@@ -19,6 +20,7 @@ pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub mod block_step;
 pub mod box_step;
+pub(crate) mod cholesky;
 mod columns;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
@@ -43,6 +45,7 @@ pub mod so3;
 pub mod ticks;
 pub(crate) mod vec3;
 pub(crate) mod vector;
+pub(crate) mod vector3;
 
 pub use arithmetic::instructions;
 pub use columns::Columns;

@@ -188,9 +188,7 @@ fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64)
 
 #[cfg(test)]
 mod tests {
-    use super::super::checked_shape::Shape;
-    use super::super::geometry::Geometry;
-    use super::super::mesh::Mesh;
+    use super::super::test_shapes::{SQUARES, as_mesh, mesh_of};
     use super::*;
     use crate::rng::{self, LazyRng};
 
@@ -211,8 +209,7 @@ mod tests {
         /// Returns the triangles of the box, whose squares are split along one diagonal or the other.
         fn triangles(&self, other_diagonal: bool) -> Vec<Corners> {
             let corner = |bits: usize| std::array::from_fn(|k| [self.lower, self.upper][bits >> k & 1][k]);
-            let squares = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-            let halves = squares.into_iter().flat_map(|mut square| {
+            let halves = SQUARES.into_iter().flat_map(|mut square| {
                 square.rotate_left(usize::from(other_diagonal));
                 let [a, b, c, d] = square.map(corner);
                 [[a, b, c], [a, c, d]]
@@ -234,21 +231,9 @@ mod tests {
         triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
     }
 
-    fn shape(triangles: &[Corners]) -> Shape {
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
-    }
-
-    fn as_mesh(shape: &Shape) -> &Mesh {
-        match shape.geometry() {
-            Geometry::Mesh(mesh) => mesh,
-            _ => unreachable!(),
-        }
-    }
-
     /// Returns whether the mesh is closed, and which of these points on the x axis it encloses.
     fn judged(triangles: &[Corners], places: &[f64]) -> (bool, Vec<bool>) {
-        let shape = shape(triangles);
+        let shape = mesh_of(triangles);
         let mesh = as_mesh(&shape);
         let enclosed = places.iter().map(|x| mesh.encloses(&Vector3::new(*x, 0.02, 0.03)));
         (mesh.is_closed(), enclosed.collect())
@@ -317,11 +302,11 @@ mod tests {
         // Contact along a face, along an edge, and at a corner.
         for center in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]] {
             let other = Block::about(center, 0.5);
-            let both = shape(&[unit(), other.triangles(false)].concat());
+            let both = mesh_of(&[unit(), other.triangles(false)].concat());
             assert!(as_mesh(&both).is_closed(), "{center:?}");
             for reversed in [false, true] {
                 let other = if reversed { turned(other.triangles(false)) } else { other.triangles(false) };
-                let both = shape(&[unit(), other].concat());
+                let both = mesh_of(&[unit(), other].concat());
                 for inside in [[0.1, 0.2, 0.3].into(), Vector3::from(center).add_scalar(0.1)] {
                     assert!(as_mesh(&both).encloses(&inside), "{center:?} {reversed}");
                 }
@@ -390,7 +375,7 @@ mod tests {
                 }
                 triangles.extend(if outward { own } else { turned(own) });
             }
-            let shape = shape(&triangles);
+            let shape = mesh_of(&triangles);
             let mesh = as_mesh(&shape);
             closed += usize::from(mesh.is_closed());
             assert!(round || mesh.is_closed(), "{parts:?}");

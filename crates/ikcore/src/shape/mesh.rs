@@ -250,36 +250,17 @@ impl PieceLanes for FourTriangles {
 #[cfg(test)]
 mod tests {
     use super::super::checked_shape::Shape;
-    use super::super::geometry::Geometry;
+    use super::super::test_shapes::{as_mesh, mesh_of, point};
     use super::super::triangle::nearest_on_triangle;
     use super::*;
     use crate::rng::{self, LazyRng};
 
-    fn point(rng: &mut LazyRng, reach: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
-    }
-
-    /// Returns the triangles of `shape` as a mesh, with separate corners for each.
-    fn mesh_of(shape: &Shape) -> Shape {
-        let triangles = shape.triangles();
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
-    }
-
-    fn as_mesh(shape: &Shape) -> &Mesh {
-        match shape.geometry() {
-            Geometry::Mesh(mesh) => mesh,
-            _ => unreachable!(),
-        }
-    }
-
     fn random_soup(rng: &mut LazyRng, count: u32) -> Shape {
-        let mut vertices = vec![];
-        for _ in 0..count {
+        let triangles = (0..count).map(|_| {
             let (corner, size) = (point(rng, 1.0), rng.uniform_in(0.01, 0.4));
-            vertices.extend((0..3).map(|_| <[f64; 3]>::from(corner + size * point(rng, 1.0))));
-        }
-        Shape::mesh(vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+            [(); 3].map(|()| (corner + size * point(rng, 1.0)).into())
+        });
+        mesh_of(&triangles.collect::<Vec<_>>())
     }
 
     #[test]
@@ -287,7 +268,7 @@ mod tests {
         let mut rng = rng::stream(1, 0);
         let turn = Some(*nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
         let cuboid = Shape::cuboid([0.1, -0.2, 0.3], [0.5, 0.7, 0.9], turn).unwrap();
-        let mesh = mesh_of(&cuboid);
+        let mesh = mesh_of(&cuboid.triangles());
         assert!(as_mesh(&mesh).is_closed());
         let mut inside = 0;
         for case in 0..4000 {
@@ -331,7 +312,7 @@ mod tests {
 
     #[test]
     fn points_on_rays_through_edges_and_corners_are_inside_or_not() {
-        let cuboid = mesh_of(&Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap());
+        let cuboid = mesh_of(&Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap().triangles());
         let mesh = as_mesh(&cuboid);
         // Rays along x through the diagonals of the faces, and through edges and corners of the box.
         for (x, y, z) in [(0.0, 0.5, 0.5), (0.0, 0.5, -0.5), (0.0, 0.0, 0.0), (-0.9, 0.25, 0.25)] {
@@ -347,8 +328,7 @@ mod tests {
     fn what_lies_in_one_of_two_overlapping_bodies_is_inside() {
         let [one, other] = [[0.0; 3], [0.5, 0.0, 0.0]].map(|c| Shape::cuboid(c, [1.0; 3], None).unwrap().triangles());
         let triangles: Vec<_> = one.into_iter().chain(other).collect();
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let both = Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap();
+        let both = mesh_of(&triangles);
         // Point just outside the first box, but deep in the second.
         assert!(as_mesh(&both).encloses(&Vector3::new(0.501, 0.0, 0.0)));
         assert!(as_mesh(&both).encloses(&Vector3::zeros()) && !as_mesh(&both).encloses(&Vector3::new(1.1, 0.0, 0.0)));

@@ -64,6 +64,8 @@ mod signed_distance;
 mod solid_lanes;
 mod stored_shape;
 mod tangent;
+#[cfg(test)]
+mod test_shapes;
 mod triangle;
 mod triangles;
 mod winding;

@@ -19,9 +19,9 @@ mod elimination;
 mod line;
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::axis_chain::{JointAxis, reversed};
 use crate::closed_form::trigonometric::Polynomial;
-use crate::closed_form::vector::{Vector, perpendicular, scaled, sub};
+use crate::math::vector3::{Vector, perpendicular, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 use dialytic::{EQUATIONS, LoopCoefficients, PRODUCTS, determinant, null_pairs};
@@ -114,11 +114,7 @@ impl General {
 
     /// Prepares the same arm from tip to base.
     pub fn reversed(joints: &[JointAxis; 6], size: f64) -> Self {
-        let backwards = std::array::from_fn(|k| {
-            let joint = &joints[5 - k];
-            JointAxis::turning(scaled(&joint.axis, -1.0), joint.point)
-        });
-        Self { reversed: true, ..Self::new(&backwards, size) }
+        Self { reversed: true, ..Self::new(&reversed(joints), size) }
     }
 
     /// Calls `found` with candidates near all joint angles whose displacements make `goal`.

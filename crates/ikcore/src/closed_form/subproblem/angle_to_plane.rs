@@ -1,7 +1,7 @@
 //! Subproblem 4, rotation of a point into a plane, and subproblem 3, rotation of a point to a given distance.
 
 use super::{Turns, line_on_circle};
-use crate::closed_form::vector::{Vector, cross, dot};
+use crate::math::vector3::{Vector, cross, dot};
 
 /// Solves subproblem 4: angles about the unit vector `axis` with normal' rot(axis, q) point = height.
 #[inline(always)]
@@ -25,7 +25,7 @@ pub fn distance_to_point(axis: &Vector, point: &Vector, other: &Vector, squared_
 mod tests {
     use super::*;
     use crate::closed_form::angle::Angle;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{norm, sub, unit};
 
     #[test]
     fn both_meet_what_was_asked() {

@@ -2,7 +2,7 @@
 
 use super::{Turns, angle_to_plane};
 use crate::closed_form::angle::Angle;
-use crate::closed_form::vector::{Vector, cross, dot};
+use crate::math::vector3::{Vector, cross, dot};
 
 /// Solves subproblem 1: the angle about the unit vector `axis` that carries `from` onto `to`.
 ///
@@ -30,7 +30,7 @@ pub fn two_axes(first: &Vector, from: &Vector, second: &Vector, to: &Vector, flo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{norm, sub, unit};
 
     #[test]
     fn a_tiny_lever_keeps_its_digits() {

@@ -1,6 +1,6 @@
-//! Three-dimensional vectors, inlined into the closed forms.
+//! Vectors of three numbers, inlined into the closed forms.
 
-pub use crate::math::so3::{cross, norm};
+pub use super::so3::{cross, norm};
 
 /// Vector or point (m).
 pub type Vector = [f64; 3];
