@@ -1,9 +1,9 @@
 //! Product-of-exponentials model of a chain: joint axes and tip frame in the zero configuration.
 
 use crate::closed_form::angle::Angle;
-use crate::math::vector3::{Vector, add_scaled, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, add_scaled, dot, norm, scaled, sub};
 
 /// Type of joint motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

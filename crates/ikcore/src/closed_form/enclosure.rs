@@ -27,7 +27,7 @@ impl Ball {
     }
 
     /// Returns the largest angle about `axis` between a vector in the ball and its centre (rad).
-    pub fn swerve(&self, axis: &Vector) -> f64 {
+    pub fn azimuth_error(&self, axis: &Vector) -> f64 {
         let distance = distance(axis, &self.middle);
         // Tangent of the angle whose sine is radius / distance: an upper bound that needs no arcsine.
         if self.radius < distance { self.radius / (distance * distance - self.radius * self.radius).sqrt() } else { PI }
@@ -69,7 +69,7 @@ impl Swing {
     }
 
     /// Bounds the values within `half` (rad) of an angle, widened by `slack`.
-    pub fn near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
+    pub fn range_near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
         let value = self.base + self.east * turn.cos + self.north * turn.sin;
         let slope = (self.north * turn.cos - self.east * turn.sin).abs();
         let spread = half * slope + 0.5 * half * half * self.size() + slack;
@@ -163,7 +163,7 @@ mod tests {
             let angle = Arc { middle: q + TAU, half: 0.0 };
             assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{swing:?} {q} {range:?}");
             let half = draw(1.0).abs();
-            let near = swing.near(Angle::by(q + half * draw(1.0)), half, 1e-12);
+            let near = swing.range_near(Angle::by(q + half * draw(1.0)), half, 1e-12);
             let value = swing.base + swing.east * q.cos() + swing.north * q.sin();
             assert!(near[0] <= value && value <= near[1]);
         }
@@ -184,7 +184,7 @@ mod tests {
             assert!(norm(&sub(&there, &turned.middle)) <= turned.radius + 1e-12);
             let [a, b] = [cross(&axis, &ball.middle), cross(&axis, &point)];
             let apart = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
-            assert!(apart.min(1.0).acos() <= ball.swerve(&axis) + 1e-7);
+            assert!(apart.min(1.0).acos() <= ball.azimuth_error(&axis) + 1e-7);
         }
     }
 

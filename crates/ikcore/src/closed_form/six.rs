@@ -156,11 +156,11 @@ impl ClosedForm {
         for q in samples() {
             let target = self.chain.tip_at(&q);
             let mut found = Branches::none();
-            let account = way.solve(&target.then::<Baseline>(&self.back), |candidate| {
+            let count = way.solve(&target.then::<Baseline>(&self.back), |candidate| {
                 self.verifier.add(&target, &candidate, &mut found);
             });
-            let proven = account.sound && found.len() >= account.zeros;
-            trouble += account.shared + 4 * usize::from(!proven);
+            let proven = count.sound && found.len() >= count.zeros;
+            trouble += count.shared + 4 * usize::from(!proven);
         }
         trouble
     }
@@ -186,7 +186,7 @@ impl ClosedForm {
         self.add_candidates(goal, &[AngleRange::ANY; 6], &mut candidates);
         let mut found = verified(&self.verifier, target, &candidates);
         if !self.structure.is_exact() {
-            found.doubt = Doubt::Open;
+            found.doubt = Doubt::Anywhere;
         }
         match &self.further {
             Some(ways) => self.solve_general(ways, goal, target, found),
@@ -220,10 +220,10 @@ impl ClosedForm {
     /// zeros is no proof.
     fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
         for way in ways {
-            let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
+            let count = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
             // Zeros bound the number of branches: equal counts mean that none is missing.
-            let is_all = account.sound && found.len() >= account.zeros;
-            found.doubt = if is_all { Doubt::Beside } else { Doubt::Open };
+            let is_all = count.sound && found.len() >= count.zeros;
+            found.doubt = if is_all { Doubt::Nearby } else { Doubt::Anywhere };
             if is_all {
                 return found;
             }
@@ -246,7 +246,7 @@ impl ClosedForm {
         let mut turned = Candidates::new();
         // Axes that are not neighbours in the arm may meet or be parallel at this pose, exactly or nearly.
         if !are_sharp(&joints, self.size) {
-            turned.doubt = Doubt::Open;
+            turned.doubt = Doubt::Anywhere;
         }
         match self.structure {
             Structure::ThreeMeet { .. } => match three_meet(&joints[3..], self.size, 4.0 * tolerance) {
@@ -254,7 +254,7 @@ impl ClosedForm {
                     let method = SphericalWrist::new(&joints, &centre, self.size, tolerance);
                     method.solve(goal, &[AngleRange::ANY; 6], &mut turned);
                 }
-                None => turned.doubt.add(Doubt::Open),
+                None => turned.doubt.add(Doubt::Anywhere),
             },
             _ => ThreeParallel::new(&joints, self.size, tolerance).solve::<Baseline>(goal, &mut turned),
         }

@@ -8,10 +8,10 @@ use crate::closed_form::branches::Candidates;
 use crate::closed_form::position::{Three, ThreeAxes};
 use crate::closed_form::sliding_arm::SlidingArm;
 use crate::closed_form::structure::Pair;
-use crate::math::vector3::Vector;
-use crate::closed_form::wrist::{Pointing, Wrist};
+use crate::closed_form::wrist::{Wrist, WristDirections};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::Vector;
 
 /// First three joints.
 #[derive(Debug, Clone, Copy)]
@@ -91,7 +91,7 @@ impl SphericalWrist {
         found.doubt.add(arms.doubt);
         let pointing = self.wrist.pointing(goal);
         for arm in arms.iter().filter(|arm| may_hold(of_arm, *arm)) {
-            let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
+            let left = WristDirections { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
             let wrists = self.wrist.turns(&left, of_wrist);
             found.singular |= wrists.aligned;
             if wrists.near_miss {

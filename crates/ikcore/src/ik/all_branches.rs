@@ -182,11 +182,11 @@ impl Taker<'_, '_, '_> {
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
-        self.nearly |= branches.nearly;
+        self.nearly |= branches.near_miss;
         if self.found.solutions.is_empty() && self.nearly {
             self.take_beside();
         }
-        if branches.doubt == Doubt::Open && !self.found.singular {
+        if branches.doubt == Doubt::Anywhere && !self.found.singular {
             self.take_scattered();
         }
         Some(branches.len())
@@ -194,7 +194,7 @@ impl Taker<'_, '_, '_> {
 
     fn take_branches(&mut self, branches: &ArmBranches) {
         self.attempt.budget.evaluations += branches.evaluations;
-        self.found.complete &= branches.doubt != Doubt::Open;
+        self.found.complete &= branches.doubt != Doubt::Anywhere;
         self.found.singular |= branches.singular;
         let is_sure = branches.doubt == Doubt::None && !branches.singular;
         for (q, error) in branches.iter() {

@@ -10,7 +10,7 @@
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `columns` | columns of Jacobians |
-//! | `gram`, `ldl`, `cholesky`, `singular_values` | small linear systems |
+//! | `gram`, `ldl`, `singular_values` | small linear systems |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
@@ -20,7 +20,6 @@ pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub mod block_step;
 pub mod box_step;
-pub(crate) mod cholesky;
 mod columns;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;

@@ -8,7 +8,6 @@
 
 use super::MAX_DOF;
 use super::block_step::TaskRows;
-use super::cholesky;
 use super::vector::dot;
 
 /// Tolerance for violations by rounding (rad, m).
@@ -141,7 +140,7 @@ impl RowSolver {
                 *free -= dot(column, task.residual);
             }
         }
-        cholesky::solve(&self.factor, &mut self.free);
+        solve_factored(&self.factor, &mut self.free);
         self.free.iter_mut().zip(step.start).for_each(|(free, start)| *free += start);
         out.copy_from_slice(&self.free);
         self.active.clear();
@@ -179,10 +178,14 @@ impl RowSolver {
             for j in 0..=i {
                 let damping = if i == j { step.lambda } else { 0.0 };
                 let products = step.tasks.iter().map(|task| dot(&task.columns[i], &task.columns[j]));
-                self.factor[i * n + j] = products.sum::<f64>() + damping;
+                let mut entry = products.sum::<f64>() + damping;
+                for k in 0..j {
+                    entry -= self.factor[i * n + k] * self.factor[j * n + k];
+                }
+                let pivot = if i == j { entry.max(0.5 * step.lambda).sqrt() } else { entry / self.factor[j * n + j] };
+                self.factor[i * n + j] = pivot;
             }
         }
-        cholesky::factorize(&mut self.factor, n, 0.5 * step.lambda);
     }
 
     fn add(&mut self, step: &RowStep<'_>, constraint: Constraint) {
@@ -194,7 +197,7 @@ impl RowSolver {
             Constraint::Row(i) => along[..n].copy_from_slice(&step.rows[i].gradient[..n]),
             Constraint::Held(i) => along[..n].copy_from_slice(&step.held[i].gradient[..n]),
         }
-        cholesky::solve(&self.factor, &mut along[..n]);
+        solve_factored(&self.factor, &mut along[..n]);
         self.active.push(Active { constraint, multiplier: 0.0, along });
     }
 
@@ -242,11 +245,27 @@ impl RowSolver {
                     };
                     entry *= 1.0 + softness;
                 }
-                self.system[i * m + j] = entry;
+                for k in 0..j {
+                    entry -= self.system[i * m + k] * self.system[j * m + k];
+                }
+                self.system[i * m + j] =
+                    if i == j { entry.max(f64::MIN_POSITIVE.sqrt()).sqrt() } else { entry / self.system[j * m + j] };
             }
         }
-        cholesky::factorize(&mut self.system, m, f64::MIN_POSITIVE.sqrt());
-        cholesky::solve(&self.system, &mut self.trial);
+        solve_factored(&self.system, &mut self.trial);
+    }
+}
+
+/// Solves L L' x = b in place; `factor` holds L by rows.
+fn solve_factored(factor: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    for i in 0..n {
+        let known: f64 = (0..i).map(|k| factor[i * n + k] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * n + i];
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|k| factor[k * n + i] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i * n + i];
     }
 }
 

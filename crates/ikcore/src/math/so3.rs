@@ -5,7 +5,6 @@ use super::arctangent::angle_of;
 use super::arithmetic::NoFma;
 use super::real::{One, Real};
 use super::vec3::Vec3;
-use super::vector3::{add_scaled, dot};
 
 /// Angle (rad) below which series replace quotients that would lose digits.
 const SMALL: f64 = 1e-4;
@@ -188,7 +187,13 @@ pub fn inverse_right_jacobian(phi: &[f64; 3]) -> [[f64; 3]; 3] {
 fn turned_twice(v: &[f64; 3], phi: &[f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
     let once = cross(phi, v);
     let twice = cross(phi, &once);
-    add_scaled(&add_scaled(v, &once, a), &twice, b)
+    std::array::from_fn(|k| v[k] + a * once[k] + b * twice[k])
+}
+
+/// a'b.
+#[inline(always)]
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Returns the Euclidean length.

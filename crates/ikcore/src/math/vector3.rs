@@ -1,6 +1,6 @@
 //! Vectors of three numbers, inlined into the closed forms.
 
-pub use super::so3::{cross, norm};
+pub use crate::math::so3::{cross, dot, norm};
 
 /// Vector or point (m).
 pub type Vector = [f64; 3];
@@ -27,12 +27,6 @@ pub fn scaled(v: &Vector, factor: f64) -> Vector {
 #[inline(always)]
 pub fn add_scaled(a: &Vector, b: &Vector, factor: f64) -> Vector {
     [a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor]
-}
-
-/// Returns the dot product a'b.
-#[inline(always)]
-pub fn dot(a: &Vector, b: &Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Returns v / |v|; NaN for the zero vector.

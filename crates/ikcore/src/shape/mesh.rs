@@ -5,32 +5,18 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, BoundingTree};
-use super::enclosure::{Enclosure, TriangleSurface};
-use super::nearest_piece::{NearestPiece, PieceLanes, squared_bound};
-use super::segment_lanes::{NearestFraction, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
+use super::enclosure::Enclosure;
+use super::nearest_piece::squared_bound;
+use super::segment_lanes::TOUCHING;
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
-use super::winding::winding;
-use crate::math::arithmetic::Arithmetic;
-use crate::math::f64x4::F64x4;
-use crate::math::real::{Four, Real};
-use crate::math::vec3::Vec3;
+use super::triangle_surface::TriangleSurface;
 
 /// Triangle mesh, together with the interior of its closed pieces.
 #[derive(Clone)]
 pub struct Mesh {
-    vertices: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
+    surface: TriangleSurface,
     enclosure: Enclosure,
-    tree: BoundingTree<FourTriangles>,
-}
-
-/// A corner and two edges of four triangles, one per lane.
-#[derive(Clone)]
-struct FourTriangles {
-    corner: [F64x4; 3],
-    edges: [[F64x4; 3]; 2],
 }
 
 /// Accuracy of the depth of a segment inside a closed mesh, relative to the depth.
@@ -43,14 +29,14 @@ const MOST_DEPTHS: usize = 400;
 impl PartialEq for Mesh {
     /// Compares vertices and faces alone, since they determine all other fields.
     fn eq(&self, other: &Self) -> bool {
-        self.vertices == other.vertices && self.faces == other.faces
+        self.vertices() == other.vertices() && self.faces() == other.faces()
     }
 }
 
 impl fmt::Debug for Mesh {
     /// Omits the pieces, which may number thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (vertices, faces) = (self.vertices.len(), self.faces.len());
+        let (vertices, faces) = (self.vertices().len(), self.faces().len());
         write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.is_closed())
     }
 }
@@ -67,22 +53,18 @@ impl Mesh {
                 return Err(format!("face {i} of the mesh names vertex {index}, but it has {count} (from 0)"));
             }
         }
-        let corners = |face: &[u32; 3]| face.map(|i| Vector3::from(vertices[i as usize]));
-        let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(corners(face))).collect();
-        let tree = BoundingTree::new(&boxes, |lanes| FourTriangles::new(lanes.map(|face| corners(&faces[face]))));
-        let mut mesh = Self { vertices, faces, enclosure: Enclosure::NOTHING, tree };
-        mesh.enclosure = Enclosure::of(&mesh);
-        Ok(mesh)
+        let surface = TriangleSurface::new(vertices, faces);
+        Ok(Self { enclosure: Enclosure::of(&surface), surface })
     }
 
     /// Returns the corners of the triangles (m).
     pub fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices
+        &self.surface.vertices
     }
 
     /// Returns the corner indices of each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
-        &self.faces
+        &self.surface.faces
     }
 
     /// Whether the interior is fully known: the mesh has no boundary, and no two layers coincide. Triangles may have either
@@ -93,7 +75,7 @@ impl Mesh {
 
     /// Returns the volume enclosed by the closed pieces (m^3); overlaps count once per piece.
     pub fn volume(&self) -> f64 {
-        let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
+        let origin = Vector3::from(self.vertices()[self.faces()[0][0] as usize]);
         let cone = |(i, turn): (usize, &i8)| {
             let [a, b, c] = self.triangle(i).map(|corner| corner - origin);
             f64::from(*turn) * a.dot(&b.cross(&c)) / 6.0
@@ -103,29 +85,24 @@ impl Mesh {
 
     /// Returns the corners of face `i`.
     pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
-        self.faces[i].map(|corner| self.vertices[corner as usize].into())
+        self.surface.triangle(i)
     }
 
     /// Whether a closed piece encloses `point`.
     pub(super) fn encloses(&self, point: &Vector3<f64>) -> bool {
         let Enclosure { turns, .. } = &self.enclosure;
-        !turns.is_empty() && self.winding_number(point, |face| turns[face].into()) != 0
-    }
-
-    /// Finds the nearest triangle within the square root of `bound`.
-    fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPiece {
-        self.tree.nearest(segment, bound, &mut |_| {})
+        !turns.is_empty() && self.surface.winding_number(point, |face| turns[face].into()) != 0
     }
 
     /// Visits all triangles within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
     /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        self.tree.each_near(segment, reach, visit);
+        self.surface.tree.each_near(segment, reach, visit);
     }
 
     /// Returns the signed distance of a point, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
-        let nearest = self.nearest_face(&[*point; 2], f64::INFINITY);
+        let nearest = self.surface.tree.nearest(&[*point; 2], f64::INFINITY, &mut |_| {});
         let [a, b, c] = self.triangle(nearest.index.unwrap_or(0));
         let away = point - nearest_on_triangle(point, &[a, b, c]);
         let distance = away.norm();
@@ -138,7 +115,7 @@ impl Mesh {
     /// Returns the signed distance of a segment: inside a closed piece it is minus the depth of the deepest point. Exact up
     /// to `enough` outside, a lower bound inside.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
-        let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
+        let surface = self.surface.tree.nearest(segment, squared_bound(enough).max(TOUCHING), &mut |_| {});
         let touches = surface.index.is_some() && surface.squared <= TOUCHING;
         if (touches && !self.enclosure.turns.is_empty()) || self.encloses(&segment[0]) {
             return self.depth(segment);
@@ -176,38 +153,6 @@ impl Mesh {
     }
 }
 
-impl TriangleSurface for Mesh {
-    fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices
-    }
-
-    fn faces(&self) -> &[[u32; 3]] {
-        &self.faces
-    }
-
-    fn triangle(&self, face: usize) -> [Vector3<f64>; 3] {
-        self.triangle(face)
-    }
-
-    fn bounds(&self) -> &Aabb {
-        self.tree.bounds()
-    }
-
-    fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        self.each_near(segment, reach, visit);
-    }
-
-    fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32 {
-        let bounds = self.tree.bounds();
-        if !(0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k])) {
-            return 0;
-        }
-        let mut turns = 0;
-        self.tree.along_x(point, |face| turns += count(face) * winding(point, &self.triangle(face)));
-        turns
-    }
-}
-
 /// Part of a segment, with a lower bound on the signed distance in it.
 #[derive(Clone, Copy)]
 struct Wedge {
@@ -220,30 +165,6 @@ impl Wedge {
     fn between(left: SegmentDistance, right: SegmentDistance, length: f64) -> Self {
         let bound = 0.5 * (left.distance + right.distance - length * (right.fraction - left.fraction));
         Self { left, right, bound }
-    }
-}
-
-impl FourTriangles {
-    fn new(triangles: [[Vector3<f64>; 3]; 4]) -> Self {
-        let lanes = |value: &dyn Fn(&[Vector3<f64>; 3]) -> Vector3<f64>| {
-            let vectors = triangles.each_ref().map(value);
-            std::array::from_fn(|k| F64x4(vectors.map(|vector| vector[k])))
-        };
-        let edges = [lanes(&|[a, b, _]| b - a), lanes(&|[a, _, c]| c - a)];
-        Self { corner: lanes(&|[a, _, _]| *a), edges }
-    }
-}
-
-impl PieceLanes for FourTriangles {
-    #[inline(always)]
-    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3]) -> NearestFraction<Four<A>> {
-        let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
-        let start = Vec3::splat(start);
-        if *along == [0.0; 3] {
-            let squared = point_to_triangle(start, &triangle);
-            return NearestFraction { squared, fraction: Four::splat(0.0) };
-        }
-        to_triangle(start, Vec3::splat(along), &triangle)
     }
 }
 

@@ -108,7 +108,7 @@ impl<const N: usize> Verifier<N> {
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
         match polish::polished(&self.chain, target, set, &mut found.evaluations) {
             Ok((set, error)) => push_new(set, error, &self.slides, found),
-            Err(residual) => found.nearly |= residual < NEARLY,
+            Err(residual) => found.near_miss |= residual < NEARLY,
         }
     }
 }

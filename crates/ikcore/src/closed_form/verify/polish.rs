@@ -3,9 +3,9 @@
 use super::residuals::difference;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::BranchError;
-use crate::math::vector3::{Vector, add, cross, scaled, sub};
+use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
-use crate::math::{Frame, cholesky};
+use crate::math::vector3::{Vector, add, cross, scaled, sub};
 
 /// Largest residual of a branch, in position (m) and rotation (rad).
 pub const TOLERANCE: f64 = 1e-10;
@@ -106,12 +106,15 @@ fn damped_step<const N: usize>(columns: &[[f64; 6]; N], error: &[f64; 6], dampin
 /// Solves (A + damping) x = b by Cholesky decomposition.
 fn solved<const N: usize>(a: impl Fn(usize, usize) -> f64, damping: f64, b: [f64; N]) -> [f64; N] {
     let mut factor = [[0.0; N]; N];
-    for i in 0..N {
-        (0..=i).for_each(|j| factor[i][j] = a(i, j) + if i == j { damping } else { 0.0 });
-    }
-    cholesky::factorize(factor.as_flattened_mut(), N, 1e-30);
     let mut x = b;
     for i in 0..N {
+        for j in 0..=i {
+            let mut sum = a(i, j) + if i == j { damping } else { 0.0 };
+            for k in 0..j {
+                sum -= factor[i][k] * factor[j][k];
+            }
+            factor[i][j] = if i == j { sum.max(1e-30).sqrt() } else { sum / factor[j][j] };
+        }
         for k in 0..i {
             x[i] -= factor[i][k] * x[k];
         }

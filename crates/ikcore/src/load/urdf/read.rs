@@ -104,8 +104,7 @@ pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) 
 }
 
 pub(super) fn read(path: &str) -> Result<String> {
-    let bytes =
-        std::fs::read(path).map_err(|error| Error::unreadable(path, error))?;
+    let bytes = std::fs::read(path).map_err(|error| Error::unreadable(path, error))?;
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 
