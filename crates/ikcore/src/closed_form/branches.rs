@@ -49,11 +49,11 @@ pub struct Candidates {
     pub singular: bool,
     /// Doubt about further candidates.
     pub doubt: Doubt,
-    /// Value of a seventh joint, added to each solution for six.
+    /// Fixed joint, added to each candidate of six joints.
     fixed: Option<FixedJoint>,
 }
 
-/// Given joint of a seven-joint arm, and its angle.
+/// Fixed joint of a seven-joint arm, and its angle.
 #[derive(Debug, Clone, Copy)]
 pub enum FixedJoint {
     /// First of seven joints.
@@ -89,7 +89,7 @@ impl Candidates {
         self.fixed = Some(joint);
     }
 
-    /// Adds a candidate of six joints, and of the given joint if there is one; ignored when full.
+    /// Adds a candidate of six joints, and of the fixed joint if there is one; ignored when full.
     #[inline(always)]
     pub fn push_six(&mut self, turns: &[Angle; 6]) {
         let [a, b, c, d, e, f] = *turns;

@@ -152,7 +152,7 @@ impl<L> BoundingTree<L> {
             waiting -= 1;
             let item = stack[waiting];
             if item & LEAF != 0 {
-                self.leaves[(item & !LEAF) as usize].pieces().for_each(|(_, piece)| visit(piece));
+                self.leaves[(item & !LEAF) as usize].pieces().for_each(&mut visit);
                 continue;
             }
             let node = &self.nodes[item as usize];
@@ -169,11 +169,16 @@ impl<L> BoundingTree<L> {
 }
 
 impl<L> Leaf<L> {
-    /// Returns the lanes in use, with the index of the piece in each.
+    /// Returns the index of the piece in a lane; `None` for an empty lane.
     #[inline(always)]
-    pub fn pieces(&self) -> impl Iterator<Item = (usize, usize)> {
-        let used = self.pieces.into_iter().take_while(|piece| *piece != NONE);
-        used.map(|piece| piece as usize).enumerate()
+    pub fn piece(&self, lane: usize) -> Option<usize> {
+        (self.pieces[lane] != NONE).then_some(self.pieces[lane] as usize)
+    }
+
+    /// Returns the indices of all pieces.
+    #[inline(always)]
+    pub fn pieces(&self) -> impl Iterator<Item = usize> {
+        (0..4).filter_map(|lane| self.piece(lane))
     }
 }
 

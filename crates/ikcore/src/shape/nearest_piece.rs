@@ -53,7 +53,7 @@ by_instructions! {
         visit: &mut dyn FnMut(usize) -> f64,
     ) {
         tree.search::<A>(&SegmentQuery::new(segment), squared_bound(reach), |leaf, bound| {
-            leaf.pieces().fold(bound, |_, (_, piece)| squared_bound(visit(piece)))
+            leaf.pieces().fold(bound, |_, piece| squared_bound(visit(piece)))
         });
     }
 }
@@ -70,7 +70,8 @@ by_instructions! {
         tree.search::<A>(&SegmentQuery::new(segment), bound, |leaf, bound| {
             let nearest = leaf.lanes.nearest::<A>(&start, &along);
             let squared = nearest.squared.stored().0;
-            for (lane, index) in leaf.pieces() {
+            for lane in 0..4 {
+                let Some(index) = leaf.piece(lane) else { continue };
                 if squared[lane] <= TOUCHING {
                     touching(index);
                 }
