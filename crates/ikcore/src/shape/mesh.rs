@@ -179,7 +179,7 @@ mod tests {
     fn random_soup(rng: &mut LazyRng, count: u32) -> Shape {
         let triangles = (0..count).map(|_| {
             let (corner, size) = (point(rng, 1.0), rng.uniform_in(0.01, 0.4));
-            [(); 3].map(|()| (corner + size * point(rng, 1.0)).into())
+            [(); 3].map(|()| <[f64; 3]>::from(corner + size * point(rng, 1.0)))
         });
         mesh_of(&triangles.collect::<Vec<_>>())
     }

@@ -100,7 +100,7 @@ mod tests {
     use super::super::checked_shape::Shape;
     use super::super::test_shapes::point;
     use super::*;
-    use crate::rng::{self, LazyRng};
+    use crate::rng;
 
     fn shapes() -> Vec<Shape> {
         let turn = Some(*Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
