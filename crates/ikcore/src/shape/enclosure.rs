@@ -138,7 +138,7 @@ fn touches_others(mesh: &TriangleSurface, of: &[usize], face: u32) -> bool {
     mesh.tree.each_near(&[middle; 2], reach, &mut |other| {
         if ![of[face as usize], NO_PIECE].contains(&of[other]) && !touches {
             let corners = mesh.triangle(other);
-            touches = meet(&own, &corners, near) || meet(&corners, &own, near);
+            touches = an_edge_is_near(&own, &corners, near) || an_edge_is_near(&corners, &own, near);
         }
         reach
     });
@@ -146,7 +146,7 @@ fn touches_others(mesh: &TriangleSurface, of: &[usize], face: u32) -> bool {
 }
 
 /// Whether an edge of the first triangle is nearer than `near` (m) to the second.
-fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64) -> bool {
+fn an_edge_is_near([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64) -> bool {
     let vector = |v: &Vector3<f64>| Vec3::<One<NoFma>>::splat(&(*v).into());
     let triangle = TriangleLanes::new(vector(p), vector(&(q - p)), vector(&(r - p)));
     let squared =
