@@ -29,8 +29,9 @@ _WIDTH, _HEIGHT = 1050, 660  # pixels of the pictures
 _REDRAWS = 10  # redraws until full resolution
 _GRIP = 0.5  # grip on an arrow, as a fraction of the size of the handle
 _MOVES = 8  # mouse moves in a drag
-_DELIVERY = 100  # ms: longest delay of a message to a page
-_PATIENCE = 20_000  # ms: a page takes seconds to appear beside other programs
+_DELIVERY = 6  # frames: longest delay of a message to a page
+_FRAMES = 3000  # most frames until an event
+_PATIENCE = 120_000  # ms: a page takes long to appear beside other programs
 
 
 def chromium() -> str | None:
@@ -41,6 +42,12 @@ def chromium() -> str | None:
 def hide_notes(page: Any) -> None:
     """Hides notes of viser; the first is about drawing without a graphics card."""
     page.add_style_tag(content=".mantine-Notification-root { display: none }")
+
+
+def draw(page: Any, *, times: int = 1) -> None:
+    """Has a page draw so many frames."""
+    for _ in range(times):
+        page.evaluate("new Promise(requestAnimationFrame)")
 
 
 class Visitor:
@@ -64,10 +71,10 @@ class Visitor:
         Raises:
             TimeoutError: it did not happen in time.
         """
-        for _ in range(_PATIENCE // 20):
+        for _ in range(_FRAMES):
             if happened():
                 return
-            self.page.wait_for_timeout(20)
+            draw(self.page)
         raise TimeoutError(f"still {self.text()!r}, {self.viewer.outcome}")
 
     def picture(self, file: Path) -> None:
@@ -80,8 +87,8 @@ class Visitor:
 
     def settle(self) -> None:
         """Waits until the page has drawn the messages sent so far."""
-        self.page.wait_for_timeout(_DELIVERY)
-        self.page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        self.viewer.server.flush()
+        draw(self.page, times=_DELIVERY)
 
     def text(self, what: str = "status") -> str:
         """Returns a text of the page: "status" or "clearance"."""
@@ -133,7 +140,7 @@ class Visitor:
         self.page.mouse.down()
         for i in range(1, _MOVES + 1):
             self.page.mouse.move(*self.pixel(grip + distance * i / _MOVES * along))
-            self.page.wait_for_timeout(20)
+            draw(self.page)
         self.page.mouse.up()
 
 

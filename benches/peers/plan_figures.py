@@ -48,7 +48,7 @@ def pictures(data: Path, acceleration: float, file: Path) -> None:
     from matplotlib import pyplot as plt
 
     import beetle_ik as bik
-    from beetle_ik import _plan_figure, _shapes
+    from beetle_ik.figures import plan_figure, shapes
 
     from .clear import MotionBenchArm
 
@@ -64,12 +64,12 @@ def pictures(data: Path, acceleration: float, file: Path) -> None:
             obstacles=arm.scene(problem),
             limits=bik.Limits(acceleration=acceleration),
         )
-        drawn = _plan_figure.Scene(figure, place, plan)
+        drawn = plan_figure.Scene(figure, place, plan)
         for share in np.linspace(0.0, 1.0, 6):
             drawn.draw_arm(share, color="#56B4E9", alpha=0.25 + 0.75 * share)
         drawn.draw_way()
         for end in (problem["start"], problem["goal"]):
-            _shapes.draw_bodies(drawn.axes, _shapes.placed_bodies(arm.robot, end))
+            shapes.draw_bodies(drawn.axes, shapes.placed_bodies(arm.robot, end))
         drawn.axes.set_box_aspect((1, 1, 1), zoom=zoom)
         drawn.axes.set_axis_off()
         drawn.axes.view_init(elevation, azimuth)

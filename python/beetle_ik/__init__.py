@@ -72,11 +72,11 @@ from ._core import (
     track,
     track_model_free,
 )
-from ._scene import Scene
+from .scenes import Scene
 
 if TYPE_CHECKING:
     from . import interop, plot, vision
-    from ._versions import show_versions
+    from .installed.versions import show_versions
     from .mapping import BasePlacement, InverseReachabilityMap, ReachabilityMap, best_base, reachability
     from .viewing import Viewer, view
 
@@ -162,7 +162,7 @@ _LATER = {
     "interop": "interop",
     "plot": "plot",
     "vision": "vision",
-    "show_versions": "_versions",
+    "show_versions": "installed.versions",
     "BasePlacement": "mapping",
     "InverseReachabilityMap": "mapping",
     "ReachabilityMap": "mapping",

@@ -19,9 +19,10 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from ._arguments import require_one_tip
 from ._core import InvalidInputError, Robot, pose
-from ._needs import library
+from .calls.arguments import require_one_tip
+from .calls.text import exact
+from .installed.needs import library
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -237,20 +238,20 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
     actuators = SubElement(root, "actuator")
     origin = np.zeros(3)
     for i, (kind, axis, anchor, end) in enumerate(zip(kinds, axes, anchors, ends, strict=True)):
-        body = SubElement(body, "body", pos=_text(anchor - origin))
+        body = SubElement(body, "body", pos=exact(anchor - origin))
         origin = anchor
         # Adds reflected inertia of the gears, and critical damping, so that the servo does not overshoot.
         inertia = 0.1
         lever = float(np.linalg.norm(tip - anchor)) + 0.1
         critical = 2.0 * np.sqrt(stiffness * (inertia + mass * lever**2 / 3.0))
         SubElement(
-            body, "joint", name=f"joint_{i}", type="slide" if kind == "prismatic" else "hinge", axis=_text(axis),
+            body, "joint", name=f"joint_{i}", type="slide" if kind == "prismatic" else "hinge", axis=exact(axis),
             armature=str(inertia), damping=str(critical),
         )  # fmt: skip
         share = mass * lengths[i] / sum(lengths)
         _add_rod(body, end - anchor, share, _COLOURS[i % 2])
         SubElement(actuators, "position", joint=f"joint_{i}", kp=str(stiffness))
-    SubElement(body, "site", name="tip", pos=_text(tip - origin), size="0.012", rgba="0.84 0.37 0 1")
+    SubElement(body, "site", name="tip", pos=exact(tip - origin), size="0.012", rgba="0.84 0.37 0 1")
     return tostring(root, encoding="unicode")
 
 
@@ -297,10 +298,6 @@ def _add_world(root: Element, first: NDArray[np.float64]) -> Element:
 def _add_rod(body: Element, end: NDArray[np.float64], mass: float, colour: str) -> None:
     reach = end if np.linalg.norm(end) >= _SHORTEST else np.array([0.0, 0.0, _SHORTEST])
     SubElement(
-        body, "geom", type="capsule", size=str(_RADIUS), fromto=f"0 0 0 {_text(reach)}", mass=str(max(mass, 0.05)),
+        body, "geom", type="capsule", size=str(_RADIUS), fromto=f"0 0 0 {exact(reach)}", mass=str(max(mass, 0.05)),
         contype="0", conaffinity="0", rgba=colour,
     )  # fmt: skip
-
-
-def _text(vector: NDArray[np.float64]) -> str:
-    return " ".join(repr(float(value)) for value in vector)

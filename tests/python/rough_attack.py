@@ -3,7 +3,7 @@
 # ruff: noqa: ARG002
 
 import os
-import time
+import threading
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,7 +26,7 @@ class Rough(Attack):
             case 3:
                 os.abort()
             case 4:
-                time.sleep(60)
+                threading.Event().wait()
             case 5 if max(left["numbers"]) > 0.1:
                 raise BrokenError("a number is positive", max(left["numbers"]))
         return len(left["numbers"])

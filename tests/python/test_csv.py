@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from beetle_ik import InvalidInputError
-from beetle_ik._csv import read_table, write_table
-from beetle_ik._files import whole_file
+from beetle_ik.files.csv_table import read_table, write_table
+from beetle_ik.files.whole import whole_file
 
 
 def test_numbers_come_back_with_the_same_bits(tmp_path: Path) -> None:

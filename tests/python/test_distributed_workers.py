@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -101,15 +100,18 @@ def test_a_killed_client_goes_on_where_it_was(cluster: Any, client: Any, tmp_pat
         "sys.path.insert(0, sys.argv[1])\n"
         "from test_distributed_workers import slow_batch\n"
         "from pathlib import Path\n"
-        "with dask.Client(sys.argv[2]) as client: slow_batch(client, Path(sys.argv[3]))\n"
+        "def tell(done, total):\n"
+        "    if done == 3:\n"
+        "        print('three', flush=True)\n"
+        "        sys.stdin.read()\n"
+        "with dask.Client(sys.argv[2]) as client: slow_batch(client, Path(sys.argv[3]), progress=tell)\n"
     )
     store = tmp_path / "there"
     command = [sys.executable, "-c", program, str(Path(__file__).parent), cluster.scheduler_address, str(store)]
-    other = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-    while len(list(store.glob("chunks/c.*"))) < 3 and other.poll() is None:
-        time.sleep(0.01)
-    other.kill()
-    other.wait()
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"three\n"
+        other.kill()
     finished = {file: time for file, time in written(store).items() if file.startswith("chunks")}
     assert 3 <= len(finished) < 12
     slow_batch(client, store)

@@ -322,7 +322,7 @@ def test_wrong_paths_are_named(call: Callable[[], object], error: type[Exception
         (
             lambda: bik.pose([0, 0, 0], matrix=np.ones((3, 3))),
             Invalid,
-            "matrix is not a rigid transform: R'R differs from the identity by 3.000e0",
+            "matrix is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'",
         ),
         (
             lambda: bik.pose([0, 0, 0], [0, 0, 0, 1]),

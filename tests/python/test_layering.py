@@ -1,46 +1,61 @@
-"""Imports between modules, and the modules that `import beetle_ik` loads."""
+"""Imports between modules, the modules that `import beetle_ik` loads, and clocks, which no test reads."""
 
 import ast
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "python" / "beetle_ik"
 FILES = sorted(PACKAGE.rglob("*.py"))
+TESTS = sorted(Path(__file__).parent.glob("*.py"))
+CLOCKS = {"datetime", "time", "timeit"}
+
+# From the lowest up; `__init__` stands for the public names of the package.
+LAYERS = (
+    *("_core", "filters", "goals", "obstacles", "papers", "paths", "tasks"),
+    *("calls", "installed", "files", "figures", "robot_files", "scenes", "chunked", "mapping"),
+    *("distributed", "interop", "plot", "sim", "viewing", "vision"),
+    *("__init__", "report", "experiments", "cli", "__main__"),
+)
 
 
-def names_imported(nodes: list[ast.AST]) -> set[str]:
-    """Dotted names; relative ones start with a dot."""
-    names = set()
-    for node in nodes:
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            names.add("." * node.level + (node.module or ""))
-            names |= {"." * node.level + alias.name for alias in node.names if node.level and not node.module}
-    return names
+def layer(file: Path) -> str:
+    return file.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def belongs_to_command_line(file: Path) -> bool:
-    return file.relative_to(PACKAGE).parts[0] == "cli"
+def libraries(nodes: Iterable[ast.AST]) -> set[str]:
+    """Packages of others that are imported."""
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom) and not node.level]
+    return {name.split(".")[0] for name in names}
+
+
+def layers_imported(file: Path) -> set[str]:
+    """Layers that a file imports anywhere."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            folder = file.relative_to(PACKAGE).parts[: -node.level]
+            ways = [[node.module]] if node.module else [[alias.name] for alias in node.names]
+            found |= {(*folder, *way)[0].split(".")[0] for way in ways}
+    return {name if name in LAYERS else "__init__" for name in found}
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
 def test_optional_libraries_are_imported_inside_functions(file: Path) -> None:
-    top_level = names_imported(list(ast.parse(file.read_text()).body))
-    kept_out = {"dask", "distributed", "jinja2", "matplotlib", "rich", "viser", "zarr"} | (
-        set() if belongs_to_command_line(file) else {"typer"}
-    )
-    assert not {name.split(".")[0] for name in top_level} & kept_out
+    kept_out = {"dask", "distributed", "jinja2", "matplotlib", "rich", "viser", "zarr"}
+    if layer(file) != "cli":
+        kept_out.add("typer")
+    assert not libraries(ast.parse(file.read_text(encoding="utf-8")).body) & kept_out
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
-def test_only_the_command_line_imports_the_command_line(file: Path) -> None:
-    everywhere = names_imported(list(ast.walk(ast.parse(file.read_text()))))
-    if not belongs_to_command_line(file) and file.name != "__main__.py":
-        assert not {name for name in everywhere if name.lstrip(".").split(".")[0] == "cli" or ".cli" in name}
+def test_a_file_imports_its_own_and_lower_layers(file: Path) -> None:
+    own = LAYERS.index(layer(file))
+    assert not {name for name in layers_imported(file) if LAYERS.index(name) > own}
 
 
 def test_import_loads_no_other_package() -> None:
@@ -48,3 +63,11 @@ def test_import_loads_no_other_package() -> None:
     loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
     assert "beetle_ik" in loaded
     assert not {"numpy", "typer", "rich", "matplotlib", "jinja2", "viser", "dask", "distributed", "zarr"} & set(loaded)
+
+
+@pytest.mark.parametrize("file", TESTS, ids=lambda file: file.stem)
+def test_no_test_reads_a_clock_or_sleeps(file: Path) -> None:
+    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+    assert not libraries(nodes) & CLOCKS
+    called = {node.func.attr for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)}
+    assert not called & {"wait_for_timeout"}

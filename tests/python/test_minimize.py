@@ -1,15 +1,12 @@
 """Minimisation of Python functions by every derivative-free solver."""
 
-import os
-import signal
 import sys
-import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from interrupts import interrupted
 from mistakes import Case, Invalid, assert_told, told
 
 import beetle_ik as bik
@@ -186,28 +183,27 @@ def test_progress_is_told_to_the_end_and_changes_nothing() -> None:
     np.testing.assert_array_equal(followed.x, bik.minimize(bowl, LOWER, UPPER, solver=bik.papers.PSO(), stop=stop).x)
 
 
-def test_an_exception_of_progress_carries_the_best_point() -> None:
-    def slow_bowl(x: np.ndarray) -> float:
-        time.sleep(1e-3)
-        return bowl(x)
+ENDLESS: dict[str, Any] = {
+    "solver": bik.papers.PSO(stall_generations=None),
+    "stop": bik.Stop(max_evaluations=10**12, max_iterations=10**12),
+}
 
+
+def test_an_exception_of_progress_carries_the_best_point() -> None:
     def progress(done: int, total: int) -> None:
         raise ValueError(f"enough after {done} of {total}")
 
-    with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 30000\n") as caught:
-        bik.minimize(slow_bowl, LOWER, UPPER, solver=bik.papers.PSO(), progress=progress)
+    with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 1000000000000\n") as caught:
+        minimize(progress=progress, **ENDLESS)
     best = caught.value.best  # type: ignore[attr-defined]
     assert best.status == bik.Status.INTERRUPTED
     assert best.value == bowl(best.x)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
-@pytest.mark.usefixtures("ctrl_c_raises")
+@pytest.mark.skipif(sys.platform == "win32", reason="no timer sends signals on Windows")
 def test_ctrl_c_carries_the_best_point() -> None:
-    timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
-    with pytest.raises(KeyboardInterrupt) as caught:
-        minimize(stop=bik.Stop(max_evaluations=10**12), solver=bik.papers.PSO(stall_generations=None))
+    with pytest.raises(KeyboardInterrupt) as caught, interrupted():
+        minimize(**ENDLESS)
     assert caught.value.best.evaluations > 1  # type: ignore[attr-defined]
 
 

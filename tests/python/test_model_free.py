@@ -140,7 +140,7 @@ def broken() -> Array:
         (lambda: np.eye(5), "the plant returned shape (5, 5), not a position (3,)"),
         (
             lambda: np.diag([1.0, 1.0, 2.0, 1.0]),
-            "the plant returned an invalid pose: it is not a rigid transform: R'R differs from the identity by 3.000e0",
+            "the plant returned an invalid pose: it is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'",
         ),
         (lambda: (0.0, np.nan, 0.0), "the plant returned a position that is not finite: [0.0, NaN, 0.0]"),
     ],
@@ -274,7 +274,7 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
         (
             lambda: bik.BroydenBAS().session(ON_CIRCLE, dt=0.1).command(np.diag([1.0, 1.0, 2.0, 1.0])),
             bik.InvalidInputError,
-            "target is not a rigid transform: R'R differs from the identity by 3.000e0",
+            "target is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'",
         ),
         (
             lambda: bik.BroydenBAS().session(ON_CIRCLE, dt=0.1).command(np.zeros((3, 4))),

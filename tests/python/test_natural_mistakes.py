@@ -248,7 +248,7 @@ def _descriptions(monkeypatch: pytest.MonkeyPatch, names: list[str]) -> None:
     listed.DESCRIPTIONS = dict.fromkeys(names)  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, package.__name__, package)
     monkeypatch.setitem(sys.modules, listed.__name__, listed)
-    monkeypatch.setattr("beetle_ik._descriptions._data_folder", lambda: None)
+    monkeypatch.setattr("beetle_ik.robot_files.descriptions._data_folder", lambda: None)
 
 
 def test_a_part_of_the_name_of_a_description_suggests_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -282,7 +282,7 @@ def test_robots_of_example_robot_data_have_names(monkeypatch: pytest.MonkeyPatch
     for file in ("arm_description/urdf/arm.urdf", "arm_description/urdf/arm_long.urdf", "two/a.urdf", "two/b.urdf"):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(GRIPPER.replace('name="r"', f'name="{Path(file).stem}"'))
-    monkeypatch.setattr("beetle_ik._descriptions._data_folder", lambda: tmp_path)
+    monkeypatch.setattr("beetle_ik.robot_files.descriptions._data_folder", lambda: tmp_path)
     forked = GRIPPER.replace("</robot>", '<link name="eye"/><joint name="held" type="fixed"><parent link="base"/>')
     forked += '<child link="eye"/></joint></robot>'
     (tmp_path / "arm_description" / "urdf" / "forked.urdf").write_text(forked)

@@ -11,8 +11,8 @@ from mistakes import INSIDE
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
-from beetle_ik import _plan_figure
 from beetle_ik.cli.app import app
+from beetle_ik.figures import plan_figure
 
 ARM = bik.Robot.planar([1.0, 1.0, 1.0])
 LIMITS = bik.Limits(velocity=np.pi, acceleration=2 * np.pi)
@@ -259,8 +259,8 @@ def test_the_command_plans_from_point_to_point(tmp_path: Path) -> None:
 
 
 def test_the_command_animates_a_plan_around_an_obstacle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 2)
-    monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
+    monkeypatch.setattr(plan_figure, "_FRAMES_A_SECOND", 2)
+    monkeypatch.setattr(plan_figure, "_PAUSE", 0)
     ends = ("--start-q", "0,0,0,0,0", "--end-q", "0.1,0,0,0,0")
     scene = tmp_path / "scene.json"
     scene.write_text('[{"type": "ellipse", "center": [9, 9], "semi_axes": [1, 1]}]')

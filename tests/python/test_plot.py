@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import beetle_ik as bik
-from beetle_ik import _plan_figure
-from beetle_ik._shapes import inside
-from beetle_ik._surface import simplified
+from beetle_ik.figures import plan_figure
+from beetle_ik.figures.shapes import inside
+from beetle_ik.figures.surface import simplified
 
 
 def labels(figure: Figure) -> list[str]:
@@ -216,8 +216,8 @@ def test_without_matplotlib_the_extra_is_named(tracked: bik.TrackResult, monkeyp
 
 
 def test_a_tracked_path_is_animated(tracked: bik.TrackResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 1)
-    monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
+    monkeypatch.setattr(plan_figure, "_FRAMES_A_SECOND", 1)
+    monkeypatch.setattr(plan_figure, "_PAUSE", 0)
     bik.plot.animation(tracked).save(tmp_path / "track.gif", writer="pillow")
     assert (tmp_path / "track.gif").read_bytes().startswith(b"GIF")
     with pytest.raises(bik.InvalidInputError, match=r"^result must be a Plan or a TrackResult, got 3$"):

@@ -10,7 +10,7 @@ import pytest
 
 PROGRAM = """
 from contextlib import closing
-from beetle_ik._progress import Bar
+from beetle_ik.calls.progress import Bar
 with closing(Bar()) as bar:
     for done in range(1, 51):
         bar.show("working", done, 50)

@@ -10,8 +10,8 @@ from PIL import Image, ImageSequence
 
 import beetle_ik as bik
 from beetle_ik import experiments
-from beetle_ik._frames import Frames
 from beetle_ik.experiments import Context, Experiment
+from beetle_ik.figures.frames import Frames
 from beetle_ik.report import (
     CarriedOver,
     Check,

@@ -2,11 +2,13 @@
 
 import csv
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from typer.testing import CliRunner, Result
 
 from beetle_ik import experiments
@@ -83,8 +85,15 @@ def test_wrong_input_is_told_exactly(tmp_path: Path) -> None:
     )
 
 
+def coarse(drawing: Figure, _: int) -> FigureCanvasAgg:
+    """A canvas of few pixels, on which nothing is laid out: that would take half the time of a short report."""
+    drawing.set_layout_engine("none")
+    drawing.set_dpi(20)
+    return FigureCanvasAgg(drawing)
+
+
 @pytest.fixture(scope="module")
-def short_reports(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def short_reports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], Path]]:
     """The folder of a paper's short report, made when it is first asked for."""
 
     @cache
@@ -94,7 +103,9 @@ def short_reports(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], P
         assert result.exit_code == 0, result.output
         return folder
 
-    return made
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("beetle_ik.report.picture._canvas", coarse)
+        yield made
 
 
 @pytest.mark.parametrize("name", experiments.names())

@@ -94,7 +94,6 @@ def browser() -> Iterator[Any]:
         yield browser
 
 
-@pytest.mark.timeout(240)
 @pytest.mark.parametrize("name", SHOWN)
 def test_a_recording_of_the_site_plays(browser: Any, name: str, tmp_path: Path) -> None:
     recorded_scenes.write(name, tmp_path / f"{name}.viser")

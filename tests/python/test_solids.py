@@ -5,8 +5,8 @@ import pytest
 from pair_of_pandas import pair_of_pandas
 
 import beetle_ik as bik
-from beetle_ik._skeleton import Part, skeleton
-from beetle_ik._solids import solids
+from beetle_ik.figures.skeleton import Part, skeleton
+from beetle_ik.figures.solids import solids
 from beetle_ik.viewing.start import middle
 
 GANTRY = """<robot name="gantry"><link name="base"/><link name="x"/><link name="y"/>

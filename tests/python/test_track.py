@@ -101,7 +101,7 @@ def test_totals_are_those_of_the_steps(followed: bik.TrackResult) -> None:
     assert followed.limit_margin == pytest.approx(margin, abs=1e-12)
     assert followed.limits.velocity == LIMITS.velocity
     assert followed.robot == IIWA
-    assert 0.0 < followed.elapsed < 60.0
+    assert followed.elapsed > 0.0
     joined = followed.time[np.argmax(followed.step_status == bik.Status.SOLVED)]
     assert followed.message.startswith(f"in the band of 1.000e-4 m from t = {joined:g} s on; worst error there ")
     assert repr(followed).startswith("<TrackResult SOLVED: 151 rows, in the band")

@@ -13,9 +13,9 @@ import pytest
 from typer.testing import CliRunner
 
 import beetle_ik as bik
-from beetle_ik._versions import EXTRAS
 from beetle_ik.cli.app import app
 from beetle_ik.cli.options import complete_robot
+from beetle_ik.installed.versions import EXTRAS
 
 IIWA = bik.Robot.named("iiwa14")
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"

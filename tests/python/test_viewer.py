@@ -5,7 +5,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Collection, Iterator
 from itertools import count
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 from pair_of_pandas import pair_of_pandas
 from typer.testing import CliRunner
+from viewer_turns import until
 
 import beetle_ik as bik
 from beetle_ik.cli.app import app
@@ -31,7 +31,7 @@ START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
 BELOW = bik.pose([0.0, 0.0, -0.15]) @ PANDA.fk(START)
 TABLE = bik.obstacles.Box((0.5, 0.0, 0.15), (0.5, 0.8, 0.1))
 MARGIN = 1e-3  # m, the library's own
-PATIENCE = 1000  # looks at something that another thread does
+TICKS = 1000  # until an arm rests
 
 
 @pytest.fixture
@@ -41,16 +41,12 @@ def viewer() -> Iterator[bik.Viewer]:
 
 
 def settle(viewer: bik.Viewer) -> None:
-    for _ in range(PATIENCE):
-        if not viewer.moves:
-            return
-        time.sleep(0.01)
-    raise AssertionError(f"still under way: {viewer.outcome}")
+    until(lambda: not viewer.moves)
 
 
 def ticks(arm: Arm) -> Iterator[float]:
     """Clearances of the ticks until the arm rests."""
-    for _ in range(PATIENCE):
+    for _ in range(TICKS):
         moves = arm.advance()
         yield float(bik.obstacles.clearance(arm.robot, arm.q, arm.obstacles))
         if not moves:
@@ -223,12 +219,7 @@ def test_results_for_several_tips_are_shown(pair: bik.Viewer) -> None:
     q = pair.q
     plan = bik.plan_point_to_point(PAIR, start_q=q, end_q=PAIR.clip(0.8 * q), limits=bik.Limits(acceleration=5.0))
     pair.show(plan)
-    for _ in range(PATIENCE):
-        if np.abs(pair.q - q).max() > 0.05:
-            break
-        time.sleep(0.005)
-    else:
-        raise AssertionError("the plan is not played")
+    until(lambda: np.abs(pair.q - q).max() > 0.05)
     pair.show(bik.solve(PAIR, dict(zip(PAIR.tips, PAIR.fk(q), strict=True)), start=q))
     np.testing.assert_allclose(pair.q, q, atol=1e-6)
 
@@ -401,7 +392,7 @@ def test_the_newest_request_of_a_source_is_carried_out() -> None:
     for source, word in (("a", "old"), ("b", "kept"), ("a", "new")):
         worker.ask(source, lambda word=word: done.append(word))  # type: ignore[misc]
     worker.start()
-    assert worked.wait(10)
+    worked.wait()
     worker.close()
     assert done == ["kept", "new"]
 
@@ -424,17 +415,17 @@ def test_closing_does_not_wait_for_a_search(viewer: bik.Viewer, monkeypatch: pyt
 
     def search(*_: object, **__: object) -> list[bik.SelfMotion]:
         begun.set()
-        assert closed.wait(30)
+        closed.wait()
         ended.set()
         return []
 
     monkeypatch.setattr(postures, "self_motion", search)
-    viewer._worker.ask("page", viewer._parts._postures._find_self_motion)
-    assert begun.wait(10)
+    viewer._turns.ask("page", viewer._parts._postures._find_self_motion)
+    begun.wait()
     viewer.close()
     assert not ended.is_set()
     closed.set()
-    assert ended.wait(10)
+    ended.wait()
 
 
 def test_a_callback_may_set_and_close(viewer: bik.Viewer) -> None:
@@ -455,10 +446,7 @@ def test_an_error_of_a_callback_is_logged(viewer: bik.Viewer, caplog: pytest.Log
     viewer.on_target(lambda _: 1 / 0)
     viewer.target = BELOW
     settle(viewer)
-    for _ in range(PATIENCE):
-        if caplog.records:
-            break
-        time.sleep(0.01)
+    until(lambda: caplog.records)
     assert caplog.records[0].getMessage() == "an error in the viewer of 'panda'"
     viewer.q = START  # the thread lives
     np.testing.assert_array_equal(viewer.q, START)
@@ -471,16 +459,16 @@ def test_ctrl_c_ends_a_viewer_that_blocks() -> None:
 import signal
 import beetle_ik as bik
 signal.signal(signal.SIGINT, signal.default_int_handler)
+wait = bik.Viewer.wait
+bik.Viewer.wait = lambda viewer: print("waits", flush=True) or wait(viewer)
 bik.view(bik.Robot.named("panda"), port=0, block=True)
 """
     running = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert running.stdout is not None
-    while b"http://127.0.0.1" not in running.stdout.readline():
-        assert running.poll() is None
-    time.sleep(0.5)
+    assert b"waits\n" in running.stdout
     running.send_signal(signal.SIGINT)
     try:
-        _, errors = running.communicate(timeout=20)
+        _, errors = running.communicate()
     finally:
         running.kill()
     assert errors.decode().strip().endswith("KeyboardInterrupt")
@@ -549,12 +537,7 @@ def test_results_are_shown(viewer: bik.Viewer) -> None:
         motion = motion_of(moving)
         assert motion is not None
         end = motion.at(motion.duration)[0]
-        for _ in range(PATIENCE):
-            if np.abs(viewer.q - end).max() < 0.2 * np.abs(START - end).max():
-                break
-            time.sleep(0.005)
-        else:
-            raise AssertionError(f"{moving} is not played")
+        until(lambda end=end: np.abs(viewer.q - end).max() < 0.2 * np.abs(START - end).max())
     assert viewer.obstacles == bik.Scene([TABLE])
 
 

@@ -1,7 +1,6 @@
 """Access to the page of a viewer, and checks of its messages."""
 
 import http.client
-import time
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import urlsplit
@@ -14,13 +13,13 @@ import beetle_ik as bik
 viser = pytest.importorskip("viser", reason="the viewer needs the extra 'view'")
 msgspec = pytest.importorskip("msgspec")
 
+from viewer_turns import until  # noqa: E402
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
 from websockets.sync.client import ClientConnection, connect  # noqa: E402
 
 from beetle_ik.viewing.admission import Admission  # noqa: E402
 
 ROBOT = bik.Robot.planar([0.5, 0.4, 0.3]).with_capsules(radius=0.02)
-PATIENCE = 500  # looks at something that another thread does
 GOOD = {"type": "TransformControlsUpdateMessage", "name": "/target", "wxyz": (1, 0, 0, 0), "owner": ""}
 
 
@@ -63,7 +62,7 @@ def token(viewer: bik.Viewer) -> str:
 
 
 def page(viewer: bik.Viewer, path: str = "/", **headers: str) -> tuple[int, dict[str, str], bytes]:
-    connection = http.client.HTTPConnection(place(viewer), timeout=10)
+    connection = http.client.HTTPConnection(place(viewer))
     connection.putrequest("GET", path, skip_host=True)
     for name, value in ({"Host": place(viewer)} | headers).items():
         connection.putheader(name, value)
@@ -95,12 +94,8 @@ def dragged(x: float, **changes: Any) -> bytes:
     return encoded(**{**GOOD, "position": (x, 0.3, 0.0), **changes})
 
 
-def arrives(viewer: bik.Viewer, x: float) -> bool:
-    for _ in range(PATIENCE):
-        if viewer.target[0, 3] == x:
-            return True
-        time.sleep(0.01)
-    return False
+def arrives(viewer: bik.Viewer, x: float) -> None:
+    until(lambda: viewer.target[0, 3] == x)
 
 
 # --- who may use it ---
@@ -193,7 +188,7 @@ def test_other_servers_of_viser_are_left_alone() -> None:
     viewer.close()
     other = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:
-        connection = http.client.HTTPConnection("127.0.0.1", other.get_port(), timeout=10)
+        connection = http.client.HTTPConnection("127.0.0.1", other.get_port())
         connection.putrequest("GET", "/", skip_host=True)
         connection.putheader("Host", "other.example")
         connection.endheaders()
@@ -245,14 +240,14 @@ def malformed(viewer: bik.Viewer) -> list[bytes | str]:
 
 def test_malformed_messages_change_nothing(viewer: bik.Viewer) -> None:
     viewer.target = (0.7, 0.2, 0.0)
-    assert arrives(viewer, 0.7)
+    arrives(viewer, 0.7)
     before = viewer.follow, len(viewer.obstacles)
     values = [control.value for control in controls(viewer)]
     with joined(viewer) as connection:
         for message in malformed(viewer):
             connection.send(message)
         connection.send(dragged(0.6))
-        assert arrives(viewer, 0.6)
+        arrives(viewer, 0.6)
     np.testing.assert_array_equal(viewer.target[:3, :3], np.eye(3))
     assert (viewer.follow, len(viewer.obstacles)) == before
     texts = [control.value for control in controls(viewer) if isinstance(control.value, str | bool)]
@@ -269,7 +264,7 @@ def test_a_thousand_bad_messages_leave_the_viewer_working(viewer: bik.Viewer, ca
                 torn[place] = random.choice([0, 0x7F, 0x80, 0x90, 0xC0, 0xC1, 0xCB, 0xFF])
             connection.send(bytes(torn) if i % 2 else bytes(torn[: random.integers(len(torn))]))
         connection.send(dragged(0.5))
-        assert arrives(viewer, 0.5)
+        arrives(viewer, 0.5)
     assert np.isfinite(viewer.target).all()
     told = [record for record in caplog.records if "malformed" in record.message]
     assert len(told) == 1
@@ -282,7 +277,7 @@ def test_a_huge_message_ends_its_own_connection_alone(viewer: bik.Viewer) -> Non
             all(connection)  # all that it receives
     with joined(viewer) as connection:
         connection.send(dragged(0.45))
-        assert arrives(viewer, 0.45)
+        arrives(viewer, 0.45)
 
 
 def test_good_values_of_controls_are_taken(viewer: bik.Viewer) -> None:
@@ -291,8 +286,5 @@ def test_good_values_of_controls_are_taken(viewer: bik.Viewer) -> None:
         connection.send(CAMERA)  # from then on the page is a client
         for value in (1, 0.5, slider.max + 1):  # a page sends whole numbers as integers
             connection.send(encoded(type="GuiUpdateMessage", uuid=slider._impl.uuid, updates={"value": value}))
-        for _ in range(PATIENCE):
-            if viewer.q[0] == 0.5:
-                break
-            time.sleep(0.01)
+        until(lambda: viewer.q[0] == 0.5)
     assert viewer.q[0] == slider.value == 0.5

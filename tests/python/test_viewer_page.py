@@ -1,7 +1,7 @@
 """The viewer in a real browser: the mouse, the text of the page, and the state in Python."""
 
 import sys
-import time
+import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,17 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 from pair_of_pandas import pair_of_pandas
+from viewer_turns import until
 
 import beetle_ik as bik
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
-from viewer_pictures import Visitor, chromium, visits
+from viewer_pictures import Visitor, chromium, draw, visits
 
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
-pytestmark = [
-    pytest.mark.skipif(chromium() is None, reason="no chromium or chrome on this machine"),
-    pytest.mark.timeout(180),
-]
+pytestmark = pytest.mark.skipif(chromium() is None, reason="no chromium or chrome on this machine")
 
 START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
 TABLE = bik.obstacles.Box((0.5, 0.0, 0.15), (0.5, 0.8, 0.1))
@@ -135,7 +133,7 @@ def test_a_motion_is_played_and_paused(viewer: bik.Viewer, visitor: Visitor) -> 
     visitor.press("Pause")
     visitor.page.get_by_role("button", name="Play", exact=True).wait_for()
     paused = viewer.q
-    visitor.page.wait_for_timeout(100)
+    draw(visitor.page, times=10)
     np.testing.assert_array_equal(viewer.q, paused)
     visitor.enter(30, lambda: np.abs(viewer.q - START - 0.05).max() < 1e-9)
 
@@ -204,12 +202,12 @@ def test_an_upright_window_shows_the_arm_above_the_controls(browser: Any, viewer
 def test_a_visitor_may_leave_with_the_handle_in_the_hand(viewer: bik.Viewer, visitor: Visitor) -> None:
     visitor.page.mouse.move(*visitor.pixel(viewer.target[:3, 3]))
     visitor.page.mouse.down()
+    left = threading.Event()
+    viewer.server.on_client_disconnect(lambda _: left.set())
     visitor.page.close()  # the last test of this page: to open another takes seconds
     viewer.target = viewer.target[:3, 3] - [0.0, 0.0, 0.1]
-    for _ in range(1000):
-        if not viewer.moves and not viewer.server.get_clients():
-            break
-        time.sleep(0.01)
+    left.wait()
+    until(lambda: not viewer.moves)
     assert viewer.outcome is not None
     assert viewer.outcome.success
 

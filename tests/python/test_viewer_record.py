@@ -1,7 +1,6 @@
 """Recordings of the viewer: the contents of the file, and its playback in a browser."""
 
 import sys
-import time
 from collections.abc import Iterator
 from itertools import repeat
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from viewer_turns import until
 
 import beetle_ik as bik
 from beetle_ik.viewing import write_player
@@ -16,7 +16,7 @@ from beetle_ik.viewing.camera import FIELD, _corners, _fitting
 
 sys.path.append(str(Path(__file__).parents[2] / "tools"))
 from check_site import served
-from viewer_pictures import chromium, hide_notes, visits
+from viewer_pictures import chromium, draw, hide_notes, visits
 
 ROBOT = bik.Robot.named("panda").with_capsules(radius=0.06)
 START = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
@@ -79,11 +79,7 @@ def test_a_recording_leaves_the_arm_where_it_was(viewer: bik.Viewer, tmp_path: P
     viewer.show(MOTION)
     viewer.record(tmp_path / "motion.viser")
     first = viewer.q
-    for _ in range(1000):
-        if not np.array_equal(viewer.q, first):
-            return
-        time.sleep(0.01)
-    raise AssertionError("the motion does not go on")
+    until(lambda: not np.array_equal(viewer.q, first))
 
 
 def test_a_chosen_camera_is_recorded_and_any_other_comes_near(viewer: bik.Viewer, tmp_path: Path) -> None:
@@ -243,24 +239,20 @@ def plays(browser: Any, address: str, *, width: int = 320, height: int = 240) ->
     clock.wait_for()
     hide_notes(page)
     first = clock.input_value()
-    for _ in range(PATIENCE // 50):
-        if clock.input_value() != first and colours(page) > 100:
-            break
-        page.wait_for_timeout(50)
-    else:
-        raise AssertionError(f"{colours(page)} colours at {clock.input_value()}")
+    while clock.input_value() == first or colours(page) <= 100:
+        draw(page)
     page.close()
     assert not complaints
 
 
-@pytest.mark.timeout(300)
-def test_a_browser_plays_a_recorded_page_without_server(browser: Any, recordings: Path) -> None:
+@pytest.mark.parametrize(("width", "height"), [(320, 240), (240, 400)])
+def test_a_browser_plays_a_recorded_page_without_server(
+    browser: Any, recordings: Path, width: int, height: int
+) -> None:
     assert (recordings / "motion.html").stat().st_size < 3e6
-    plays(browser, (recordings / "motion.html").as_uri())
-    plays(browser, (recordings / "motion.html").as_uri(), width=240, height=400)
+    plays(browser, (recordings / "motion.html").as_uri(), width=width, height=height)
 
 
-@pytest.mark.timeout(300)
 def test_a_player_plays_recordings_of_its_site_alone(browser: Any, recordings: Path) -> None:
     with served(recordings) as site, served(recordings) as elsewhere:
         plays(browser, f"{site}/player.html?playbackPath=motion.viser")
@@ -268,10 +260,6 @@ def test_a_player_plays_recordings_of_its_site_alone(browser: Any, recordings: P
         refused: list[str] = []
         page.on("console", lambda message: refused.append(message.text))
         page.goto(f"{site}/player.html?playbackPath={elsewhere}/motion.viser")
-        for _ in range(300):
-            if any("Content Security Policy" in text for text in refused):
-                break
-            page.wait_for_timeout(50)
-        else:
-            raise AssertionError(refused)
+        while not any("Content Security Policy" in text for text in refused):
+            draw(page)
         page.close()

@@ -1,14 +1,14 @@
 """Tools of the viewer's page: plans, programs, sizes, files of scenes, slices of maps."""
 
 import itertools
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from pair_of_pandas import pair_of_pandas
+from viewer_turns import until
 
 import beetle_ik as bik
 from beetle_ik.viewing.incoming import Incoming
@@ -24,14 +24,6 @@ POST = bik.obstacles.Cylinder((0.45, 0.1, 0.5), (0, 0, 1), 0.03, 0.5)
 def viewer() -> Iterator[bik.Viewer]:
     with bik.view(PANDA, START, obstacles=[TABLE, POST], port=0) as viewer:
         yield viewer
-
-
-def until(happened: Callable[[], object]) -> None:
-    for _ in range(2000):
-        if happened():
-            return
-        time.sleep(0.01)
-    raise AssertionError("it never happens")
 
 
 def control(viewer: bik.Viewer, label: str) -> Any:

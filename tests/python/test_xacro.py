@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beetle_ik as bik
-from beetle_ik._xacro import expand
+from beetle_ik.robot_files.xacro import expand
 
 pytest.importorskip("xacro", reason="xacro files need the extra 'robots'")
 

@@ -160,7 +160,7 @@ fn matrices_that_are_no_poses_are_refused() {
     assert_eq!(says(matrix), "target must be finite, but entry (0, 3) is NaN");
     let last_row = "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 1.0, 1.0, 2.0].into())), last_row);
-    let scaled = "target is not a rigid transform: R'R differs from the identity by 3.000e0";
+    let scaled = "target is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 2.0, 1.0, 1.0].into())), scaled);
     let mirrored = "target is not a rigid transform: its rotation is a reflection (determinant -1)";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, -1.0, 1.0, 1.0].into())), mirrored);

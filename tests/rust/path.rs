@@ -292,7 +292,7 @@ fn wrong_references_are_named() {
         ),
         (
             Reference::new(0.1, rows, Some(vec![Matrix3::identity(), scaled])),
-            "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0",
+            "path rotation of row 1 is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'",
         ),
     ] {
         assert_eq!(message(result), expected);

@@ -3,7 +3,7 @@
 //! PyO3 reads arguments before any function of this library runs. Its errors ("'bool' object is not an instance of
 //! 'str'") name neither the argument nor the value, and it offers no hook to replace them. So each function, method and
 //! constructor of the module is wrapped in a gate, which calls it and, if the arguments did not fit, lets
-//! `beetle_ik._calls` word the error. The usual path costs a few nanoseconds.
+//! `beetle_ik.calls.wording` word the error. The usual path costs a few nanoseconds.
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 

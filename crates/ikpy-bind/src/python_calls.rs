@@ -17,38 +17,38 @@ pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'p
     call(result.py(), "beetle_ik.plot", function, (result,))
 }
 
-/// Calls `beetle_ik._html.<function>(value)`, for notebooks.
+/// Calls `beetle_ik.figures.notebook.<function>(value)`, for notebooks.
 pub fn html<'py>(value: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
-    call(value.py(), "beetle_ik._html", function, (value,))
+    call(value.py(), "beetle_ik.figures.notebook", function, (value,))
 }
 
-/// Calls `beetle_ik.export.<function>(trajectory, file, ...)`.
+/// Calls `beetle_ik.files.trajectories.<function>(trajectory, file, ...)`.
 pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyResult<()> {
-    call(py, "beetle_ik.export", function, arguments).map(|_| ())
+    call(py, "beetle_ik.files.trajectories", function, arguments).map(|_| ())
 }
 
-/// Calls `beetle_ik.export.<function>(file)`.
+/// Calls `beetle_ik.files.trajectories.<function>(file)`.
 pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    call(file.py(), "beetle_ik.export", function, (file,))
+    call(file.py(), "beetle_ik.files.trajectories", function, (file,))
 }
 
-/// Calls `beetle_ik.<module>.robot(...)`, which makes a robot by means of another library.
+/// Calls `beetle_ik.robot_files.<module>.robot(...)`, which makes a robot by means of another library.
 pub fn robot<'py>(
     py: Python<'py>,
     module: &str,
     arguments: impl pyo3::call::PyCallArgs<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    call(py, &format!("beetle_ik.{module}"), "robot", arguments)
+    call(py, &format!("beetle_ik.robot_files.{module}"), "robot", arguments)
 }
 
-/// Calls `beetle_ik._descriptions.named(name, unknown)`, which makes a robot that is not built in.
+/// Calls `beetle_ik.robot_files.descriptions.named(name, unknown)`, which makes a robot that is not built in.
 pub fn described<'py>(py: Python<'py>, name: &str, unknown: String) -> PyResult<Bound<'py, PyAny>> {
-    call(py, "beetle_ik._descriptions", "named", (name, unknown))
+    call(py, "beetle_ik.robot_files.descriptions", "named", (name, unknown))
 }
 
-/// Calls `beetle_ik._xacro.expand(path, package_dirs, trusted)`.
+/// Calls `beetle_ik.robot_files.xacro.expand(path, package_dirs, trusted)`.
 pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted: bool) -> PyResult<String> {
-    call(py, "beetle_ik._xacro", "expand", (path, package_dirs, trusted))?.extract()
+    call(py, "beetle_ik.robot_files.xacro", "expand", (path, package_dirs, trusted))?.extract()
 }
 
 /// Logs a long call at level INFO under "beetle_ik".
@@ -58,17 +58,17 @@ pub fn log(py: Python<'_>, message: String) -> PyResult<()> {
 
 /// Makes a progress bar on the terminal.
 pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-    call(py, "beetle_ik._progress", "Bar", ())
+    call(py, "beetle_ik.calls.progress", "Bar", ())
 }
 
-/// Calls `beetle_ik._calls.misfit(argument, value, error)`, which words the error for a value of the wrong type.
+/// Calls `beetle_ik.calls.wording.misfit(argument, value, error)`, which words the error for a value of the wrong type.
 pub fn misfit(argument: &str, value: &Bound<'_, PyAny>, error: &PyErr) -> PyResult<String> {
     let py = value.py();
-    call(py, "beetle_ik._calls", "misfit", (argument, value, error.value(py)))?.extract()
+    call(py, "beetle_ik.calls.wording", "misfit", (argument, value, error.value(py)))?.extract()
 }
 
-/// Calls `beetle_ik._calls.worded(error, call, arguments, keywords)`, which words the error for arguments that do not
-/// fit.
+/// Calls `beetle_ik.calls.wording.worded(error, call, arguments, keywords)`, which words the error for arguments
+/// that do not fit.
 pub fn worded<'py>(
     py: Python<'py>,
     error: &PyErr,
@@ -77,5 +77,5 @@ pub fn worded<'py>(
     keywords: &Bound<'py, PyDict>,
 ) -> PyResult<PyErr> {
     let error = error.value(py);
-    self::call(py, "beetle_ik._calls", "worded", (error, call, arguments, keywords)).map(PyErr::from_value)
+    self::call(py, "beetle_ik.calls.wording", "worded", (error, call, arguments, keywords)).map(PyErr::from_value)
 }

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from .._core import BeetleIkError, InvalidInputError, __version__, _instructions
-from .._needs import library
-from .._progress import reports
-from .._text import counted
+from ..calls.progress import reports
+from ..calls.text import counted
+from ..installed.needs import library
 from .fingerprint import digest
 from .store import Layout, Store
 

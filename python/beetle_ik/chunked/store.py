@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .._core import BeetleIkError, InvalidInputError
-from .._needs import library
-from .._text import listed
+from ..calls.text import listed
+from ..installed.needs import library
 from .fingerprint import digest, sealed
 
 if TYPE_CHECKING:

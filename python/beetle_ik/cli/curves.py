@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import InvalidInputError, Robot, paths
 from .. import Path as ReferencePath
-from .._csv import read_table
+from ..files.csv_table import read_table
 
 _DEFAULT_DURATION = 30.0  # s, as in the circle of the BAS paper
 

@@ -3,7 +3,7 @@
 import typer
 
 from .. import Robot, solve
-from .._versions import versions
+from ..installed.versions import versions
 from .options import AsJson
 from .show import print_json, print_pairs
 

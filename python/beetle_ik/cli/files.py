@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from .. import Trajectory
-from .._files import whole_file, whole_folder
+from ..files.whole import whole_file, whole_folder
 from .show import to_json
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import typer
 import beetle_ik as bik
 
 from .. import InvalidInputError, Robot, Sinusoid
-from .._descriptions import is_description
+from ..robot_files.descriptions import is_description
 
 if TYPE_CHECKING:
     from .._core import _Single

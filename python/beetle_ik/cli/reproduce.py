@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from .. import experiments
-from .._progress import Bar
-from .._text import counted
+from ..calls.progress import Bar
+from ..calls.text import counted
 from ..report import Provenance, Report, Verdict, described
 from .options import AsJson, Seed
 from .show import print_json, print_table

@@ -8,7 +8,7 @@ import typer
 from numpy.typing import NDArray
 
 from .. import TrackResult
-from .._text import counted
+from ..calls.text import counted
 from .files import print_files
 from .show import listed, print_pairs
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .. import _core
-from .._arguments import read_once, require
-from .._calls import worded_call
 from .._core import BatchSolution, InvalidInputError, Limits, Robot, Status, Stop
-from .._text import counted
+from ..calls.arguments import read_once, require
+from ..calls.text import counted
+from ..calls.wording import worded_call
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path

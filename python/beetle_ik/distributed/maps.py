@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from .._calls import worded_call
+from ..calls.wording import worded_call
 from ..mapping.compute import computed
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arguments import require
 from .._core import InvalidInputError, Robot
-from .._text import listed
+from ..calls.arguments import require
+from ..calls.text import listed
 
 Matrix: TypeAlias = NDArray[np.float64]
 Kind: TypeAlias = Literal["revolute", "continuous", "prismatic"]

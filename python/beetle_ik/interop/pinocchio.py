@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
-from .._needs import library
-from .._text import listed
+from ..calls.arguments import require
+from ..calls.text import listed
+from ..installed.needs import library
 from .chain import ChainReader, Kind, Link, Motion, only_leaf, parts
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Robot, pose
-from .._needs import library
+from ..installed.needs import library
 from .chain import ChainReader, Kind, Matrix, Motion, parts
 
 if TYPE_CHECKING:

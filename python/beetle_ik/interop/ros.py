@@ -5,10 +5,10 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from .._arguments import require_text
 from .._core import InvalidInputError, Trajectory
-from .._derivatives import has_continuous_acceleration
-from .._files import whole_file
+from ..calls.arguments import require_text
+from ..files.derivatives import has_continuous_acceleration
+from ..files.whole import whole_file
 from .samples import samples
 
 _NANO = 1_000_000_000

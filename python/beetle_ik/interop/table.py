@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import Trajectory
-from .._needs import library
+from ..installed.needs import library
 from .samples import samples
 
 if TYPE_CHECKING:

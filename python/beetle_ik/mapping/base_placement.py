@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._arguments import require
-from .._calls import worded_call
 from .._core import InvalidInputError, Obstacle, Robot, pose, solve_batch
-from .._scene import Scene
-from .._text import counted
+from ..calls.arguments import require
+from ..calls.text import counted
+from ..calls.wording import worded_call
+from ..scenes import Scene
 from .compute import reachability
 from .map_file import require_same_robot
 from .reachability_map import ReachabilityMap
@@ -56,7 +56,7 @@ class BasePlacement:
         """Shows the place in a notebook."""
         from html import escape
 
-        from .._html import shown, table
+        from ..figures.notebook import shown, table
 
         yaw = float(np.arctan2(self.pose[1, 0], self.pose[0, 0]))
         rows = [

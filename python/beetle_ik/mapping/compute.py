@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
-from .._calls import worded_call
 from .._core import MapGrid, Robot, map_chunks
-from .._scene import Scene
+from ..calls.arguments import require
+from ..calls.wording import worded_call
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path
+from ..scenes import Scene
 from .map_file import QUALITY, attached
 from .reachability_map import ReachabilityMap
 

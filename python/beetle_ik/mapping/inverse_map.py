@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._arguments import require_count
 from .._core import InvalidInputError, pose
+from ..calls.arguments import require_count
 from .map_figure import MappedVoxels, drawn_on_floor
 from .rigid_poses import inverted, one_target, rigid
 
@@ -91,7 +91,7 @@ class InverseReachabilityMap:
 
     def _repr_html_(self) -> str:
         """Shows the map in a notebook."""
-        from .._html import reachability_map
+        from ..figures.notebook import reachability_map
 
         return f"<b>InverseReachabilityMap</b>: where may the base stand?<div>{reachability_map(self.map)}</div>"
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from .._arguments import require_text
 from .._core import InvalidInputError, Robot
-from .._style import BLACK, VERMILION, new_figure, style
+from ..calls.arguments import require_text
+from ..figures.style import BLACK, VERMILION, new_figure, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import require
 from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
-from .._files import path_of, whole_file
+from ..calls.arguments import require
 from ..chunked.fingerprint import sealed
 from ..chunked.finished import read_finished
-from ..export import read_arrays
+from ..files.trajectories import read_arrays
+from ..files.whole import path_of, whole_file
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .._arguments import require
 from .._core import MapGrid, Robot
+from ..calls.arguments import require
 from .inverse_map import InverseReachabilityMap
 from .map_figure import drawn
 from .map_file import QUALITY, read, require_results, write
@@ -130,7 +130,7 @@ class ReachabilityMap:
 
     def _repr_html_(self) -> str:
         """Shows the map in a notebook."""
-        from .._html import reachability_map
+        from ..figures.notebook import reachability_map
 
         return reachability_map(self)
 

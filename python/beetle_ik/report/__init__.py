@@ -12,7 +12,7 @@
 `beetle_ik.experiments` makes them; `write_report` writes one as a self-contained HTML page beside CSV and PNG files.
 """
 
-from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
+from ..figures.style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
 from .claim import Check, Claim, Printed, Verdict, not_given
 from .content import Block, CarriedOver, Cell, Column, Figure, Part, Report, Section, Spread, Table, Value
 from .drawing import draw_arm_in_space, draw_error, draw_velocities, draw_velocities_by_joint, drawing, scale_alike

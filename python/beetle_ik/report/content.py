@@ -15,7 +15,7 @@ from .claim import Check, Claim, Printed
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-    from .._frames import Frames
+    from ..figures.frames import Frames
 
 _FILE_STEM = re.compile(r"[a-z0-9_]+")
 

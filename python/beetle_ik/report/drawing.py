@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._style import FORBIDDEN, VERMILION, line, style
+from ..figures.style import FORBIDDEN, VERMILION, line, style
 from .log_axes import label_log_axes
 from .numbers import number
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .._core import InvalidInputError
-from .._files import whole_folder
+from ..files.whole import whole_folder
 
 MANIFEST = "report.json"
 

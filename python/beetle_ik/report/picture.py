@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-    from .._frames import Frames
+    from ..figures.frames import Frames
 
 
 def png(drawing: Drawing, dpi: int) -> bytes:

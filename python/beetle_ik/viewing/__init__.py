@@ -2,6 +2,7 @@
 
     viewer      the public class: joins the parts below, and answers Python
     checks      checks of its arguments
+    turns       changes of the state by its thread and by Python, one at a time
     worker      the only thread that moves the arm
     address     a free port
     admission   access to the page

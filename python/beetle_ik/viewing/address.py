@@ -5,8 +5,8 @@ import os
 import socket
 from numbers import Integral
 
-from .._arguments import require_text
 from .._core import InvalidInputError
+from ..calls.arguments import require_text
 
 _PORTS = 65536
 _TRIED = 100

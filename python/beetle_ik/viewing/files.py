@@ -6,7 +6,7 @@ import html
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from .._scene_json import obstacles_in, scene_text
+from ..scenes.json_file import obstacles_in, scene_text
 from .planning import ACCELERATION
 from .program import program
 

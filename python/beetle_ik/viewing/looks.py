@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .._core import BeetleIkError
-from .._needs import library
-from .._solids import solids
-from .._style import LINKS, rgb
-from .._surface import simplified
-from .._text import counted
+from ..calls.text import counted
+from ..figures.solids import solids
+from ..figures.style import LINKS, rgb
+from ..figures.surface import simplified
+from ..installed.needs import library
 
 if TYPE_CHECKING:
     import trimesh

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import obstacles as shapes
 from .._core import pose
-from .._style import ORANGE, rgb
+from ..figures.style import ORANGE, rgb
 from .displaced import displaced
 from .looks import soup
 from .page import set_value

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
-from .._style import BLACK, rgb
+from ..figures.style import BLACK, rgb
 from ..mapping import ReachabilityMap
 from .arm import DT
 from .camera import Camera

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._style import BLUE, PALETTE, rgb
+from ..figures.style import BLUE, PALETTE, rgb
 from .page import set_value
 
 if TYPE_CHECKING:

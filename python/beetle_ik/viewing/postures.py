@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import self_motion, solve_all
-from .._style import GREEN, rgb
-from .._text import counted
+from ..calls.text import counted
+from ..figures.style import GREEN, rgb
 from .arm import QUICKLY
 from .page import set_value
 from .surfaces import Links, wxyz

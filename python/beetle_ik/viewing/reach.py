@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import InvalidInputError
-from .._style import BLUE, ORANGE, rgb
+from ..figures.style import BLUE, ORANGE, rgb
 from ..mapping.map_figure import cloud
 from .page import set_value
 from .surfaces import wxyz

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InvalidInputError
-from .._files import path_of, whole_file
-from .._needs import library
+from ..files.whole import path_of, whole_file
+from ..installed.needs import library
 from .camera import FIELD
 
 if TYPE_CHECKING:

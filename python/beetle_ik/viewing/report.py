@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import Solution, Status
-from .._style import BLUE, VERMILION, rgb
+from ..figures.style import BLUE, VERMILION, rgb
 
 if TYPE_CHECKING:
     from .._core import Nearest

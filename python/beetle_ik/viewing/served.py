@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from .._core import BeetleIkError
-from .._needs import library
+from ..installed.needs import library
 from .admission import Admission
 from .incoming import Incoming
 

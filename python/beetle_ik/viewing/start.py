@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Obstacle, Robot, clearance
-from .._text import counted
+from ..calls.text import counted
 
 _THICKNESS = 0.04  # radius of capsules, as a fraction of the length of the arm
 _THINNEST = 0.005  # m

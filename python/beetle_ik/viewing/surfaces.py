@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import Capsule, Ellipsoid, Sphere
-from .._style import LINKS, SKY, rgb
+from ..figures.style import LINKS, SKY, rgb
 from .looks import soup
 
 if TYPE_CHECKING:

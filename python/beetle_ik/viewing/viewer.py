@@ -4,30 +4,25 @@ from __future__ import annotations
 
 import atexit
 import html
-import logging
-import threading
-import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
-from .._arguments import require
-from .._calls import worded_call
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
-from .._needs import library
-from .._scene import Scene
+from ..calls.arguments import require
+from ..calls.wording import worded_call
+from ..installed.needs import library
+from ..scenes import Scene
 from . import start
 from .address import free_port
 from .admission import Admission
-from .arm import DT, FOLLOWS, Arm
+from .arm import FOLLOWS, Arm
 from .checks import configuration, inside_limits, path_points, target_poses
 from .looks import drawn_looks, looks
 from .page import Page
 from .parts import Parts
 from .recording import recording_file, take, write_recording
 from .served import serve
-from .worker import Request, Worker
+from .turns import Turns
 
 if TYPE_CHECKING:
     import os
@@ -43,10 +38,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Shown = Trajectory | Plan | TrackResult | ModelFreeResult | Solution | SolutionSet | SelfMotion | ReachabilityMap
 
-_log = logging.getLogger(__name__)
-
 _NOTEBOOK_HEIGHT = 600  # pixels
-_LONGEST_TICK = 0.1  # s: longest time by which a motion advances, after a rest or on a busy machine
 _WAKE = 0.1  # s: interval of checks for Ctrl-C, which does not wake a waiting thread on Windows
 
 
@@ -132,20 +124,15 @@ class Viewer:
         self.url = admission.address(host, port)
         if admission.token is not None:
             print(f"Other machines reach this viewer: {self.url}")
-        self._lock = threading.RLock()
-        self._closed, self._first_close = threading.Event(), threading.Lock()
-        self._callbacks: list[Callable[[Any], object]] = []
         self._arm = Arm(self.robot, begin, scene)
-        self._told = self._arm.targets
-        self._moves = self._records = False
-        self._last_tick = time.monotonic()
-        self._worker = Worker(self._work, DT)
+        self._turns = Turns(self.robot.name, self._arm)
+        self._records = False
         try:
-            page = Page(self.server, self._arm, self._worker.ask, start.length(self.robot))
+            page = Page(self.server, self._arm, self._turns.ask, start.length(self.robot))
             self._parts = Parts(page, seen, [*missing, *notes])
             if line is not None:
                 self._parts.draw_path(line)
-            self._worker.start()
+            self._turns.start(self._parts)
         except BaseException:  # Ctrl-C too
             self.server.stop()
             raise
@@ -166,7 +153,8 @@ class Viewer:
     @q.setter
     def q(self, q: ArrayLike) -> None:
         checked = configuration(self.robot, q) if self._arm.follow == "off" else inside_limits(self.robot, q)
-        self._change(lambda: self._arm.put(checked))
+        with self._turns.between():
+            self._arm.put(checked)
 
     @property
     def target(self) -> Any:
@@ -180,7 +168,8 @@ class Viewer:
     @target.setter
     def target(self, target: ArrayLike | Mapping[str, ArrayLike]) -> None:
         checked = target_poses(target, self._arm.targets)
-        self._change(lambda: setattr(self._arm, "targets", checked))
+        with self._turns.between():
+            self._arm.targets = checked
 
     @property
     def obstacles(self) -> Scene:
@@ -190,7 +179,8 @@ class Viewer:
     @obstacles.setter
     def obstacles(self, obstacles: Iterable[Obstacle]) -> None:
         scene = list(Scene(obstacles))
-        self._change(lambda: setattr(self._arm, "obstacles", scene))
+        with self._turns.between():
+            self._arm.obstacles = scene
 
     @property
     def follow(self) -> Follow:
@@ -206,7 +196,8 @@ class Viewer:
         if follow not in FOLLOWS:
             known = ", ".join(map(repr, FOLLOWS))
             raise InvalidInputError(f"follow must be one of {known}, got {follow!r:.60}")
-        self._change(lambda: setattr(self._arm, "follow", follow))
+        with self._turns.between():
+            self._arm.follow = follow
 
     @property
     def outcome(self) -> Step | Solution | None:
@@ -216,7 +207,7 @@ class Viewer:
     @property
     def moves(self) -> bool:
         """Whether the arm is moving to its target, or a motion is played back."""
-        return self._moves
+        return self._turns.moves
 
     def show(self, result: Shown) -> None:
         """Shows a result: plays a motion, puts the arm at a solution, shows several as ghosts, or a slice of a map.
@@ -231,7 +222,8 @@ class Viewer:
         Raises:
             InvalidInputError: another type, or the result of a robot with another number of joints.
         """
-        self._change(lambda: self._parts.show(result))
+        with self._turns.between():
+            self._parts.show(result)
 
     def to_python(self) -> str:
         """Returns a program that recreates the state of the page, like its button "Copy as Python".
@@ -240,7 +232,7 @@ class Viewer:
         obstacles, and plans from the configuration to the target. After a plan made on the page, it uses the start of
         that plan.
         """
-        with self._lock:
+        with self._turns.lock:
             return self._parts.program.text()
 
     def record(self, file: str | os.PathLike[str], frames: Iterable[float] | None = None) -> None:
@@ -262,13 +254,13 @@ class Viewer:
         path = recording_file(file)
         if frames is not None:
             require("frames", frames, Iterable)
-        with self._changing():
+        with self._turns.between():
             if self._records:
                 raise BeetleIkError("record: frames must not record")
             self._records = True
             try:
                 shown = self._parts.playback.frames() if frames is None else frames
-                recorded = take(self.server, self._parts, shown, self._pass)
+                recorded = take(self.server, self._parts, shown, self._turns.pass_time)
             finally:
                 self._records = False
         write_recording(path, self.robot.name, recorded)
@@ -280,78 +272,21 @@ class Viewer:
         """
         if not callable(callback):
             raise InvalidInputError(f"callback must be a function of the target, got {callback!r:.60}")
-        self._callbacks.append(callback)
+        self._turns.callbacks.append(lambda: callback(self.target))
 
     def wait(self) -> None:
         """Waits until the viewer is closed. Ctrl-C closes it."""
         try:
-            while not self._closed.wait(_WAKE):
+            while not self._turns.closed.wait(_WAKE):
                 pass
         finally:
             self.close()
 
     def close(self) -> None:
         """Ends the page and its threads. A closed viewer keeps its state; a second call does nothing."""
-        if not self._first_close.acquire(blocking=False):  # never released
-            return
-        self._closed.set()
-        atexit.unregister(self.close)
-        self._worker.close()
-        self.server.stop()
-
-    def _change(self, change: Callable[[], None]) -> None:
-        """Changes the state from Python, and shows it."""
-        with self._changing():
-            change()
-
-    @contextmanager
-    def _changing(self) -> Iterator[None]:
-        """Locks the state for the block, and shows the result."""
-        if self._closed.is_set():
-            raise BeetleIkError(f"the viewer of '{self.robot.name}' is closed: bik.view opens another one")
-        with self._lock:
-            yield
-            self._moves = True  # corrected at the next tick
-            self._parts.refresh()
-        self._worker.ask("changed", lambda: None)
-
-    def _pass(self, seconds: float) -> None:
-        """Moves the arm on by a time (s), in a recording."""
-        self._moves = self._parts.pass_time(seconds)
-
-    def _work(self, requests: Collection[Request]) -> bool:
-        """Carries out requests, moves the arm on by a tick, and shows the result; returns whether it still moves."""
-        with self._lock:
-            now = time.monotonic()
-            elapsed, self._last_tick = min(now - self._last_tick, _LONGEST_TICK), now
-            if requests:
-                self._parts.report.problem = ""
-            for request in requests:
-                self._guarded(request)
-            if self._closed.is_set():  # meanwhile
-                return False
-            self._moves = bool(self._guarded(lambda: self._parts.advance(elapsed)))
-            self._guarded(partial(self._parts.refresh, moving=self._moves))
-            targets = self._arm.targets
-        if targets is not self._told:
-            self._told = targets
-            for callback in self._callbacks:
-                self._guarded(partial(callback, self.target))
-        return self._moves
-
-    def _guarded(self, action: Callable[[], object]) -> object:
-        """Carries out an action; its exceptions are shown on the page, and do not end the thread."""
-        try:
-            return action()
-        except BeetleIkError as error:
-            problem = str(error)
-        except Exception as error:  # raised by a callback
-            if self._closed.is_set():
-                return None  # no page is left to show the error
-            _log.exception("an error in the viewer of '%s'", self.robot.name)
-            problem = f"{type(error).__name__}: {error}"
-        self._parts.report.problem = problem
-        return None
+        if self._turns.end():
+            atexit.unregister(self.close)
+            self.server.stop()
 
     def _repr_html_(self) -> str:
         """Shows the page inline in a notebook."""
@@ -360,7 +295,7 @@ class Viewer:
 
     def __repr__(self) -> str:
         """Names the robot and the address."""
-        state = "closed" if self._closed.is_set() else f"at {self.url}"
+        state = "closed" if self._turns.closed.is_set() else f"at {self.url}"
         return f"<Viewer of '{self.robot.name}', {state}>"
 
     def __enter__(self) -> Self:

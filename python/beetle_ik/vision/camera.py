@@ -8,8 +8,8 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arguments import require
 from .._core import InvalidInputError, Robot
+from ..calls.arguments import require
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,10 +16,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arguments import require_one_tip
-from .._calls import worded_call
 from .._core import InvalidInputError, Robot
-from .._needs import library
+from ..calls.arguments import require_one_tip
+from ..calls.wording import worded_call
+from ..installed.needs import library
 from .camera import Camera, check_planar, checked, distance_to_links, numbers
 from .render import evenly, outline
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arguments import require_count
 from .._core import InvalidInputError, Robot
-from .._needs import library
+from ..calls.arguments import require_count
+from ..installed.needs import library
 from .camera import Camera, check_planar, checked, distance_to_links, numbers
 
 

@@ -14,12 +14,13 @@ from . import (
     searching,
     several,
     solving,
+    streams,
     tracking,
     xacro_files,
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, motion, clearance, readers, xacro_files),
+    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
     *(calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}

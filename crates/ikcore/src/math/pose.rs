@@ -5,8 +5,14 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuater
 use super::Pose;
 use crate::error::{Error, Result, require_finite};
 
-/// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation.
-const ORTHOGONALITY_TOLERANCE: f64 = 1e-6;
+/// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation: that of three decimals.
+const ORTHOGONALITY_TOLERANCE: f64 = 2e-3;
+
+/// Deviation up to which Gram-Schmidt finds the nearest rotation but for rounding.
+const GRAM_SCHMIDT: f64 = 1e-6;
+
+/// Newton steps to the nearest rotation; each squares the deviation.
+const NEWTON_STEPS: usize = 3;
 
 /// Builds a transform from its parts; `rotation` must be a rotation matrix.
 pub fn from_parts(translation: [f64; 3], rotation: Matrix3<f64>) -> Pose {
@@ -92,7 +98,7 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
 ///
 /// # Errors
 /// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation is not
-/// orthonormal to 1e-6 or is a reflection. Deviations within 1e-6 are orthonormalised.
+/// orthonormal to 2e-3 or is a reflection. A matrix of three decimals is taken, as the nearest rotation.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     check_matrix(what, matrix).map(|()| from_checked(matrix))
 }
@@ -112,7 +118,8 @@ pub fn check_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<()> {
     let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
     let deviation = (rotation.transpose() * rotation - Matrix3::identity()).amax();
     if deviation > ORTHOGONALITY_TOLERANCE {
-        return Err(not_rigid(format!("R'R differs from the identity by {deviation:.3e}")));
+        let remedy = "the nearest rotation is U V' of its singular value decomposition U S V'";
+        return Err(not_rigid(format!("R'R differs from the identity by {deviation:.3e}; {remedy}")));
     }
     if rotation.determinant() < 0.0 {
         return Err(not_rigid("its rotation is a reflection (determinant -1)".into()));
@@ -128,11 +135,50 @@ pub fn from_checked(matrix: &Matrix4<f64>) -> Pose {
     from_parts(translation.into(), orthonormalized(rotation))
 }
 
-/// Applies Gram-Schmidt to a matrix that is a rotation up to rounding; an exact rotation is unchanged.
+/// Returns the nearest rotation to a matrix that is one up to rounding; an exact rotation is unchanged.
 #[inline]
 fn orthonormalized(r: Matrix3<f64>) -> Matrix3<f64> {
+    let r = if (r.transpose() * r - Matrix3::identity()).amax() > GRAM_SCHMIDT { polar(r) } else { r };
     let x = r.column(0).normalize();
     let y = r.column(1) - x * x.dot(&r.column(1));
     let y = y.normalize();
     Matrix3::from_columns(&[x, y, x.cross(&y)])
+}
+
+/// Returns the orthogonal factor of the polar decomposition, the nearest rotation, by Newton's iteration (Higham 1986).
+#[cold]
+fn polar(mut r: Matrix3<f64>) -> Matrix3<f64> {
+    for _ in 0..NEWTON_STEPS {
+        let Some(inverse) = r.try_inverse() else { break };
+        r = 0.5 * (r + inverse.transpose());
+    }
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_of_three_decimals_is_taken_as_the_nearest_rotation() {
+        for (angle, decimals) in [(0.3, 1e3_f64), (1.1, 1e3), (2.7, 1e4), (-0.9, 1e5)] {
+            let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, angle, -0.4));
+            let exact = Rotation3::from_axis_angle(&axis, angle).into_inner();
+            let rounded = exact.map(|entry| (entry * decimals).round() / decimals);
+            let taken = from_rotation_matrix("R", rounded, [0.0; 3]).unwrap().rotation.into_inner();
+            let svd = rounded.svd(true, true);
+            let nearest = svd.u.unwrap() * svd.v_t.unwrap();
+            assert!((taken - nearest).amax() < 1e-14, "{}", taken - nearest);
+            assert!((taken.transpose() * taken - Matrix3::identity()).amax() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_matrix_of_two_decimals_is_no_rotation() {
+        let rounded = Matrix3::new(0.99, -0.16, 0.0, 0.16, 0.99, 0.0, 0.0, 0.0, 1.0);
+        let error = from_rotation_matrix("R", rounded, [0.0; 3]).unwrap_err();
+        let expected = "R is not a rigid transform: R'R differs from the identity by 5.700e-3; \
+            the nearest rotation is U V' of its singular value decomposition U S V'";
+        assert_eq!(error.to_string(), expected);
+    }
 }

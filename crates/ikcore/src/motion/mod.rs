@@ -16,7 +16,7 @@
 //! | `noise_level` | noise of a sequence of samples, robust to jumps |
 //! | `goal_scales` | largest steps and changes, in which goals are measured |
 //! | `goal_memory` | how many samples of a noisy goal to average |
-//! | `goal_gains` | how much a sample corrects a goal |
+//! | `goal_fit` | weighted least squares of a line or a parabola through samples at any times |
 //! | `moving_goal` | the goal configuration as a moving point: position, step and change from noisy samples |
 //! | `pursuit` | the change of each joint towards a moving goal |
 //! | `arm_state` | [`ArmState`]: positions, velocities and accelerations of all joints |
@@ -27,7 +27,7 @@ mod admissible;
 mod arm_state;
 mod bracket;
 mod braking;
-mod goal_gains;
+mod goal_fit;
 mod goal_memory;
 mod goal_scales;
 mod joint_state;

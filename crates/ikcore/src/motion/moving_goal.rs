@@ -1,20 +1,22 @@
 //! The goal of a pursuit: the configuration in which the arm meets its target, as a moving point.
 //!
-//! Each target gives a sample of the goal, with the noise of its sensor. A fading-memory filter keeps position, step and
-//! change of the goal, so that a goal with constant change is followed without lag. [`GoalMemory`] chooses how many samples
-//! it remembers; without noise it is one: the goal is then exactly the last sample. After a jump the filter starts anew,
-//! with a growing memory.
+//! Each target gives a sample of the goal, with the noise of its sensor. A parabola is fitted to the samples, older ones with less
+//! weight, so that a goal with constant acceleration is followed without lag. [`GoalMemory`] chooses how many samples count; without noise
+//! three, and the goal is exactly the last sample. After a jump the fit starts anew, with a line.
+//!
+//! Between samples the goal moves on along the fit. If the next sample is late, it keeps its velocity for a while and then brakes to rest;
+//! the fit itself does not change until a sample comes.
 
-use super::goal_gains::GoalGains;
+use super::goal_fit::{Degree, Gains, GoalFit};
 use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
 use super::noise_level::{NoiseLevel, root_mean_square};
 use super::{JointState, Scales};
 use crate::objective::Point;
 
-/// A sample further than this many standard deviations from where the goal was expected is no noise.
+/// Limit of the difference between a sample and its prediction, in standard deviations: beyond it, the sample is no noise.
 const OUTLIER: f64 = 6.0;
 
-/// A sample further than this many accelerations of one sample is no smooth motion of a goal that the arm can follow.
+/// Limit of the same difference, in displacements of the largest acceleration since the last sample.
 const SUDDEN: f64 = 4.0;
 
 /// Where the memory grows at once from one sample to this many, what was taken for motion was noise.
@@ -23,8 +25,14 @@ const MISTAKEN: f64 = 2.0 * NOISELESS;
 /// Samples that a parabola needs.
 const PARABOLA: usize = 3;
 
-/// Overdue intervals that the motion is extrapolated over.
-const STRETCH: f64 = 2.0;
+/// Least weight of a sample relative to the next one.
+const LEAST_WEIGHT: f64 = 1e-3;
+
+/// Least number of intervals without a sample for which the goal keeps its velocity.
+const MOVES_ON: f64 = 2.0;
+
+/// Longest time without a sample for which the goal keeps its velocity (ticks), for joints that are slow to reach full speed.
+const LONGEST: f64 = 300.0;
 
 /// A sample of the goal.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +46,9 @@ pub(crate) struct GoalSample<'a> {
 /// A moving goal.
 #[derive(Debug, Clone)]
 pub(crate) struct MovingGoal {
+    /// Position, velocity and acceleration of the fit at the last sample.
+    fitted: [Point; 3],
+    fit: GoalFit,
     /// Configuration of the goal at the end of the tick.
     q: Point,
     /// Its displacement in the tick.
@@ -64,12 +75,14 @@ impl MovingGoal {
     /// A goal that moves as the arm does that is at `q` in `state`, at `now` (in ticks), before its first sample at the time
     /// `first`.
     pub fn of_arm(q: &[f64], state: &JointState, now: f64, first: f64) -> Self {
-        Self {
+        let mut goal = Self {
+            fitted: [q, &state.step, &state.change].map(Point::from_slice),
+            fit: GoalFit::of_one_sample(),
             q: Point::from_slice(q),
             step: Point::from_slice(&state.step),
             change: Point::from_slice(&state.change),
             now,
-            last_sample: first - 1.0,
+            last_sample: now,
             arrived: now,
             interval: 1.0,
             samples: None,
@@ -77,7 +90,13 @@ impl MovingGoal {
             noise: NoiseLevel::new(),
             uncertainty: 1.0,
             corrected: 1.0,
-        }
+        };
+        // A step is the velocity at the middle of its tick.
+        let [_, velocity, acceleration] = &mut goal.fitted;
+        velocity.iter_mut().zip(acceleration).for_each(|(velocity, acceleration)| *velocity += 0.5 * *acceleration);
+        goal.last_sample = first - 1.0;
+        goal.move_fit(goal.last_sample - now);
+        goal
     }
 
     /// Configuration at the end of the tick.
@@ -121,71 +140,125 @@ impl MovingGoal {
         self.corrected * self.noise()
     }
 
-    /// Moves on by one tick. A goal whose sample is overdue brakes to rest.
+    /// Moves on by one tick.
     pub fn advance(&mut self, scales: &Scales) {
         self.now += 1.0;
-        if self.now - self.arrived > STRETCH * self.interval + 1.0 {
-            for ((step, change), most) in self.step.iter().zip(&mut self.change).zip(&scales.change) {
-                *change = -step.signum() * step.abs().min(0.5 * most);
-            }
-        }
-        for ((q, step), change) in self.q.iter_mut().zip(&mut self.step).zip(&self.change) {
-            *step += change;
-            *q += *step;
-        }
+        self.move_to_now(scales);
     }
 
     /// Writes the expected configuration at `time` (in ticks).
-    pub fn expected(&self, time: f64, out: &mut Point) {
-        let ago = self.now - time;
+    pub fn expected(&self, time: f64, scales: &Scales, out: &mut Point) {
         out.clear();
-        let motion = self.q.iter().zip(self.step.iter().zip(&self.change));
-        out.extend(motion.map(|(q, (step, change))| q - ago * (step - 0.5 * (ago - 1.0) * change)));
+        out.extend((0..self.q.len()).map(|j| self.at(j, time, scales)[0]));
     }
 
-    /// Corrects the motion by a sample; `expected` is the expected configuration at its time.
-    pub fn correct(&mut self, sample: GoalSample<'_>, expected: &[f64], scales: &Scales) {
-        let GoalSample { q, time } = sample;
-        let interval = time - self.last_sample;
-        if interval <= 0.0 {
-            return;
+    /// Position and acceleration of joint `j` at `time`: on the fit until the next sample is overdue, then on with the velocity, in the end
+    /// braking.
+    fn at(&self, j: usize, time: f64, scales: &Scales) -> [f64; 2] {
+        let [q, velocity, acceleration] = [0, 1, 2].map(|k| self.fitted[k][j]);
+        let t = time - self.last_sample;
+        let on_fit = self.arrived - self.last_sample + self.interval + 1.0;
+        if t <= on_fit {
+            return [q + t * (velocity + 0.5 * t * acceleration), acceleration];
         }
+        let q = q + on_fit * (velocity + 0.5 * on_fit * acceleration);
+        let velocity = velocity + on_fit * acceleration;
+        let (t, even) = (t - on_fit, self.time_to_move_on(scales) - self.interval);
+        if t <= even {
+            return [q + t * velocity, 0.0];
+        }
+        let (q, t) = (q + even * velocity, t - even);
+        let deceleration = 0.5 * scales.change[j];
+        let stop = velocity.abs() / deceleration;
+        let change = -velocity.signum() * deceleration;
+        if t < stop { [q + t * (velocity + 0.5 * t * change), change] } else { [q + 0.5 * stop * velocity, 0.0] }
+    }
+
+    /// Ticks after the last sample for which the goal keeps its velocity: as long as the arm takes to full speed. An arm that stopped at
+    /// once would lose more than the target moves during the gap. As long as the noise is unknown, the velocity may be noise.
+    fn time_to_move_on(&self, scales: &Scales) -> f64 {
+        let to_full_speed = if self.noise.is_known() { scales.quickness.sqrt().recip().min(LONGEST) } else { 0.0 };
+        to_full_speed.max(MOVES_ON * self.interval)
+    }
+
+    /// Writes the configuration before the samples that the goal remembers, at `time` or earlier: at the last one at the latest.
+    pub fn remembered_from(&self, time: f64, scales: &Scales, out: &mut Point) {
+        self.expected((time - self.remembered()).min(self.last_sample), scales, out);
+    }
+
+    fn move_to_now(&mut self, scales: &Scales) {
+        for j in 0..self.q.len() {
+            let [q, change] = self.at(j, self.now, scales);
+            self.step[j] = q - self.at(j, self.now - 1.0, scales)[0];
+            (self.q[j], self.change[j]) = (q, change);
+        }
+    }
+
+    fn degree(&self) -> Degree {
+        if self.samples.is_some() { Degree::Line } else { Degree::Parabola }
+    }
+
+    /// Corrects the motion by a sample.
+    pub fn correct(&mut self, sample: GoalSample<'_>, scales: &Scales) {
+        if sample.time > self.last_sample {
+            self.take(sample, scales);
+            self.move_to_now(scales);
+        }
+    }
+
+    fn take(&mut self, sample: GoalSample<'_>, scales: &Scales) {
+        let GoalSample { q, time } = sample;
+        let gap = time - self.last_sample;
         self.noise.add(q, time, &scales.change);
-        self.interval +=
-            (interval - self.interval) * if self.samples.is_some_and(|samples| samples < PARABOLA) { 1.0 } else { 0.2 };
+        let young = self.samples.is_some_and(|samples| samples < PARABOLA);
+        self.interval += if young { gap - self.interval } else { 0.2 * (gap - self.interval) };
+        self.move_fit(gap);
         (self.last_sample, self.arrived) = (time, self.now);
-        let ahead = (self.now - time) / self.interval;
         let before = self.memory.samples();
-        self.adapt_memory(sample, expected, scales);
+        self.adapt_memory(sample, scales);
         let memory = self.memory.samples();
         if before < NOISELESS && memory > MISTAKEN {
             return self.restart(sample);
         }
         self.samples = self.samples.map(|samples| samples + 1).filter(|n| *n < PARABOLA || (*n as f64) < memory);
-        let surprise = root_mean_square(q.iter().zip(expected).map(|(q, expected)| q - expected), &scales.change);
+        let discount = match self.degree() {
+            Degree::Line => 1.0,
+            Degree::Parabola => (1.0 - 1.0 / memory).max(LEAST_WEIGHT).powf(gap / self.interval),
+        };
+        self.fit.add(gap, discount);
+        self.fit.expect(self.noise(), scales);
+        let surprise = root_mean_square(q.iter().zip(&self.fitted[0]).map(|(q, fitted)| q - fitted), &scales.change);
         let noise = OUTLIER * self.noise();
+        let longest = gap.max(self.interval);
         if self.samples == Some(2) {
             // Faster than the arm can follow: it has jumped again.
-            let steps = q.iter().zip(expected).map(|(q, expected)| (q - expected) / self.interval);
+            let steps = q.iter().zip(&self.fitted[0]).map(|(q, fitted)| (q - fitted) / gap);
             if surprise > noise && root_mean_square(steps, &scales.step) > 1.0 {
                 return self.restart(sample);
             }
-        } else if surprise > SUDDEN * self.interval.powi(2) + noise {
+        } else if surprise > SUDDEN * longest.powi(2) + noise {
             // An acceleration within the memory explains that much; otherwise it is a jump.
-            if surprise > (SUDDEN + 0.125 * memory.powi(2)) * self.interval.powi(2) + noise {
+            if surprise > (SUDDEN + 0.125 * memory.powi(2)) * longest.powi(2) + noise {
                 return self.restart(sample);
             }
             self.forget_half();
         }
-        let gains = match self.samples {
-            Some(samples) => GoalGains::of_line(samples),
-            None => GoalGains::of_parabola(memory, self.interval),
-        };
-        (self.uncertainty, self.corrected) = (gains.uncertainty(ahead), gains.position);
-        self.apply(gains, interval, sample, expected);
+        let gains = self.fit.gains(self.degree());
+        self.apply(gains, sample);
+        self.uncertainty = self.fit.deviation(self.now - time, self.degree());
+        self.corrected = gains.position;
     }
 
-    fn adapt_memory(&mut self, sample: GoalSample<'_>, expected: &[f64], scales: &Scales) {
+    /// Moves the fit on by `gap` ticks.
+    fn move_fit(&mut self, gap: f64) {
+        let [q, velocity, acceleration] = &mut self.fitted;
+        for ((q, velocity), acceleration) in q.iter_mut().zip(velocity).zip(acceleration) {
+            *q += gap * (*velocity + 0.5 * gap * *acceleration);
+            *velocity += gap * *acceleration;
+        }
+    }
+
+    fn adapt_memory(&mut self, sample: GoalSample<'_>, scales: &Scales) {
         let circumstances = Circumstances {
             noise: self.noise(),
             interval: self.interval,
@@ -193,7 +266,7 @@ impl MovingGoal {
             jerk_fraction: scales.jerk_fraction,
             quickness: scales.quickness,
         };
-        let surprise = sample.q.iter().zip(expected).map(|(q, expected)| q - expected);
+        let surprise = sample.q.iter().zip(&self.fitted[0]).map(|(q, fitted)| q - fitted);
         self.memory.adapt(surprise, &scales.change, &circumstances);
     }
 
@@ -201,25 +274,26 @@ impl MovingGoal {
     fn forget_half(&mut self) {
         let remembered = self.samples.unwrap_or(self.memory.samples().ceil() as usize);
         self.samples = Some((remembered / 2).max(2));
-        self.change.fill(0.0);
+        self.fitted[2].fill(0.0);
+        self.fit.forget_half();
     }
 
     fn restart(&mut self, sample: GoalSample<'_>) {
-        self.q.copy_from_slice(sample.q);
-        self.step.fill(0.0);
-        self.change.fill(0.0);
+        self.fitted[0].copy_from_slice(sample.q);
+        self.fitted[1].fill(0.0);
+        self.fitted[2].fill(0.0);
+        self.fit = GoalFit::of_one_sample();
         self.samples = Some(1);
         self.memory.restart();
     }
 
-    fn apply(&mut self, gains: GoalGains, interval: f64, sample: GoalSample<'_>, expected: &[f64]) {
-        let ago = self.now - sample.time;
-        for (j, (q, expected)) in sample.q.iter().zip(expected).enumerate() {
-            let surprise = q - expected;
-            let (step, change) = (gains.step * surprise / interval, gains.change * surprise / interval.powi(2));
-            self.q[j] += gains.position * surprise + ago * (step + 0.5 * (ago + 1.0) * change);
-            self.step[j] += step + ago * change;
-            self.change[j] += change;
+    fn apply(&mut self, gains: Gains, sample: GoalSample<'_>) {
+        let [fitted, velocity, acceleration] = &mut self.fitted;
+        for (j, q) in sample.q.iter().enumerate() {
+            let surprise = q - fitted[j];
+            fitted[j] += gains.position * surprise;
+            velocity[j] += gains.velocity * surprise;
+            acceleration[j] += gains.acceleration * surprise;
         }
     }
 }
@@ -241,7 +315,7 @@ mod tests {
 
     /// The largest error of the goal in the second half of `ticks`, when every `every`-th tick has a sample of `age`.
     fn error(path: impl Fn(f64) -> f64, noise: f64, ticks: usize, [every, age]: [usize; 2]) -> f64 {
-        let (scales, mut draws, mut expected) = (scales(), rng::stream(1, 0), Point::new());
+        let (scales, mut draws) = (scales(), rng::stream(1, 0));
         let mut goal: Option<MovingGoal> = None;
         let mut worst = 0.0_f64;
         for tick in 1..=ticks {
@@ -253,8 +327,8 @@ mod tests {
                 let time = now - age as f64;
                 let sample = GoalSample { q: &[path(time) + noise * normal(&mut draws)], time };
                 let goal = goal.get_or_insert_with(|| MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), now, time));
-                goal.expected(time, &mut expected);
-                goal.correct(sample, &expected, &scales);
+
+                goal.correct(sample, &scales);
             }
             if let Some(goal) = goal.as_ref().filter(|_| tick > ticks / 2) {
                 worst = worst.max((goal.q()[0] - path(now)).abs());
@@ -281,28 +355,77 @@ mod tests {
         assert!(worst < 1e-9, "{worst}");
     }
 
+    /// The largest error of the goal and the longest way of `path` between two samples, `kept` of which come, one in three ticks.
+    fn error_with_losses(path: impl Fn(f64) -> f64, noise: f64, kept: impl Fn(usize) -> bool) -> [f64; 2] {
+        let (scales, mut draws) = (scales(), rng::stream(2, 0));
+        let mut goal = MovingGoal::of_arm(&[path(0.0)], &JointState::at_rest(1), 0.0, 1.0);
+        let (mut worst, mut longest, mut last) = (0.0_f64, 0.0_f64, 0.0);
+        for tick in 1..=3000 {
+            let now = tick as f64;
+            goal.advance(&scales);
+            let value = path(now) + noise * normal(&mut draws);
+            if tick % 3 == 0 && (tick < 300 || kept(tick / 3)) {
+                goal.correct(GoalSample { q: &[value], time: now }, &scales);
+                last = now;
+            }
+            if tick > 300 {
+                worst = worst.max((goal.q()[0] - path(now)).abs());
+                longest = longest.max((path(last) - path(now)).abs());
+            }
+        }
+        [worst, longest]
+    }
+
+    #[test]
+    fn the_velocity_of_a_parabola_is_exact_whatever_samples_are_lost() {
+        let path = |time: f64| 1e-3 * time - 1e-7 * time * time;
+        let scales = scales();
+        let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
+        for tick in 1..600 {
+            let now = f64::from(tick);
+            goal.advance(&scales);
+            if tick < 30 || tick * tick % 11 < 3 || tick % 23 == 0 {
+                goal.correct(GoalSample { q: &[path(now)], time: now }, &scales);
+                let error = goal.step()[0] - (path(now) - path(now - 1.0));
+                assert!(tick < 10 || error.abs() < 1e-12, "{error} in tick {tick}");
+            }
+        }
+    }
+
+    #[test]
+    fn lost_samples_of_a_noisy_goal_cost_no_more_than_the_gap() {
+        let path = |time: f64| 0.2 * (0.008 * time).sin();
+        for noise in [0.0, 1e-3, 4e-3] {
+            let [without, _] = error_with_losses(path, noise, |_| true);
+            for burst in [1, 3, 10] {
+                let [worst, gap] = error_with_losses(path, noise, |sample| sample / burst % 4 != 0);
+                assert!(worst < 1.1 * (without + gap), "{worst} with losses of {burst}, {without} without, gap {gap}");
+            }
+        }
+    }
+
     #[test]
     fn a_jump_is_taken_over_at_once() {
-        let (scales, mut expected) = (scales(), Point::new());
+        let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.1], &JointState::at_rest(1), 0.0, 1.0);
         for tick in 1..40 {
             let (now, q) = (f64::from(tick), [if tick < 30 { 0.1 } else { 0.4 }]);
             goal.advance(&scales);
-            goal.expected(now, &mut expected);
-            goal.correct(GoalSample { q: &q, time: now }, &expected, &scales);
+
+            goal.correct(GoalSample { q: &q, time: now }, &scales);
             assert!((goal.q()[0] - q[0]).abs() < 1e-15 && goal.step()[0].abs() < 1e-15, "tick {tick}");
         }
     }
 
     #[test]
     fn a_goal_without_samples_comes_to_rest() {
-        let (scales, mut expected) = (scales(), Point::new());
+        let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
         for tick in 1..=10 {
             let now = f64::from(tick);
             goal.advance(&scales);
-            goal.expected(now, &mut expected);
-            goal.correct(GoalSample { q: &[1e-3 * now], time: now }, &expected, &scales);
+
+            goal.correct(GoalSample { q: &[1e-3 * now], time: now }, &scales);
         }
         let mut steps = vec![];
         for _ in 0..400 {

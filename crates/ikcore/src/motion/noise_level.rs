@@ -55,6 +55,11 @@ impl NoiseLevel {
         self.level
     }
 
+    /// Whether there have been enough samples.
+    pub fn is_known(&self) -> bool {
+        self.count >= CUBIC + WINDOW
+    }
+
     /// Standard deviation of the noise of entry `j`; 0 before the first sample.
     pub fn level_of(&self, j: usize) -> f64 {
         self.fractions.get(j).map_or(0.0, |fraction| self.level * (self.fractions.len() as f64 * fraction).sqrt())

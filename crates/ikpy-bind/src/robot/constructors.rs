@@ -115,7 +115,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         read_collision(collision)?;
         let tip = tip.map_or(Ok(vec![]), read_tips)?;
-        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold, collision, trusted))
+        python_calls::robot(model.py(), "mjcf", (model, base, tip, hold, collision, trusted))
     }
 
     /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
@@ -144,7 +144,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let given = [("base", base), ("tip", tip), ("hold", hold), ("srdf", srdf), ("collision", collision)];
         let given = given.into_iter().filter_map(|(option, value)| Some((option, value?)));
-        python_calls::robot(name.py(), "_descriptions", (name, given.into_py_dict(name.py())?, trusted))
+        python_calls::robot(name.py(), "descriptions", (name, given.into_py_dict(name.py())?, trusted))
     }
 
     /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.

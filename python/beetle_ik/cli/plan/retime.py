@@ -9,9 +9,9 @@ import typer
 from numpy.typing import NDArray
 
 from ... import Limits, Trajectory, plot, time_optimal
-from ..._csv import read_table
-from ..._text import counted
-from ...export import joint_positions
+from ...calls.text import counted
+from ...files.csv_table import read_table
+from ...files.trajectories import joint_positions
 from ..files import print_files, results_folder, write_files
 from ..options import AsJson, Jerk, limit
 from ..show import listed, print_json, print_pairs

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import TypeAlias
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import Check, Claim, not_given, number
 from .comparison import Compared
 from .methods import BEETLE, BUDGET

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import BLUE, FORBIDDEN, VERMILION, Check, Claim, Figure, Part, Section, drawing, not_given, number
 from ..experiment import Context
 from .settings import FIVE_LINK, IIWA, PARAMETERS, ROUNDING, STAR, Task, excess_velocity

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import (
     BLUE,
     VERMILION,

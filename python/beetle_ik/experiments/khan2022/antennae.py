@@ -10,7 +10,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import BLUE, VERMILION, Check, Claim, Column, Figure, Part, Section, Table, drawing, number
 from ..experiment import Context
 from .settings import STROKE, M, follow, letter

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import beetle_ik as bik
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import BLUE, VERMILION, Claim, Figure, Part, Section, drawing, number
 from ..experiment import Context
 from .settings import M, Run, follow

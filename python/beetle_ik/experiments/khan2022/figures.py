@@ -9,7 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ..._text import counted
+from ...calls.text import counted
 from ...report import Block, Claim, Column, Figure, Part, Section, Spread, Table, number
 from ..experiment import Context
 from .panels import draw_run, draw_stars

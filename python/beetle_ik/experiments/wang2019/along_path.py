@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-from ..._plan_figure import animate
+from ...figures.plan_figure import animate
 from ...report import (
     BLUE,
     FORBIDDEN,

@@ -75,7 +75,7 @@ impl GoalPursuit {
         let Some(ago) = tick.sampled_ago else { return found };
         let time = self.now - ago;
         if let Some(goal) = &self.goal {
-            goal.expected(time, &mut self.expected);
+            goal.expected(time, motion.scales(), &mut self.expected);
         }
         let anew = (aims.has_pairs() && self.has_no_way(self.away(q))).then_some(q);
         self.solve(anew, time, &tick.context.positions(), &mut found, tick);
@@ -104,7 +104,7 @@ impl GoalPursuit {
         let StepContext { robot, q, aims, limited, .. } = tick.context;
         let Some(motion) = limited else { return found };
         if let (Some(goal), Some(ago)) = (&mut self.goal, tick.sampled_ago) {
-            goal.correct(GoalSample { q: &self.sample, time: self.now - ago }, &self.expected, motion.scales());
+            goal.correct(GoalSample { q: &self.sample, time: self.now - ago }, motion.scales());
         }
         match &self.goal {
             Some(goal) if !found.interrupted => {
@@ -185,9 +185,9 @@ impl GoalPursuit {
         found: &mut TickResult,
         tick: &Tick<'_>,
     ) {
-        let Some(goal) = &self.goal else { return };
+        let (Some(goal), Some(motion)) = (&self.goal, tick.context.limited) else { return };
         let moved = self.sample.clone();
-        goal.expected(time - goal.remembered(), &mut self.sample);
+        goal.remembered_from(time, motion.scales(), &mut self.sample);
         positions.clip(&mut self.sample);
         if self.linearize(found, tick) > lowest * (1.0 + NO_GAIN) {
             self.sample = moved;
@@ -207,8 +207,8 @@ impl GoalPursuit {
     /// since no target would ever stop it; a filter with a long memory would sustain it even from one sample ago.
     fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
         let mut preferred = self.sample.clone();
-        if let Some(goal) = &self.goal {
-            goal.expected(time - goal.remembered(), &mut preferred);
+        if let (Some(goal), Some(motion)) = (&self.goal, tick.context.limited) {
+            goal.remembered_from(time, motion.scales(), &mut preferred);
         }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();

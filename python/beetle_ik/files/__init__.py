@@ -1,0 +1,7 @@
+"""Files of trajectories and tables, which appear complete or not at all.
+
+whole          atomic writing of a file or a folder
+csv_table      tables of numbers as CSV
+trajectories   trajectories as CSV and npz
+derivatives    the derivatives of a trajectory that are continuous
+"""

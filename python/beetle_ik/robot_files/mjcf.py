@@ -1,0 +1,223 @@
+"""MuJoCo models as robots: the compiled model becomes a URDF, which the core reads."""
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Literal
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import InvalidInputError, Robot, UnknownNameError, UrdfError, pose
+from ..calls.arguments import require, require_text
+from ..calls.text import exact, listed
+from ..installed.needs import library
+from .mjcf_files import require_own_files
+
+if TYPE_CHECKING:
+    import mujoco
+
+Matrix = NDArray[np.float64]
+
+
+def robot(
+    model: "mujoco.MjModel | str | os.PathLike[str]",
+    base: str | None,
+    tips: list[str],
+    hold: Mapping[str, float] | None,
+    collision: Literal["primitives", "fit", "hulls"] | None,
+    trusted: bool,
+) -> Robot:
+    """Reads a file, a text or a compiled model; implements `Robot.from_mjcf`."""
+    mujoco = library("mujoco", "mujoco", "a MuJoCo model", extra="sim")
+    described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model, trusted)
+    reader = _Reader(mujoco, described)
+    for link in (base, *tips):
+        reader.require_known(link)
+    with TemporaryDirectory() as folder:
+        if collision in ("fit", "hulls"):
+            reader.write_meshes(Path(folder))
+        try:
+            made = Robot.from_urdf(
+                reader.urdf(tips), base=base, tip=tips or None, hold=hold, collision=collision, package_dirs=[folder]
+            )
+        except UrdfError as error:
+            problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
+            raise InvalidInputError(problem) from None
+    reader.require_uncoupled(made.joint_names)
+    return made
+
+
+def _read(mujoco: Any, model: str | os.PathLike[str], trusted: bool) -> Any:
+    require("model", model, mujoco.MjModel, str, os.PathLike)
+    text = os.fspath(model)
+    if not isinstance(text, str):
+        raise InvalidInputError(f"model must be a path of text, got {text!r:.60}")
+    require_text("model", text)
+    if not trusted:
+        require_own_files(text)
+    try:
+        return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
+    except ValueError as error:
+        raise InvalidInputError(f"MuJoCo cannot read the model: {error!s:.200}") from error
+
+
+class _Reader:
+    """Writes the bodies, joints and collision geoms of a compiled model as a URDF."""
+
+    def __init__(self, mujoco: Any, model: Any) -> None:
+        self.mujoco, self.model = mujoco, model
+        self.bodies = [model.body(i).name or f"body_{i}" for i in range(model.nbody)]
+        self.sites = [model.site(i).name for i in range(model.nsite)]
+        self.joints = [model.joint(i).name or f"joint_{i}" for i in range(model.njnt)]
+        self.followed, self.coupled = self._couplings()
+
+    def require_known(self, name: str | None) -> None:
+        """Raises `UnknownNameError` unless `name` is None, a body or a site."""
+        if name is not None and name not in self.bodies + self.sites:
+            named = [site for site in self.sites if site]
+            known = f"bodies: {listed(self.bodies)}" + (f"; sites: {listed(named)}" if named else "")
+            raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
+
+    def require_uncoupled(self, joints: list[str]) -> None:
+        """Raises `InvalidInputError` if an equality constraint couples one of these joints, except linearly."""
+        for joint in joints:
+            if joint in self.coupled:
+                raise InvalidInputError(
+                    f"joint '{joint}' of the MuJoCo model is coupled by an equality constraint that is not linear"
+                )
+
+    def urdf(self, tips: list[str]) -> str:
+        """Returns the model as a URDF; sites among `tips` become links, unless a body has the same name."""
+        model = self.model
+        lines = [f"<robot name={quoteattr(self._name())}>", *(f"<link name={quoteattr(self.bodies[0])}/>",)]
+        for body in range(1, model.nbody):
+            lines += self._joints_to(body)
+            lines += [f"<link name={quoteattr(self.bodies[body])}>", *self._collisions(body), "</link>"]
+        for tip in tips:
+            if tip in self.bodies:
+                continue
+            site = self.sites.index(tip)
+            carrier = self.bodies[model.site_bodyid[site]]
+            place = pose(model.site_pos[site], wxyz=model.site_quat[site])
+            lines += [f"<link name={quoteattr(tip)}/>", *_joint(f"{tip}/site", "fixed", carrier, tip, place)]
+        return "\n".join([*lines, "</robot>"])
+
+    def write_meshes(self, folder: Path) -> None:
+        """Writes the meshes of the model as OBJ files, by the names that `urdf` gives them."""
+        model = self.model
+        for mesh in range(model.nmesh):
+            first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+            lines = [f"v {exact(vertex)}" for vertex in model.mesh_vert[first : first + count]]
+            first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+            lines += [f"f {a} {b} {c}" for a, b, c in model.mesh_face[first : first + count] + 1]
+            file = folder / self._mesh(mesh)
+            file.parent.mkdir(exist_ok=True)
+            file.write_text("\n".join(lines))
+
+    def _mesh_element(self, geom: Any) -> str:
+        mesh = self.model.geom_dataid[geom]
+        return f"<mesh filename={quoteattr(f'package://{self._mesh(mesh)}')}/>" if mesh >= 0 else ""
+
+    def _mesh(self, mesh: int) -> str:
+        return f"{mesh}/{re.sub(r'[^0-9A-Za-z_-]', '_', self.model.mesh(mesh).name) or 'mesh'}.obj"
+
+    def _name(self) -> str:
+        return bytes(self.model.names).split(b"\0", 1)[0].decode() or "mujoco"
+
+    def _joints_to(self, body: int) -> Iterator[str]:
+        """Yields the joints from the parent of a body to the body, with links between several of them."""
+        model, name = self.model, self.bodies[body]
+        at = self.bodies[model.body_parentid[body]]
+        place = pose(model.body_pos[body], wxyz=model.body_quat[body])
+        first, count = model.body_jntadr[body], model.body_jntnum[body]
+        for joint in range(first, first + count):
+            anchor, axis = np.array(model.jnt_pos[joint]), np.array(model.jnt_axis[joint])
+            kind, inner = self._kind(joint), self._attributes(joint)
+            # A joint of MuJoCo moves about an anchor in the body, by qpos minus its reference value.
+            rest = float(model.qpos0[model.jnt_qposadr[joint]]) if inner else 0.0
+            back = pose(-rest * axis) if kind == "prismatic" else pose([0, 0, 0], rotvec=-rest * axis)
+            origin = place @ pose(anchor) @ back
+            if joint == first + count - 1 and not anchor.any():
+                yield from _joint(self.joints[joint], kind, at, name, origin, inner)
+                return
+            link = f"{name}/{self.joints[joint]}"
+            yield f"<link name={quoteattr(link)}/>"
+            yield from _joint(self.joints[joint], kind, at, link, origin, inner)
+            at, place = link, pose(-anchor)
+        yield from _joint(f"{name}/body", "fixed", at, name, place)
+
+    def _kind(self, joint: int) -> str:
+        kind = self.mujoco.mjtJoint(self.model.jnt_type[joint])
+        if kind.name == "mjJNT_HINGE":
+            return "revolute" if self.model.jnt_limited[joint] else "continuous"
+        return {"mjJNT_SLIDE": "prismatic", "mjJNT_BALL": "spherical"}.get(kind.name, "floating")
+
+    def _attributes(self, joint: int) -> list[str]:
+        """Returns axis, limits and coupling of a hinge or slide; empty for other joints."""
+        model = self.model
+        if self._kind(joint) in ("spherical", "floating"):
+            return []
+        inner = [f"<axis xyz='{exact(model.jnt_axis[joint])}'/>"]
+        if model.jnt_limited[joint]:
+            lower, upper = model.jnt_range[joint]
+            inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}'/>")
+        if joint in self.followed:
+            master, scale, offset = self.followed[joint]
+            name = quoteattr(self.joints[master])
+            inner.append(f"<mimic joint={name} multiplier='{scale!r}' offset='{offset!r}'/>")
+        return inner
+
+    def _couplings(self) -> tuple[dict[int, tuple[int, float, float]], set[str]]:
+        """Returns the joints that follow another linearly, and the names of joints coupled otherwise."""
+        model = self.model
+        followed: dict[int, tuple[int, float, float]] = {}
+        coupled: set[str] = set()
+        for i in np.flatnonzero((model.eq_type == self.mujoco.mjtEq.mjEQ_JOINT) & (model.eq_active0 != 0)):
+            joint, master = int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
+            constant, scale, *bends = (float(factor) for factor in model.eq_data[i][:5])
+            if master < 0 or any(bends) or joint in followed:
+                coupled.add(self.joints[joint])
+                continue
+            rest, master_rest = (float(model.qpos0[model.jnt_qposadr[j]]) for j in (joint, master))
+            followed[joint] = (master, scale, rest + constant - scale * master_rest)
+        return followed, coupled
+
+    def _collisions(self, body: int) -> Iterator[str]:
+        """Yields the geoms that take part in collisions."""
+        model = self.model
+        for geom in np.flatnonzero(model.geom_bodyid == body):
+            if not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
+                continue
+            size = [float(length) for length in model.geom_size[geom]]
+            shape = {
+                "mjGEOM_SPHERE": f"<sphere radius='{size[0]!r}'/>",
+                "mjGEOM_CAPSULE": f"<capsule radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
+                "mjGEOM_CYLINDER": f"<cylinder radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
+                "mjGEOM_BOX": f"<box size='{exact(2 * np.array(size))}'/>",
+                "mjGEOM_ELLIPSOID": "<ellipsoid/>",
+                "mjGEOM_MESH": self._mesh_element(geom),
+            }.get(self.mujoco.mjtGeom(model.geom_type[geom]).name, "<mesh/>")
+            place = pose(model.geom_pos[geom], wxyz=model.geom_quat[geom])
+            yield f"<collision>{_origin(place)}<geometry>{shape}</geometry></collision>"
+
+
+def _joint(name: str, kind: str, parent: str, child: str, place: Matrix, inner: list[str] | None = None) -> list[str]:
+    return [
+        f"<joint name={quoteattr(name)} type='{kind}'>",
+        f"<parent link={quoteattr(parent)}/><child link={quoteattr(child)}/>{_origin(place)}",
+        *(inner or []),
+        "</joint>",
+    ]
+
+
+def _origin(place: Matrix) -> str:
+    """Returns a pose (4, 4) as an element. The angles are exact to rounding, also at a pitch of 90 degrees."""
+    yaw = np.arctan2(place[1, 0], place[0, 0])
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    pitch = np.arctan2(-place[2, 0], cosine * place[0, 0] + sine * place[1, 0])
+    roll = np.arctan2(sine * place[0, 2] - cosine * place[1, 2], cosine * place[1, 1] - sine * place[0, 1])
+    return f"<origin xyz='{exact(place[:3, 3])}' rpy='{exact([roll, pitch, yaw])}'/>"
