@@ -473,6 +473,13 @@ pub(crate) fn require_at_least_one(what: &str, count: usize) -> Result<()> {
 /// Length up to which a message repeats a text (characters).
 const ECHO_LENGTH: usize = 200;
 
+impl Error {
+    /// Returns [`Error::Unreadable`], with the path cut to a readable length.
+    pub(crate) fn unreadable(path: &str, problem: impl ToString) -> Self {
+        Self::Unreadable { path: shortened(path), problem: problem.to_string() }
+    }
+}
+
 /// Cuts a given text to a readable length for a message.
 pub(crate) fn shortened(text: &str) -> String {
     match text.char_indices().nth(ECHO_LENGTH) {

@@ -1,7 +1,7 @@
 //! Angles represented by cosine and sine; closed forms work on these and take arctangents only at the end.
 
-use super::vector::{Vector, add_scaled, cross, dot, scaled, sub};
 use crate::math::Frame;
+use crate::math::vector3::{Vector, add_scaled, cross, dot, scaled, sub};
 
 /// Rotation angle about a known axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

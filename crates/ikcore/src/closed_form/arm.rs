@@ -6,13 +6,14 @@ use super::branches::MOST_JOINTS;
 use super::configurations::{ArmConfigurations, Drives};
 use super::five_joints::FiveJoints;
 use super::planar::Planar;
-use super::pose_family::{FamilyLimits, PoseFamily};
+use super::pose_family::PoseFamily;
 use super::redundant::{Parameter, Redundant};
 use super::six::{ClosedForm, Structure};
 use super::structure::are_sharp;
 use crate::kinematics::chain::{Chain, Transmission};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::add_scaled;
 
 /// Reason why a chain has no closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,8 +51,7 @@ enum Method {
     Scara(Box<Planar<4>>),
     Five(Box<FiveJoints>),
     Six(Box<ClosedForm>),
-    /// Redundant arm, together with the limits of its joints.
-    Seven(Box<(Redundant, FamilyLimits)>),
+    Seven(Box<Redundant>),
 }
 
 impl ClosedFormArm {
@@ -85,10 +85,7 @@ impl ClosedFormArm {
                 let form = ClosedForm::new(&axes_of(chain));
                 (form.structure() != Structure::Unsolved).then(|| Method::Six(Box::new(form)))
             }
-            _ => Redundant::new(&axes_of(chain)).map(|redundant| {
-                let own = FamilyLimits::new(&redundant, &drives, [lower, upper]);
-                Method::Seven(Box::new((redundant, own)))
-            }),
+            _ => Redundant::new(&axes_of(chain), &drives, [lower, upper]).map(|arm| Method::Seven(Box::new(arm))),
         };
         let method = method.ok_or(unsolved)?;
         let all = axes_of::<MOST_JOINTS>(chain);
@@ -103,7 +100,7 @@ impl ClosedFormArm {
             Method::Scara(_) => "SCARA; at most 2 solutions".into(),
             Method::Five(method) => format!("five joints, solved as six: {}", method.structure()),
             Method::Six(method) => method.structure().to_string(),
-            Method::Seven(method) => match (method.0.parameter(), method.0.structure()) {
+            Method::Seven(method) => match (method.parameter(), method.structure()) {
                 (Parameter::Axis(axis), Some(structure)) => {
                     format!("{structure} for each value of joint '{}'", joint_name(self.drives.joint(axis)))
                 }
@@ -118,7 +115,7 @@ impl ClosedFormArm {
             Method::Planar(_) | Method::Scara(_) => false,
             Method::Five(method) => method.structure() == Structure::General,
             Method::Six(method) => method.structure() == Structure::General,
-            Method::Seven(method) => method.0.structure() == Some(Structure::General),
+            Method::Seven(method) => method.structure() == Some(Structure::General),
         };
         !general
     }
@@ -127,8 +124,8 @@ impl ClosedFormArm {
     pub fn proves(&self) -> bool {
         let method_proves = match &self.method {
             Method::Planar(_) | Method::Scara(_) | Method::Seven(_) => true,
-            Method::Five(method) => method.structure().proves(),
-            Method::Six(method) => method.structure().proves(),
+            Method::Five(method) => method.structure().is_exact(),
+            Method::Six(method) => method.structure().is_exact(),
         };
         method_proves && self.is_sharp
     }
@@ -154,7 +151,7 @@ impl ClosedFormArm {
     #[inline]
     pub fn likely(&self, target: &Frame, found: &mut ArmConfigurations) {
         match &self.method {
-            Method::Six(method) if method.has_exact_candidates() => {
+            Method::Six(method) if method.structure().is_exact() => {
                 method.likely(target, &self.drives, found);
                 found.is_all &= self.is_sharp;
             }
@@ -179,7 +176,7 @@ impl ClosedFormArm {
     #[inline]
     pub fn family(&self, target: &Frame) -> Option<PoseFamily<'_>> {
         match &self.method {
-            Method::Seven(method) => Some(PoseFamily::new(&method.0, &self.drives, &method.1, target)),
+            Method::Seven(method) => Some(PoseFamily::new(method, target)),
             _ => None,
         }
     }
@@ -209,7 +206,7 @@ fn axes_of<const N: usize>(chain: &Chain) -> AxisChain<N> {
         }
         let (sine, cosine) = motion.turn_offset.sin_cos();
         let slide = motion.slide_offset;
-        let moved = Frame { origin: std::array::from_fn(|k| at.origin[k] + slide * at.axes[2][k]), ..at };
+        let moved = Frame { origin: add_scaled(&at.origin, &at.axes[2], slide), ..at };
         at = moved.turned::<Baseline>(sine, cosine);
     }
     AxisChain { joints, tip: at.then::<Baseline>(&chain.tip) }

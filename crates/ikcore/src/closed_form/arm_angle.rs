@@ -7,11 +7,11 @@ use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Candidates, Doubt};
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::structure::{EXACT, three_meet};
-use crate::closed_form::subproblem::distance_to_point;
-use crate::closed_form::vector::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
-use crate::closed_form::wrist::{Pointing, Wrist};
+use crate::closed_form::subproblem::subproblem3;
+use crate::closed_form::wrist::{Wrist, WristDirections};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, add_scaled, cross, dot, norm, perpendicular, scaled, sub};
 
 /// Squared shoulder-wrist distance, as a multiple of its rounding error, below which the direction of the shoulder-wrist
 /// line, and so the arm angle, is arbitrary within a caller's tolerances.
@@ -39,9 +39,9 @@ pub struct ArmAnglePose {
     /// Frame with z along the shoulder-wrist line and y along the elbow axis at arm angle zero.
     pub(super) frame: Frame,
     /// Direction of the last three joints, expressed in `frame`.
-    pub(super) last: Pointing,
+    pub(super) last: WristDirections,
     /// Solutions for joint 4; only the first `count` are valid.
-    elbows: [ElbowTurn; 2],
+    elbows: [ElbowSolution; 2],
     count: usize,
     /// True if joint 4 is free.
     pub(super) free: bool,
@@ -51,28 +51,28 @@ pub struct ArmAnglePose {
 
 impl ArmAnglePose {
     /// Returns the values of joint 4 that may lie within its limits.
-    pub(super) fn elbows(&self, limits: &AngleRange) -> impl Iterator<Item = &ElbowTurn> {
+    pub(super) fn elbows(&self, limits: &AngleRange) -> impl Iterator<Item = &ElbowSolution> {
         self.elbows[..self.count].iter().filter(|elbow| limits.may_hold(&elbow.q4))
     }
 }
 
 /// One solution for joint 4.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ElbowTurn {
+pub(super) struct ElbowSolution {
     q4: Angle,
     /// Rotation of the arm without its first three joints, expressed in the frame of the shoulder-wrist line.
     pub(super) from_line: Frame,
     /// Direction of the first three joints, in the same frame.
-    pub(super) first: Pointing,
+    pub(super) first: WristDirections,
     /// Rotation from that frame to the last three joints.
     pub(super) to_wrist: Frame,
 }
 
-impl ElbowTurn {
+impl ElbowSolution {
     const NONE: Self = Self {
         q4: Angle::NONE,
         from_line: Frame::IDENTITY,
-        first: Pointing { end: [0.0; 3], mark: [0.0; 3] },
+        first: WristDirections { end: [0.0; 3], mark: [0.0; 3] },
         to_wrist: Frame::IDENTITY,
     };
 }
@@ -106,22 +106,22 @@ impl ArmAngle {
         let reached = sub(&goal.transform::<Baseline>(&self.wrist), &self.shoulder);
         let (from_elbow, to_shoulder) = (sub(&self.wrist, &self.elbow), sub(&self.shoulder, &self.elbow));
         let square = dot(&reached, &reached);
-        let mut q4 = distance_to_point(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);
+        let mut q4 = subproblem3(&self.elbow_axis, &from_elbow, &to_shoulder, square, self.floor);
         if square < NO_LINE * self.floor {
-            q4.doubt = Doubt::Open;
+            q4.doubt = Doubt::Anywhere;
         }
         let frame = self.frame(&reached, &self.across(&reached));
         let pointing = self.last.pointing(goal);
-        let last = Pointing { end: frame.turn_back(&pointing.end), mark: frame.turn_back(&pointing.mark) };
+        let last = WristDirections { end: frame.turn_back(&pointing.end), mark: frame.turn_back(&pointing.mark) };
         let mut pose =
-            ArmAnglePose { frame, last, elbows: [ElbowTurn::NONE; 2], count: 0, free: q4.free, doubt: q4.doubt };
+            ArmAnglePose { frame, last, elbows: [ElbowSolution::NONE; 2], count: 0, free: q4.free, doubt: q4.doubt };
         for q4 in q4.iter() {
             let arm = sub(&q4.about(&self.elbow_axis, &from_elbow), &to_shoulder);
             let at_zero = self.frame(&arm, &self.elbow_axis);
             let [x, y, z] = &at_zero.axes;
             let turned = |v: &Vector| q4.back().about(&self.elbow_axis, v);
             let from_line = at_zero.inverse();
-            pose.elbows[pose.count] = ElbowTurn {
+            pose.elbows[pose.count] = ElbowSolution {
                 q4: *q4,
                 from_line,
                 first: self.first.pointing(&from_line),
@@ -138,10 +138,10 @@ impl ArmAngle {
         let [a, b, c, of_elbow, d, e, f] = *ranges;
         let target = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
         let back = |v: &Vector| about_z(arm_angle.back(), v);
-        let seen = Pointing { end: back(&pose.last.end), mark: back(&pose.last.mark) };
+        let seen = WristDirections { end: back(&pose.last.end), mark: back(&pose.last.mark) };
         found.singular |= pose.free;
         found.doubt.add(pose.doubt);
-        for ElbowTurn { q4, first, to_wrist, .. } in pose.elbows(&of_elbow) {
+        for ElbowSolution { q4, first, to_wrist, .. } in pose.elbows(&of_elbow) {
             let first = self.first.turns(&first.turned(&target), &[a, b, c]);
             // Rotation of the wrist: R567 = R4' R123' R.
             let last = self.last.turns(&seen.turned(to_wrist), &[d, e, f]);

@@ -10,14 +10,14 @@ use smallvec::SmallVec;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, MOVED_BY_POLISHING};
-use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose, ElbowTurn};
+use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose, ElbowSolution};
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::about_z;
 use crate::closed_form::parameter_arcs::Wave;
-use crate::closed_form::vector::{Vector, dot};
 use crate::closed_form::wrist::Wrist;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, dot};
 
 /// Cosine of 0.001 rad: axes at a smaller angle are nearly aligned.
 const ALIGNED_COSINE: f64 = 1.0 - 5e-7;
@@ -35,9 +35,9 @@ impl ArmAngle {
             let range = cosine.range([lower - MOVED_BY_POLISHING, upper + MOVED_BY_POLISHING]);
             Wave::of(|arm_angle| dot(&axis, &reached(Angle::by(arm_angle)))).arcs_between(range, 1e-5)
         };
-        pose.doubt != Doubt::Open
+        pose.doubt != Doubt::Anywhere
             && !pose.free
-            && pose.elbows(of_elbow).all(|ElbowTurn { first, to_wrist, .. }| {
+            && pose.elbows(of_elbow).all(|ElbowSolution { first, to_wrist, .. }| {
                 let shoulder = within(&self.first, limits[1], &|arm_angle| {
                     pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos).turn::<Baseline>(&first.end)
                 });
@@ -62,7 +62,7 @@ impl ArmAngle {
         let (mut at_limits, mut aligned) = (Values::new(), Values::new());
         // A stretched elbow leaves its two values, and so all other joints, poorly determined.
         let mut is_sure = pose.doubt == Doubt::None;
-        for ElbowTurn { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
+        for ElbowSolution { from_line, to_wrist, .. } in pose.elbows(of_elbow) {
             let shoulder = |arm_angle: Angle, v: &Vector| {
                 let line = pose.frame.turned::<Baseline>(arm_angle.sin, arm_angle.cos);
                 line.turn::<Baseline>(&from_line.turn::<Baseline>(v))

@@ -11,7 +11,7 @@ pub(crate) struct ArmBranches {
     joints: usize,
     errors: [BranchError; MOST],
     /// True if a rejected configuration was near a solution: the pose may be reachable within wide tolerances.
-    pub nearly: bool,
+    pub near_miss: bool,
     /// Doubt about missing branches; for a redundant arm, about further ones at this value of the parameter.
     pub doubt: Doubt,
     /// True if at least one configuration represents a family with a free joint.
@@ -32,8 +32,8 @@ impl ArmBranches {
         }
         let mut errors = [BranchError::default(); MOST];
         errors[..count].copy_from_slice(branches.errors());
-        let Branches { nearly, doubt, singular, evaluations, .. } = *branches;
-        Self { sets, count, joints, errors, nearly, doubt, singular, evaluations }
+        let Branches { near_miss, doubt, singular, evaluations, .. } = *branches;
+        Self { sets, count, joints, errors, near_miss, doubt, singular, evaluations }
     }
 
     /// Returns the number of configurations.

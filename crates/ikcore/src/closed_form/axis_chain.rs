@@ -1,9 +1,9 @@
 //! Product-of-exponentials model of a chain: joint axes and tip frame in the zero configuration.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::vector::{Vector, add_scaled, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, add_scaled, dot, norm, scaled, sub};
 
 /// Type of joint motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +81,13 @@ pub struct AxisChain<const N: usize> {
     pub joints: [JointAxis; N],
     /// Tip frame in the zero configuration.
     pub tip: Frame,
+}
+
+/// Returns the joints of the chain from tip to base: in reverse order, with reversed axes.
+pub fn reversed<const N: usize>(joints: &[JointAxis; N]) -> [JointAxis; N] {
+    let mut joints = joints.map(|joint| JointAxis { axis: scaled(&joint.axis, -1.0), ..joint });
+    joints.reverse();
+    joints
 }
 
 impl<const N: usize> AxisChain<N> {

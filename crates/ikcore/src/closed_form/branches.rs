@@ -15,9 +15,9 @@ pub enum Doubt {
     #[default]
     None,
     /// Branches nearly coincide or nearly form a family; forward kinematics near them decides.
-    Beside,
+    Nearby,
     /// Further branches may exist anywhere.
-    Open,
+    Anywhere,
 }
 
 impl Doubt {
@@ -30,8 +30,8 @@ impl Doubt {
     /// Records that roots led to no branch: roots in doubt may have been too inexact.
     #[inline(always)]
     pub fn add_dead_end(&mut self) {
-        if *self == Self::Beside {
-            *self = Self::Open;
+        if *self == Self::Nearby {
+            *self = Self::Anywhere;
         }
     }
 }
@@ -49,13 +49,13 @@ pub struct Candidates {
     pub singular: bool,
     /// Doubt about further candidates.
     pub doubt: Doubt,
-    /// Value of a seventh joint, added to each solution for six.
-    given: Option<Given>,
+    /// Fixed joint, added to each candidate of six joints.
+    fixed: Option<FixedJoint>,
 }
 
-/// Given joint of a seven-joint arm, and its angle.
+/// Fixed joint of a seven-joint arm, and its angle.
 #[derive(Debug, Clone, Copy)]
-pub enum Given {
+pub enum FixedJoint {
     /// First of seven joints.
     First(Angle),
     /// Last of seven joints.
@@ -72,7 +72,7 @@ impl Candidates {
             count: 0,
             singular: false,
             doubt: Doubt::None,
-            given: None,
+            fixed: None,
         }
     }
 
@@ -85,18 +85,18 @@ impl Candidates {
     }
 
     /// Fixes the first or the last joint for the six-joint candidates added from now on.
-    pub fn give(&mut self, given: Given) {
-        self.given = Some(given);
+    pub fn fix_joint(&mut self, joint: FixedJoint) {
+        self.fixed = Some(joint);
     }
 
-    /// Adds a candidate of six joints, and of the given joint if there is one; ignored when full.
+    /// Adds a candidate of six joints, and of the fixed joint if there is one; ignored when full.
     #[inline(always)]
     pub fn push_six(&mut self, turns: &[Angle; 6]) {
         let [a, b, c, d, e, f] = *turns;
-        match self.given {
+        match self.fixed {
             None => self.push(turns),
-            Some(Given::First(first)) => self.push(&[first, a, b, c, d, e, f]),
-            Some(Given::Last(last)) => self.push(&[a, b, c, d, e, f, last]),
+            Some(FixedJoint::First(first)) => self.push(&[first, a, b, c, d, e, f]),
+            Some(FixedJoint::Last(last)) => self.push(&[a, b, c, d, e, f, last]),
         }
     }
 
@@ -140,7 +140,7 @@ pub struct Branches<const N: usize> {
     errors: [BranchError; MOST],
     count: usize,
     /// True if a rejected candidate was near the pose: a caller's tolerances may be wide enough for it.
-    pub nearly: bool,
+    pub near_miss: bool,
     /// Number of forward kinematics evaluations used by verification.
     pub evaluations: usize,
     /// Doubt about further branches.
@@ -157,9 +157,9 @@ impl<const N: usize> Branches<N> {
             sets: [[0.0; N]; MOST],
             errors: [BranchError::default(); MOST],
             count: 0,
-            nearly: false,
+            near_miss: false,
             evaluations: 0,
-            doubt: Doubt::Open,
+            doubt: Doubt::Anywhere,
             singular: false,
         }
     }

@@ -7,9 +7,9 @@ use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::{ParameterArcs, Wave};
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
-use crate::closed_form::vector::{Vector, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, dot, scaled, sub};
 
 /// Precomputed shoulder and wrist.
 #[derive(Debug, Clone, Copy)]

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::orbit::Orbit;
-use crate::closed_form::vector::{Vector, cross, dot};
 use crate::math::turns::without_turns;
+use crate::math::vector3::{Vector, cross, dot, scaled, sub};
 
 /// Ball that encloses a vector.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,7 @@ impl Ball {
     }
 
     /// Returns the largest angle about `axis` between a vector in the ball and its centre (rad).
-    pub fn swerve(&self, axis: &Vector) -> f64 {
+    pub fn azimuth_error(&self, axis: &Vector) -> f64 {
         let distance = distance(axis, &self.middle);
         // Tangent of the angle whose sine is radius / distance: an upper bound that needs no arcsine.
         if self.radius < distance { self.radius / (distance * distance - self.radius * self.radius).sqrt() } else { PI }
@@ -41,38 +41,38 @@ pub fn distance(axis: &Vector, v: &Vector) -> f64 {
     dot(&across, &across).sqrt()
 }
 
-/// Sinusoid base + east cos q + north sin q.
+/// Sinusoid constant + cosine cos q + sine sin q.
 #[derive(Debug, Clone, Copy)]
-pub struct Swing {
+pub struct Sinusoid {
     /// Mean value.
-    pub base: f64,
+    pub constant: f64,
     /// Coefficient of cos q.
-    pub east: f64,
+    pub cosine: f64,
     /// Coefficient of sin q.
-    pub north: f64,
+    pub sine: f64,
 }
 
-impl Swing {
+impl Sinusoid {
     /// Returns the component along `axis` of a point on a circle.
     pub fn along(axis: &Vector, circle: &Orbit) -> Self {
-        Self { base: dot(axis, &circle.centre), east: dot(axis, &circle.cosine), north: dot(axis, &circle.sine) }
+        Self { constant: dot(axis, &circle.centre), cosine: dot(axis, &circle.cosine), sine: dot(axis, &circle.sine) }
     }
 
     /// Returns the squared distance of a point on a circle from `other`.
     pub fn squared_distance(circle: &Orbit, other: &Vector) -> Self {
-        let way = std::array::from_fn(|k| 2.0 * (circle.centre[k] - other[k]));
+        let way = scaled(&sub(&circle.centre, other), 2.0);
         let constant = 0.25 * dot(&way, &way) + dot(&circle.sine, &circle.sine);
-        Self { base: constant, ..Self::along(&way, circle) }
+        Self { constant, ..Self::along(&way, circle) }
     }
 
     fn size(&self) -> f64 {
-        (self.east * self.east + self.north * self.north).sqrt()
+        (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
 
     /// Bounds the values within `half` (rad) of an angle, widened by `slack`.
-    pub fn near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
-        let value = self.base + self.east * turn.cos + self.north * turn.sin;
-        let slope = (self.north * turn.cos - self.east * turn.sin).abs();
+    pub fn range_near(&self, turn: Angle, half: f64, slack: f64) -> [f64; 2] {
+        let value = self.constant + self.cosine * turn.cos + self.sine * turn.sin;
+        let slope = (self.sine * turn.cos - self.cosine * turn.sin).abs();
         let spread = half * slope + 0.5 * half * half * self.size() + slack;
         [value - spread, value + spread]
     }
@@ -80,7 +80,7 @@ impl Swing {
     /// Returns the arcs on which the value lies within `range`, one on each side of the peak, if the amplitude is uncertain
     /// by the relative error `doubt`; `None` if there are no such arcs.
     pub fn arcs(&self, range: [f64; 2], doubt: f64) -> Option<[Arc; 2]> {
-        let [low, high] = range.map(|value| value - self.base);
+        let [low, high] = range.map(|value| value - self.constant);
         let (least, most) = ((1.0 - doubt) * self.size(), (1.0 + doubt) * self.size());
         // Cosines of the angle from the peak; infinite or NaN if nothing is known.
         let from = if doubt < 1.0 { low / if low > 0.0 { most } else { least } } else { -1.0 };
@@ -90,7 +90,7 @@ impl Swing {
         }
         let near = if to < 1.0 { to.acos() } else { 0.0 };
         let far = if from > -1.0 { from.acos() } else { PI };
-        let (peak, middle, half) = (self.north.atan2(self.east), 0.5 * (near + far), 0.5 * (far - near));
+        let (peak, middle, half) = (self.sine.atan2(self.cosine), 0.5 * (near + far), 0.5 * (far - near));
         Some([Arc { middle: peak + middle, half }, Arc { middle: peak - middle, half }])
     }
 }
@@ -149,7 +149,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{add_scaled, norm, unit};
     use crate::rng;
 
     #[test]
@@ -157,20 +157,20 @@ mod tests {
         let mut rng = rng::stream(3, 0);
         for _ in 0..20_000 {
             let mut draw = |most: f64| rng.uniform_in(-most, most);
-            let swing = Swing { base: draw(1.0), east: draw(1.0), north: draw(1.0) };
+            let sinusoid = Sinusoid { constant: draw(1.0), cosine: draw(1.0), sine: draw(1.0) };
             let (q, doubt) = (draw(PI), draw(1.1).abs());
             let factor = 1.0 + doubt * draw(1.0);
-            let value = swing.base + factor * (swing.east * q.cos() + swing.north * q.sin());
+            let value = sinusoid.constant + factor * (sinusoid.cosine * q.cos() + sinusoid.sine * q.sin());
             let range = [value - draw(0.5).abs() - 1e-12, value + draw(0.5).abs() + 1e-12];
-            let arcs = swing.arcs(range, doubt).expect("it is within");
+            let arcs = sinusoid.arcs(range, doubt).expect("it is within");
             let angle = Arc { middle: q + TAU, half: 0.0 };
-            assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{swing:?} {q} {range:?}");
+            assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{sinusoid:?} {q} {range:?}");
             let half = draw(1.0).abs();
-            let near = swing.near(Angle::by(q + half * draw(1.0)), half, 1e-12);
-            let value = swing.base + swing.east * q.cos() + swing.north * q.sin();
+            let near = sinusoid.range_near(Angle::by(q + half * draw(1.0)), half, 1e-12);
+            let value = sinusoid.constant + sinusoid.cosine * q.cos() + sinusoid.sine * q.sin();
             assert!(near[0] <= value && value <= near[1]);
         }
-        assert!(Swing { base: 0.0, east: 0.6, north: 0.8 }.arcs([1.2, 2.0], 0.1).is_none());
+        assert!(Sinusoid { constant: 0.0, cosine: 0.6, sine: 0.8 }.arcs([1.2, 2.0], 0.1).is_none());
     }
 
     #[test]
@@ -181,13 +181,13 @@ mod tests {
             let ball = Ball { middle: [draw(1.0), draw(1.0), draw(1.0)], radius: draw(0.5).abs() };
             let (q, half) = (draw(3.0), draw(0.5).abs());
             let off = unit(&[draw(1.0), draw(1.0), draw(1.0)]);
-            let point: Vector = std::array::from_fn(|k| ball.middle[k] + ball.radius * off[k]);
+            let point: Vector = add_scaled(&ball.middle, &off, ball.radius);
             let turned = ball.turned(&axis, Angle::by(q), half);
             let there = Angle::by(q + half * draw(1.0)).about(&axis, &point);
             assert!(norm(&sub(&there, &turned.middle)) <= turned.radius + 1e-12);
             let [a, b] = [cross(&axis, &ball.middle), cross(&axis, &point)];
             let apart = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
-            assert!(apart.min(1.0).acos() <= ball.swerve(&axis) + 1e-7);
+            assert!(apart.min(1.0).acos() <= ball.azimuth_error(&axis) + 1e-7);
         }
     }
 

@@ -8,9 +8,9 @@ use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
 use crate::closed_form::branches::{Branches, Doubt};
 use crate::closed_form::six::{ClosedForm, Structure, samples};
 use crate::closed_form::structure::{EXACT, Pair};
-use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit};
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
+use crate::math::vector3::{Vector, add, cross, perpendicular, scaled, unit};
 
 /// Largest angle of the virtual joint (rad), and pose error without it (m, rad), from which Newton's method is tried; beyond
 /// it the pose is out of reach.
@@ -93,9 +93,9 @@ impl FiveJoints {
         // Further solutions may exist in two cases: a family of six-joint solutions has only one representative, and near a
         // double root the virtual joint is poorly determined.
         let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty() && found.len() >= six.len();
-        (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Open }, six.singular);
+        (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Anywhere }, six.singular);
         found.evaluations += six.evaluations;
-        found.nearly |= six.nearly;
+        found.near_miss |= six.near_miss;
         found
     }
 }

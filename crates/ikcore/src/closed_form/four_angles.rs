@@ -95,7 +95,7 @@ mod tests {
             assert_eq!([0, 1, 2].map(|k| points[k].lane(lane)), point);
             let expected = crate::closed_form::orbit::about_z(turn.and(*turn).back().signed(-1.0), &point);
             assert_eq!([0, 1, 2].map(|k| added[k].lane(lane)), expected);
-            let product = crate::closed_form::vector::dot(&point, &point);
+            let product = crate::math::vector3::dot(&point, &point);
             assert_eq!(dot(&points, &points).lane(lane), product);
         }
         let changed = four.with_lane(2, Angle::by(0.5));

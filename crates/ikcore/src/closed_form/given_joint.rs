@@ -3,7 +3,7 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind, JointAxis};
-use crate::closed_form::branches::{Branches, Candidates, Given};
+use crate::closed_form::branches::{Branches, Candidates, FixedJoint};
 use crate::closed_form::six::{ClosedForm, Structure};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
@@ -59,19 +59,14 @@ impl GivenJoint {
         self.others.structure()
     }
 
-    /// Whether [`Self::add_candidates`] finds all configurations up to rounding.
-    pub fn has_exact_candidates(&self) -> bool {
-        self.others.has_exact_candidates()
-    }
-
     /// Returns all joint values, angles in (-pi, pi], whose displacements make `goal` with the given joint at `value` (rad,
     /// m).
     pub fn solve(&self, goal: &Frame, value: f64) -> Branches<7> {
-        let left = self.left(goal, self.joint.turn(value));
-        let six = self.others.solve_displacement(&left, &left);
+        let rest = self.remaining_displacement(goal, self.joint.turn(value));
+        let six = self.others.solve_displacement(&rest, &rest);
         let mut seven = Branches::none();
         (seven.doubt, seven.singular, seven.evaluations) = (six.doubt, six.singular, six.evaluations);
-        seven.nearly = six.nearly;
+        seven.near_miss = six.near_miss;
         let turns = self.joint.motion == AxisKind::Turns;
         let value = if turns { Angle::by(value).angle() } else { value };
         for ([a, b, c, d, e, f], error) in six.iter().copied().zip(six.errors()) {
@@ -86,17 +81,17 @@ impl GivenJoint {
     pub fn add_candidates(&self, goal: &Frame, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
         let turn = self.joint.turn(value);
         let [a, b, c, d, e, f, g] = *ranges;
-        let (given, ranges) = match self.axis {
-            0 => (Given::First(turn), [b, c, d, e, f, g]),
-            _ => (Given::Last(turn), [a, b, c, d, e, f]),
+        let (joint, ranges) = match self.axis {
+            0 => (FixedJoint::First(turn), [b, c, d, e, f, g]),
+            _ => (FixedJoint::Last(turn), [a, b, c, d, e, f]),
         };
-        found.give(given);
-        self.others.add_candidates(&self.left(goal, turn), &ranges, found);
+        found.fix_joint(joint);
+        self.others.add_candidates(&self.remaining_displacement(goal, turn), &ranges, found);
     }
 
     /// Returns the displacement left for the other six joints: E2 ... E7 = E1^-1 goal, or E1 ... E6 = goal E7^-1.
     #[inline]
-    fn left(&self, goal: &Frame, turn: Angle) -> Frame {
+    fn remaining_displacement(&self, goal: &Frame, turn: Angle) -> Frame {
         let back = self.joint.displacement_by(turn.back());
         if self.axis == 0 { back.then::<Baseline>(goal) } else { goal.then::<Baseline>(&back) }
     }

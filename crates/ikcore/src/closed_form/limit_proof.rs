@@ -8,24 +8,24 @@
 use std::f64::consts::PI;
 
 use crate::closed_form::arm_angle_limits::Values;
-use crate::closed_form::axis_chain::AxisChain;
-use crate::closed_form::enclosure::{Arc, Ball, Swing, distance};
+use crate::closed_form::axis_chain::{AxisChain, reversed};
+use crate::closed_form::enclosure::{Arc, Ball, Sinusoid, distance};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
-use crate::closed_form::vector::{Vector, across, add, cross, dot, norm, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, across, add, cross, dot, norm, scaled, sub};
 
 /// Pose error (m, rad) that the proof covers: larger than the tolerances of a caller, and than rounding.
-const OFF: f64 = 2e-5;
+const POSE_ERROR: f64 = 2e-5;
 
 /// Slack beyond the joint limits (rad) that counts as inside.
 const SLACK: f64 = 1e-4;
 
-/// Extension of the parameter arcs at both ends (rad): the shift of the ends by a pose error of [`OFF`]. Near a fold the
+/// Extension of the parameter arcs at both ends (rad): the shift of the ends by a pose error of [`POSE_ERROR`]. Near a fold the
 /// other joints turn fast.
-const FOLD: f64 = 1e-3;
+const FOLD_MARGIN: f64 = 1e-3;
 
 /// Longest interval of the parameter (rad) that is examined whole.
 const LONGEST: f64 = 0.4;
@@ -37,7 +37,7 @@ const SHORTEST: f64 = 0.002;
 const MOST_INTERVALS: usize = 300;
 
 /// Convergence radius of descents from a parameter value (rad).
-const APART: f64 = 0.02;
+const CONVERGENCE_RADIUS: f64 = 0.02;
 
 /// Precomputed arm. Joints are in the order parameter, A, B, C, D, E, F.
 #[derive(Debug, Clone, Copy)]
@@ -52,26 +52,26 @@ pub struct LimitProof {
     /// Vectors from the root to a point on the axis of C, and on to the centre.
     links: [Vector; 2],
     /// Squared distance from root to centre, as a function of C.
-    distance: Swing,
+    distance: Sinusoid,
     /// Cosine of the angle between the axes of D and F, as a function of E.
-    bend: Swing,
+    bend: Sinusoid,
     /// Unit vectors perpendicular to the axes of D and F.
     across: [[Vector; 2]; 2],
     /// True if the parameter is the last joint: the chain is taken from tip to base.
     reversed: bool,
-    /// Displacement of the centre (m) by a pose error of [`OFF`].
+    /// Displacement of the centre (m) by a pose error of [`POSE_ERROR`].
     off: f64,
 }
 
 /// Quantities that move with the parameter, for one pose and its limits.
-struct Moving<'a> {
+struct PoseMotion<'a> {
     arm: &'a LimitProof,
     limits: [Arc; 7],
     /// Vector from the root to the centre.
     centre: Orbit,
     /// Squared length of that vector, and its component along the axis of A.
-    distance: Swing,
-    height: Swing,
+    distance: Sinusoid,
+    height: Sinusoid,
     /// Axis of F.
     end: Orbit,
     /// Axis of F in the pose, and unit vectors perpendicular to it.
@@ -84,11 +84,7 @@ impl LimitProof {
     /// the two axes next to the parameter's.
     pub fn new(chain: &AxisChain<7>, by_first: bool) -> Option<Self> {
         let size = chain.size();
-        let joints: [_; 7] = std::array::from_fn(|k| {
-            let mut joint = chain.joints[if by_first { k } else { 6 - k }];
-            joint.axis = if by_first { joint.axis } else { scaled(&joint.axis, -1.0) };
-            joint
-        });
+        let joints = if by_first { chain.joints } else { reversed(&chain.joints) };
         let centre = three_meet(&joints[4..], size, EXACT)?;
         let Pair::Meet(root) = Pair::of(&joints[1], &joints[2], size, EXACT) else { return None };
         let axes = joints.map(|joint| joint.axis);
@@ -98,11 +94,11 @@ impl LimitProof {
             parameter: joints[0].point,
             root,
             centre,
-            distance: Swing::squared_distance(&Orbit::of(c, &links[1]), &scaled(&links[0], -1.0)),
-            bend: Swing::along(d, &Orbit::of(e, f)),
+            distance: Sinusoid::squared_distance(&Orbit::of(c, &links[1]), &scaled(&links[0], -1.0)),
+            bend: Sinusoid::along(d, &Orbit::of(e, f)),
             across: [d, f].map(|axis| [across(axis)[0], across(axis)[1]]),
             reversed: !by_first,
-            off: OFF * (1.0 + size + norm(&chain.tip.origin)),
+            off: POSE_ERROR * (1.0 + size + norm(&chain.tip.origin)),
             links,
             axes,
         })
@@ -119,13 +115,13 @@ impl LimitProof {
         most: usize,
         visit: &mut dyn FnMut(f64) -> bool,
     ) -> Values {
-        let moving = Moving::new(self, goal, limits);
-        let mut open = Open { values: Values::new(), most, left: MOST_INTERVALS, visit };
-        for [first, last] in arcs.iter().map(|[first, last]| [first - FOLD, last + FOLD]) {
+        let motion = PoseMotion::new(self, goal, limits);
+        let mut open = BranchAndBound { values: Values::new(), most, left: MOST_INTERVALS, visit };
+        for [first, last] in arcs.iter().map(|[first, last]| [first - FOLD_MARGIN, last + FOLD_MARGIN]) {
             let count = ((last - first) / LONGEST).ceil().max(1.0);
             let length = (last - first) / count;
             for start in (0..count as usize).map(|k| first + length * k as f64) {
-                moving.add_open(&Arc::between([start, start + length]), &mut open);
+                motion.add_open(&Arc::between([start, start + length]), &mut open);
             }
         }
         open.values
@@ -133,7 +129,7 @@ impl LimitProof {
 }
 
 /// State of the branch and bound.
-struct Open<'v> {
+struct BranchAndBound<'v> {
     values: Values,
     /// Number of values wanted, and of intervals that may still be examined.
     most: usize,
@@ -142,15 +138,15 @@ struct Open<'v> {
     visit: &'v mut dyn FnMut(f64) -> bool,
 }
 
-impl Open<'_> {
+impl BranchAndBound<'_> {
     /// Whether there are enough values, or `part` lies within reach of one.
     fn covers(&self, part: &Arc) -> bool {
-        let near = |value: &f64| (part.middle - value).abs() + part.half < APART;
+        let near = |value: &f64| (part.middle - value).abs() + part.half < CONVERGENCE_RADIUS;
         self.values.len() >= self.most || self.values.last().is_some_and(near)
     }
 }
 
-impl<'a> Moving<'a> {
+impl<'a> PoseMotion<'a> {
     fn new(arm: &'a LimitProof, goal: &Frame, limits: &[[f64; 2]; 7]) -> Self {
         let goal = if arm.reversed { goal.inverse() } else { *goal };
         let limits = std::array::from_fn(|k| Arc::between(limits[if arm.reversed { 6 - k } else { k }]).wider(SLACK));
@@ -162,8 +158,8 @@ impl<'a> Moving<'a> {
         Self {
             arm,
             limits,
-            distance: Swing::squared_distance(&centre, &[0.0; 3]),
-            height: Swing::along(&arm.axes[1], &centre),
+            distance: Sinusoid::squared_distance(&centre, &[0.0; 3]),
+            height: Sinusoid::along(&arm.axes[1], &centre),
             centre,
             end: Orbit::of(&back, &end_axis),
             end_axis,
@@ -173,7 +169,7 @@ impl<'a> Moving<'a> {
 
     /// Adds values in `part` near which a configuration may lie within limits. Once the budget of intervals is spent, all
     /// remaining ones count as open.
-    fn add_open(&self, part: &Arc, open: &mut Open<'_>) {
+    fn add_open(&self, part: &Arc, open: &mut BranchAndBound<'_>) {
         if open.covers(part) {
             return;
         }
@@ -197,7 +193,7 @@ impl<'a> Moving<'a> {
         let (turn, off) = (part.turn(), self.arm.off);
         let reached = Ball { middle: self.centre.at(turn), radius: part.half * norm(&self.centre.sine) + off };
         let slack = 2.0 * off * (norm(&reached.middle) + reached.radius);
-        let elbows = self.arm.distance.arcs(self.distance.near(turn, part.half, slack), 0.0);
+        let elbows = self.arm.distance.arcs(self.distance.range_near(turn, part.half, slack), 0.0);
         elbows.into_iter().flatten().filter_map(|arc| arc.within(&self.limits[3])).any(|elbow| {
             self.arms(part, &reached, &elbow).into_iter().flatten().any(|arm| self.wrist_may_hold(part, &arm))
         })
@@ -211,24 +207,24 @@ impl<'a> Moving<'a> {
         let (slant, along, lever) = (dot(a, b), dot(b, &u.middle), distance(b, &u.middle));
         let constant = slant * along;
         let height_by_b =
-            Swing { base: constant, east: dot(a, &u.middle) - constant, north: dot(a, &cross(b, &u.middle)) };
-        let height = self.height.near(part.turn(), part.half, off + slant.abs() * u.radius);
+            Sinusoid { constant, cosine: dot(a, &u.middle) - constant, sine: dot(a, &cross(b, &u.middle)) };
+        let height = self.height.range_near(part.turn(), part.half, off + slant.abs() * u.radius);
         let doubt = u.radius / lever;
         let Some(arcs) = height_by_b.arcs(height, if doubt < 1.0 { doubt } else { 1.0 }) else { return [None; 2] };
         // Derivative b'(u x du/dq4) with du/dq4 = c x rotC fore; zero if b and u are perpendicular to c.
         let by_elbow = norm(fore) * (dot(b, c).abs() * (norm(&u.middle) + u.radius) + dot(c, &u.middle).abs());
-        let swerve = u.swerve(b).min(elbow.half * by_elbow / u.least_distance(b).powi(2));
+        let error = u.azimuth_error(b).min(elbow.half * by_elbow / u.least_distance(b).powi(2));
         arcs.map(|arc| {
-            let second = arc.wider(swerve).within(&self.limits[2])?;
+            let second = arc.wider(error).within(&self.limits[2])?;
             let turned = u.turned(b, second.turn(), second.half);
             // Derivative a'(v x dv/dqB) with dv/dqB = b x v.
             let by_b =
                 slant.abs() * dot(&u.middle, &u.middle) + (dot(a, &turned.middle).abs() + turned.radius) * along.abs();
             let nearest = turned.least_distance(a);
-            let swerve = turned.swerve(a).min((second.half * by_b / nearest + u.radius) / nearest);
+            let error = turned.azimuth_error(a).min((second.half * by_b / nearest + u.radius) / nearest);
             let (from, to) = (cross(a, &turned.middle), cross(a, &reached.middle));
             let middle = dot(a, &cross(&from, &to)).atan2(dot(&from, &to));
-            let first = Arc { middle, half: swerve + reached.swerve(a) }.within(&self.limits[1])?;
+            let first = Arc { middle, half: error + reached.azimuth_error(a) }.within(&self.limits[1])?;
             Some([first, second, *elbow])
         })
     }
@@ -236,7 +232,7 @@ impl<'a> Moving<'a> {
     /// Whether D, E and F may lie within limits with the other joints on these arcs.
     fn wrist_may_hold(&self, part: &Arc, arm: &[Arc; 3]) -> bool {
         let LimitProof { axes: [_, a, b, c, d, e, f], bend, .. } = self.arm;
-        let mut end = Ball { middle: self.end.at(part.turn()), radius: part.half * norm(&self.end.sine) + OFF };
+        let mut end = Ball { middle: self.end.at(part.turn()), radius: part.half * norm(&self.end.sine) + POSE_ERROR };
         for (axis, arc) in [a, b, c].into_iter().zip(arm) {
             end = end.turned(axis, arc.turn().back(), arc.half);
         }
@@ -246,32 +242,32 @@ impl<'a> Moving<'a> {
         // Bound on the rotation of the bent axis about the other one as E turns: zero in a wrist with right angles.
         let squared_sine = 1.0 - cosines[0].abs().max(cosines[1].abs()).powi(2);
         let skew = dot(d, e).abs() + dot(e, f).abs();
-        let swerve = |bend: &Arc| if squared_sine > 0.0 { bend.half * skew / squared_sine } else { PI };
+        let error = |bend: &Arc| if squared_sine > 0.0 { bend.half * skew / squared_sine } else { PI };
         let bends = bend.arcs(cosines, 0.0);
         bends.into_iter().flatten().filter_map(|arc| arc.within(&self.limits[5])).any(|bend| {
-            self.fourth_may_hold(&bend, &end, swerve(&bend)) && self.last_may_hold(part, arm, &bend, swerve(&bend))
+            self.fourth_may_hold(&bend, &end, error(&bend)) && self.last_may_hold(part, arm, &bend, error(&bend))
         })
     }
 
     /// Whether D, which turns the bent axis of F to `end`, may lie within limits.
-    fn fourth_may_hold(&self, bend: &Arc, end: &Ball, swerve: f64) -> bool {
+    fn fourth_may_hold(&self, bend: &Arc, end: &Ball, error: f64) -> bool {
         let LimitProof { axes: [_, _, _, _, d, e, f], across: [across, _], .. } = self.arm;
         let middle = azimuth(across, &end.middle) - azimuth(across, &bend.turn().about(e, f));
-        Arc { middle, half: swerve + end.swerve(d) }.within(&self.limits[4]).is_some()
+        Arc { middle, half: error + end.azimuth_error(d) }.within(&self.limits[4]).is_some()
     }
 
     /// Whether F may lie within limits: it turns the axis of D, expressed in the tip frame, to the bent one.
-    fn last_may_hold(&self, part: &Arc, arm: &[Arc; 3], bend: &Arc, swerve: f64) -> bool {
+    fn last_may_hold(&self, part: &Arc, arm: &[Arc; 3], bend: &Arc, error: f64) -> bool {
         if self.limits[6].is_all() {
             return true;
         }
         let LimitProof { axes: [p, a, b, c, d, e, _], across: [_, across], .. } = self.arm;
-        let mut seen = Ball { middle: *d, radius: OFF };
+        let mut seen = Ball { middle: *d, radius: POSE_ERROR };
         for (axis, arc) in [(c, &arm[2]), (b, &arm[1]), (a, &arm[0]), (p, part)] {
             seen = seen.turned(axis, arc.turn(), arc.half);
         }
         let middle = azimuth(across, &bend.turn().back().about(e, d)) - azimuth(&self.end_across, &seen.middle);
-        Arc { middle, half: swerve + seen.swerve(&self.end_axis) }.within(&self.limits[6]).is_some()
+        Arc { middle, half: error + seen.azimuth_error(&self.end_axis) }.within(&self.limits[6]).is_some()
     }
 }
 
@@ -311,7 +307,7 @@ mod tests {
                 let value = if arm.1 { q[0] } else { q[6] };
                 let part = Arc { middle: value + half * rng.uniform_in(-1.0, 1.0), half };
                 let goal = chain.tip_at(&q);
-                assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
+                assert!(PoseMotion::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?} {part:?}");
                 let open = proof.open_values(&goal, &ParameterArcs::CIRCLE, &limits, 1, &mut |_| false);
                 assert!(!open.is_empty(), "{q:?} {limits:?}");
             }
@@ -338,7 +334,7 @@ mod tests {
                 let parameter = if arm.1 { 0 } else { 6 };
                 let goal = chain.tip_at(&q);
                 let part = Arc { middle: q[parameter], half: 0.0 };
-                assert!(Moving::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?}");
+                assert!(PoseMotion::new(&proof, &goal, &limits).may_hold(&part), "{q:?} {limits:?}");
                 let distance = if arm.1 { ElbowDistance::by_first(&chain) } else { ElbowDistance::by_last(&chain) }
                     .expect("it has one");
                 let arcs = distance.angles(&goal, distance.range(limits[3])).within(limits[parameter]);

@@ -43,7 +43,6 @@ mod structure;
 mod subproblem;
 mod three_parallel;
 mod trigonometric;
-mod vector;
 mod verify;
 mod wrist;
 
@@ -53,5 +52,6 @@ pub(crate) use arm_branches::ArmBranches;
 pub(crate) use branches::{BranchError, Doubt, MOST as MOST_CONFIGURATIONS, MOST_JOINTS};
 pub(crate) use configurations::ArmConfigurations;
 pub(crate) use parameter_arcs::ParameterArcs;
-pub(crate) use pose_family::{FamilyLimits, PoseFamily};
+pub(crate) use pose_family::PoseFamily;
+pub(crate) use redundant::FamilyLimits;
 pub(crate) use verify::VERIFIED;

@@ -1,7 +1,7 @@
 //! Circle described by a point that turns about an axis, precomputed for many angles.
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::vector::{Vector, add, cross, dot, scaled, sub};
+use crate::math::vector3::{Vector, add, cross, dot, scaled, sub};
 
 /// Circle centre + cosine cos q + sine sin q.
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +56,7 @@ pub fn about_z(turn: Angle, v: &Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::vector::{norm, unit};
+    use crate::math::vector3::{norm, unit};
 
     #[test]
     fn a_point_on_the_circle_is_the_turned_point() {

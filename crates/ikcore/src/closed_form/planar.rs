@@ -5,11 +5,11 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::closed_form::structure::{EXACT, Pair, three_parallel};
-use crate::closed_form::subproblem::{distance_to_point, onto_point};
-use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
+use crate::closed_form::subproblem::{subproblem1, subproblem3};
 use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 
 /// Closed form of such a chain: N = 3, or 4 with the prismatic joint at any position.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ impl<const N: usize> Planar<N> {
         let goal = target.then::<Baseline>(&self.back);
         let [first, second, third] = self.turning.map(|k| self.chain.joints[k]);
         let axis = &first.axis;
-        let sum = onto_point(axis, &self.mark, &goal.turn::<Baseline>(&self.mark));
+        let sum = subproblem1(axis, &self.mark, &goal.turn::<Baseline>(&self.mark));
         let moved = sub(&goal.transform::<Baseline>(&third.point), &third.point);
         let slide = self.along * dot(axis, &moved);
         // Projection onto the plane perpendicular to the axes.
@@ -76,10 +76,10 @@ impl<const N: usize> Planar<N> {
         let square = dot(&reached, &reached);
         let floor = self.floor * norm(&links[0]);
         let mut candidates = Candidates::new();
-        let bends = distance_to_point(&second.axis, &links[1], &scaled(&links[0], -1.0), square, floor);
+        let bends = subproblem3(&second.axis, &links[1], &scaled(&links[0], -1.0), square, floor);
         (candidates.singular, candidates.doubt) = (bends.free, bends.doubt);
         for q2 in bends.iter() {
-            let q1 = onto_point(axis, &add(&links[0], &q2.about(&second.axis, &links[1])), &reached);
+            let q1 = subproblem1(axis, &add(&links[0], &q2.about(&second.axis, &links[1])), &reached);
             let q3 = sum.and(q1.back()).and(q2.signed(-self.senses[0])).signed(self.senses[1]);
             let mut turns = [Angle::NONE; N];
             for (k, turn) in self.turning.iter().zip([q1, *q2, q3]) {

@@ -1,57 +1,69 @@
 //! Configurations of a redundant arm for one pose, as a function of the self-motion parameter.
 
+use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
 use crate::closed_form::arm_angle_limits::{Decisive, Values};
 use crate::closed_form::arm_branches::ArmBranches;
-use crate::closed_form::branches::Candidates;
-use crate::closed_form::configurations::{ArmConfigurations, Drives};
+use crate::closed_form::axis_chain::AxisKind;
+use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::configurations::ArmConfigurations;
 use crate::closed_form::parameter_arcs::ParameterArcs;
-use crate::closed_form::redundant::{AxisLimits, Parameter, Redundant, RedundantPose};
-use crate::closed_form::verify::{LANES, values_of_seven};
+use crate::closed_form::redundant::{FamilyLimits, Method, Parameter, Redundant};
+use crate::closed_form::six::Structure;
+use crate::closed_form::verify::{LANES, verified, write_values};
 use crate::math::Frame;
+use crate::math::arithmetic::{Baseline, by_instructions};
 
 /// Redundant arm with a pose.
 #[derive(Debug, Clone)]
 pub(crate) struct PoseFamily<'a> {
-    redundant: &'a Redundant,
-    drives: &'a Drives,
-    /// Joint limits of the arm.
-    own: &'a FamilyLimits,
-    pose: RedundantPose,
-}
-
-/// Joint limits of a redundant arm, precomputed for any pose.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FamilyLimits(AxisLimits);
-
-impl FamilyLimits {
-    /// Prepares the limits `lower` and `upper` (n,) (rad, m).
-    pub fn new(redundant: &Redundant, drives: &Drives, [lower, upper]: [&[f64]; 2]) -> Self {
-        Self(redundant.limits(drives.of_axes(lower, upper)))
-    }
+    arm: &'a Redundant,
+    /// Displacement that all joints together must produce.
+    goal: Frame,
+    by_arm_angle: Option<(&'a ArmAngle, ArmAnglePose)>,
 }
 
 impl<'a> PoseFamily<'a> {
     /// Returns the family of configurations with the tip of the chain at `target`.
     #[inline]
-    pub fn new(redundant: &'a Redundant, drives: &'a Drives, own: &'a FamilyLimits, target: &Frame) -> Self {
-        Self { redundant, drives, own, pose: redundant.pose(target) }
+    pub fn new(arm: &'a Redundant, target: &Frame) -> Self {
+        let goal = target.then::<Baseline>(&arm.back);
+        let by_arm_angle = match &arm.method {
+            Method::ArmAngle(method) => Some((&**method, method.pose(&goal))),
+            Method::Given(_) => None,
+        };
+        Self { arm, goal, by_arm_angle }
     }
 
     /// Prepares the limits `lower` and `upper` (n,) (rad, m).
     pub fn limits(&self, lower: &[f64], upper: &[f64]) -> FamilyLimits {
-        let is_own = self.own.0.axes == self.drives.of_axes(lower, upper);
-        if is_own { *self.own } else { FamilyLimits::new(self.redundant, self.drives, [lower, upper]) }
+        self.arm.limits(lower, upper)
     }
 
-    /// Returns arcs of the parameter (rad, m) that contain every configuration within limits. Arcs may also hold values
-    /// without such a configuration, so they must be searched.
+    /// Returns arcs of the parameter (rad, m) outside which joint 4 or the parameter's own joint violates its limits. Arcs may
+    /// also hold values without a configuration within limits, so they must be searched.
+    ///
+    /// The ends are exact, so that an arc of zero length, with joint 4 at its limit, is not lost between samples.
     pub fn arcs(&self, limits: &FamilyLimits) -> ParameterArcs {
-        self.redundant.arcs(&self.pose, &limits.0)
+        let FamilyLimits { axes, distances, .. } = limits;
+        match (self.arm.parameter(), &self.arm.distance) {
+            (Parameter::ArmAngle, Some(distance)) => distance.arm_angles(&self.goal, *distances),
+            (Parameter::ArmAngle, None) => ParameterArcs::CIRCLE,
+            (Parameter::Axis(axis), _) if self.arm.chain.joints[axis].motion == AxisKind::Slides => {
+                ParameterArcs::one(axes[axis])
+            }
+            (Parameter::Axis(axis), Some(distance)) => distance.angles(&self.goal, *distances).within(axes[axis]),
+            (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
+        }
     }
 
     /// Whether the limits provably exclude every configuration, although [`Self::arcs`] leaves `arcs`. False proves nothing.
     pub fn is_excluded(&self, limits: &FamilyLimits, arcs: &ParameterArcs) -> bool {
-        self.redundant.is_excluded(&self.pose, &limits.0, arcs)
+        match &self.by_arm_angle {
+            Some((method, pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
+            None => self.open_values(limits, arcs, 1, |_| false).is_some_and(|open| open.is_empty()),
+        }
     }
 
     /// Returns the first `most` parameter values (rad) on `arcs` near which a configuration may lie within limits; an empty
@@ -64,36 +76,50 @@ impl<'a> PoseFamily<'a> {
         most: usize,
         mut visit: impl FnMut(f64) -> bool,
     ) -> Option<Values> {
-        self.redundant.open_values(&self.pose, &limits.0, arcs, most, &mut visit)
+        let proof = self.arm.proof.as_deref()?;
+        Some(proof.open_values(&self.goal, arcs, &limits.axes, most, &mut visit))
     }
 
     /// Returns parameter values (rad, m) that decide whether any configuration lies within limits; `None` if no such set is
     /// known.
     pub fn decisive(&self, limits: &FamilyLimits) -> Option<Decisive> {
-        self.redundant.decisive(&self.pose, &limits.0)
+        let (method, pose) = self.by_arm_angle.as_ref()?;
+        Some(method.decisive(pose, &self.goal, &limits.axes, &limits.ranges[3]))
     }
 
     /// Whether the parameter is the arm angle: then every branch exists at every value.
     pub fn is_by_arm_angle(&self) -> bool {
-        self.redundant.parameter() == Parameter::ArmAngle
+        self.by_arm_angle.is_some()
     }
 
     /// Whether [`Self::arcs`] end exactly where the branches end, so that no branch is lost there. Otherwise solutions may
     /// hide near folds.
     pub fn is_sure_of_arcs(&self) -> bool {
-        self.redundant.is_sure_of_arcs()
+        self.arm.distance.is_some() && self.arm.is_exact()
     }
 
     /// Returns all configurations with the parameter at `value`.
     pub fn branches_at(&self, value: f64) -> ArmBranches {
-        ArmBranches::of(&self.redundant.solve(&self.pose, value), self.drives)
+        ArmBranches::of(&self.solve(value), &self.arm.drives)
+    }
+
+    /// Returns all axis values, angles in (-pi, pi], with the parameter at `value` (rad, m).
+    pub(super) fn solve(&self, value: f64) -> Branches<7> {
+        match &self.arm.method {
+            Method::Given(given) => given.solve(&self.goal, value),
+            Method::ArmAngle(_) => {
+                let mut candidates = Candidates::new();
+                self.add_candidates(value, &[AngleRange::ANY; 7], &mut candidates);
+                verified(&self.arm.verifier, &self.goal, &candidates)
+            }
+        }
     }
 
     /// Finds configurations with the parameter at `value` that bring the tip to the pose, to be confirmed by forward
     /// kinematics; cheaper than [`Self::branches_at`]. The result includes every configuration within the limits.
     #[inline]
     pub fn likely_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
-        if self.redundant.has_exact_candidates() {
+        if self.arm.is_exact() {
             self.candidates_at(value, limits, found);
         } else {
             *found = self.branches_at(value).configurations();
@@ -103,16 +129,25 @@ impl<'a> PoseFamily<'a> {
     /// Whether the structure of the arm holds only approximately, so that [`Self::candidates_at`] yields configurations near
     /// the solutions.
     pub fn is_approximate(&self) -> bool {
-        self.redundant.has_approximate_candidates()
+        self.arm.structure().is_some_and(Structure::is_nearly)
     }
 
     /// Finds the candidates of the closed form within the limits, with the parameter at `value`; none for the general method.
     #[inline]
     pub fn candidates_at(&self, value: f64, limits: &FamilyLimits, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
-        self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
-        let verifier = self.redundant.verifier();
-        found.replace(self.drives, candidates.count, |columns| values_of_seven(verifier, &candidates, columns));
+        self.add_candidates(value, &limits.ranges, &mut candidates);
+        let write = |columns: &mut _| write_values(&self.arm.verifier, &candidates, columns);
+        found.replace(&self.arm.drives, candidates.count, write);
+    }
+
+    /// Adds candidates with the parameter at `value` (rad, m), as far as `ranges` may hold them.
+    fn add_candidates(&self, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
+        match (&self.arm.method, &self.by_arm_angle) {
+            (Method::Given(given), _) => given.add_candidates(&self.goal, value, ranges, found),
+            (_, Some((method, pose))) => arm_angle_candidates(method, pose, Angle::by(value), ranges, found),
+            (Method::ArmAngle(_), None) => {}
+        }
     }
 
     /// Calls `visit` with the configurations at each of `values`, several values at a time, until it returns false. The
@@ -123,13 +158,13 @@ impl<'a> PoseFamily<'a> {
         values: impl Iterator<Item = f64>,
         mut visit: impl FnMut(&ArmBranches) -> bool,
     ) {
-        if !self.redundant.has_exact_candidates() {
+        if !self.arm.is_exact() {
             values.map(|value| self.branches_at(value)).all(|branches| visit(&branches));
             return;
         }
         let mut candidates = Candidates::new();
         for value in values {
-            self.redundant.add_candidates_within(&self.pose, value, &limits.0, &mut candidates);
+            self.add_candidates(value, &limits.ranges, &mut candidates);
             // Flush while there is still room for the candidates of one more value.
             if candidates.count > LANES && !visit(&self.first_verified(&mut candidates)) {
                 return;
@@ -142,7 +177,7 @@ impl<'a> PoseFamily<'a> {
     fn first_verified(&self, candidates: &mut Candidates) -> ArmBranches {
         let all = candidates.count;
         candidates.count = all.min(LANES);
-        let verified = ArmBranches::of(&self.redundant.verified(&self.pose, candidates), self.drives);
+        let verified = ArmBranches::of(&verified(&self.arm.verifier, &self.goal, candidates), &self.arm.drives);
         let count = candidates.count;
         candidates.count = all;
         candidates.remove_first(count);
@@ -150,14 +185,31 @@ impl<'a> PoseFamily<'a> {
     }
 }
 
+by_instructions! {
+    fn arm_angle_candidates(
+        method: &ArmAngle,
+        pose: &ArmAnglePose,
+        arm_angle: Angle,
+        ranges: &[AngleRange; 7],
+        found: &mut Candidates,
+    ) {
+        method.solve(pose, arm_angle, ranges, found);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-
     use super::*;
     use crate::closed_form::axis_chain::AxisChain;
+    use crate::closed_form::configurations::Drives;
     use crate::closed_form::seven_joint_arms::{IIWA14, PANDA, random_angles};
 
     const LIMITS: [[f64; 7]; 2] = [[-2.9, -1.8, -2.9, -3.07, -2.9, -0.1, -2.9], [2.9, 1.8, 2.9, -0.07, 2.9, 3.75, 2.9]];
+
+    fn arm_of(chain: &AxisChain<7>, [lower, upper]: [[f64; 7]; 2]) -> Redundant {
+        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+        Redundant::new(chain, &drives, [&lower, &upper]).expect("a method")
+    }
 
     fn is_inside(q: &[f64]) -> bool {
         is_within(&LIMITS, q)
@@ -182,13 +234,12 @@ mod tests {
     fn nothing_within_the_limits_is_lost_and_all_is_verified() {
         for rows in [PANDA, IIWA14] {
             let chain = AxisChain::of_rows(&rows);
-            let redundant = Redundant::new(&chain).expect("a method");
-            let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
-            let limits = FamilyLimits::new(&redundant, &drives, [&LIMITS[0], &LIMITS[1]]);
+            let arm = arm_of(&chain, LIMITS);
+            let limits = arm.limits(&LIMITS[0], &LIMITS[1]);
             let mut inside = 0;
             for mut q in random_angles(50) {
                 (0..7).for_each(|k| q[k] = q[k].clamp(LIMITS[0][k], LIMITS[1][k]));
-                let family = PoseFamily::new(&redundant, &drives, &limits, &chain.tip_at(&q));
+                let family = PoseFamily::new(&arm, &chain.tip_at(&q));
                 let values: Vec<f64> = family.arcs(&limits).spread(16).collect();
                 let mut visited = Vec::new();
                 family.visit_within(&limits, values.iter().copied(), |branches| {
@@ -213,8 +264,7 @@ mod tests {
     #[test]
     fn decisive_values_have_a_configuration_inside_if_any_value_has() {
         let chain = AxisChain::of_rows(&IIWA14);
-        let redundant = Redundant::new(&chain).expect("a method");
-        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+        let arm = arm_of(&chain, LIMITS);
         let mut decided = [0, 0];
         for (trial, q) in random_angles(400).into_iter().enumerate() {
             // Ranges around another configuration, some wide and some narrow, some with a joint exactly at its limit.
@@ -224,8 +274,8 @@ mod tests {
             if trial % 4 == 0 {
                 (limits[0][0], limits[1][4]) = (q[0], q[4]);
             }
-            let all = FamilyLimits::new(&redundant, &drives, [&limits[0], &limits[1]]);
-            let family = PoseFamily::new(&redundant, &drives, &all, &chain.tip_at(&q));
+            let all = arm.limits(&limits[0], &limits[1]);
+            let family = PoseFamily::new(&arm, &chain.tip_at(&q));
             let inside = |value: f64| family.branches_at(value).iter().any(|(found, _)| is_within(&limits, found));
             let by_scan = (0..1500).any(|k| inside(f64::from(k) * (std::f64::consts::TAU / 1500.0)));
             let decisive = family.decisive(&all).expect("the arm has an arm angle");
@@ -239,10 +289,9 @@ mod tests {
     #[test]
     fn a_visitor_ends_the_visits() {
         let chain = AxisChain::of_rows(&IIWA14);
-        let redundant = Redundant::new(&chain).expect("a method");
-        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
-        let limits = FamilyLimits::new(&redundant, &drives, [&[-3.2; 7], &[3.2; 7]]);
-        let family = PoseFamily::new(&redundant, &drives, &limits, &chain.tip_at(&[0.4; 7]));
+        let arm = arm_of(&chain, LIMITS);
+        let limits = arm.limits(&[-3.2; 7], &[3.2; 7]);
+        let family = PoseFamily::new(&arm, &chain.tip_at(&[0.4; 7]));
         let mut visits = 0;
         family.visit_within(&limits, (0..100).map(|k| 0.06 * f64::from(k)), |_| {
             visits += 1;

@@ -2,14 +2,13 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::axis_chain::{JointAxis, reversed};
 use crate::closed_form::branches::Doubt;
-use crate::closed_form::subproblem::{
-    Linear, QuadraticForm, Turns, angle_to_plane, distance_to_point, onto_point, two_axes,
-};
-use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
-
-use crate::closed_form::axis_chain::JointAxis;
 use crate::closed_form::structure::Pair;
+use crate::closed_form::subproblem::{
+    Angles, Linear, QuadraticForm, solved, subproblem1, subproblem2, subproblem3, subproblem4,
+};
+use crate::math::vector3::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
 
 /// Length of the common normal of two axes times the sine of their angle, as a multiple of its rounding error, below which
 /// the axes nearly meet or are nearly parallel.
@@ -20,7 +19,7 @@ pub type Three = [Angle; 3];
 
 /// At most four solutions of three angles.
 #[derive(Debug, Clone, Copy)]
-pub struct Arms {
+pub struct ThreeJointSolutions {
     sets: [Three; 4],
     count: usize,
     /// True if at least one solution has a free joint.
@@ -29,7 +28,7 @@ pub struct Arms {
     pub doubt: Doubt,
 }
 
-impl Arms {
+impl ThreeJointSolutions {
     /// Empty set.
     pub const NONE: Self = Self { sets: [[Angle::NONE; 3]; 4], count: 0, free: false, doubt: Doubt::None };
 
@@ -44,7 +43,7 @@ impl Arms {
 
     /// Merges the doubt about the angles of one joint.
     #[inline(always)]
-    pub fn add_doubt(&mut self, turns: &Turns<2>) {
+    pub fn add_doubt(&mut self, turns: &Angles<2>) {
         self.free |= turns.free;
         if turns.near_miss {
             self.doubt.add_dead_end();
@@ -59,7 +58,7 @@ impl Arms {
     }
 }
 
-impl std::ops::Deref for Arms {
+impl std::ops::Deref for ThreeJointSolutions {
     type Target = [Three];
 
     #[inline(always)]
@@ -98,23 +97,17 @@ impl ThreeAxes {
             (_, Pair::Meet(_)) => (Case::FirstTwoMeet, true),
             _ => (Case::General, false),
         };
+        let (joints, first) = if mirrored { (reversed(joints), last) } else { (*joints, first) };
         let mut points = joints.map(|joint| joint.point);
-        match (case, mirrored, first, last) {
-            (Case::FirstTwoMeet, false, Pair::Meet(at), _) => (points[0], points[1]) = (at, at),
-            (Case::FirstTwoMeet, true, _, Pair::Meet(at)) => (points[1], points[2]) = (at, at),
-            _ => {}
+        if let Pair::Meet(at) = first {
+            (points[0], points[1]) = (at, at);
         }
-        let mut axes = joints.map(|joint| joint.axis);
-        if mirrored {
-            axes = [scaled(&axes[2], -1.0), scaled(&axes[1], -1.0), scaled(&axes[0], -1.0)];
-            points.reverse();
-        }
-        Self { axes, points, case, mirrored, floor: 1e-11 * size }
+        Self { axes: joints.map(|joint| joint.axis), points, case, mirrored, floor: 1e-11 * size }
     }
 
     /// Returns all angles that carry `point` to `goal`; solutions outside `ranges` may be left out.
     #[inline(always)]
-    pub fn reach(&self, point: &Vector, goal: &Vector, ranges: &[AngleRange; 3]) -> Arms {
+    pub fn reach(&self, point: &Vector, goal: &Vector, ranges: &[AngleRange; 3]) -> ThreeJointSolutions {
         let (point, goal, of_q3) = if self.mirrored { (goal, point, &ranges[0]) } else { (point, goal, &ranges[2]) };
         let [p1, p2, p3] = &self.points;
         // Equation to solve: rot1 (b + rot2 (c + rot3 w)) = a.
@@ -133,22 +126,22 @@ impl ThreeAxes {
     /// Solves parallel axes 1 and 2: the height along the axes gives q3 (subproblem 4), the distance q2 (subproblem 3), and
     /// subproblem 1 gives q1.
     #[inline(always)]
-    fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
+    fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
+        let mut arms = ThreeJointSolutions::NONE;
         let height = dot(h1, &sub(&sub(a, b), c));
-        let q3 = angle_to_plane(h1, h3, w, height, self.floor);
+        let q3 = subproblem4(h1, h3, w, height, self.floor);
         arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // Projection onto the plane perpendicular to the axes, where heights cannot disturb the distance.
             let (flat_a, flat_b, flat_u) = (cross(h1, a), cross(h1, b), cross(h1, &u));
             let lever = norm(b);
-            let q2 = distance_to_point(h2, &flat_u, &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), self.floor * lever);
+            let q2 = subproblem3(h2, &flat_u, &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), self.floor * lever);
             arms.add_doubt(&q2);
             for q2 in q2.iter() {
                 let v = add(b, &q2.about(h2, &u));
-                arms.push([onto_point(h1, &v, a), *q2, *q3]);
+                arms.push([subproblem1(h1, &v, a), *q2, *q3]);
             }
         }
         arms
@@ -157,15 +150,15 @@ impl ThreeAxes {
     /// Solves intersecting axes 1 and 2 (b = 0): the distance from their intersection gives q3 (subproblem 3), subproblem 2
     /// the other angles.
     #[inline(always)]
-    fn meeting(&self, a: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> Arms {
+    fn meeting(&self, a: &Vector, c: &Vector, w: &Vector, of_q3: &AngleRange) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
-        let q3 = distance_to_point(h3, w, &scaled(c, -1.0), dot(a, a), self.floor * norm(c));
+        let mut arms = ThreeJointSolutions::NONE;
+        let q3 = subproblem3(h3, w, &scaled(c, -1.0), dot(a, a), self.floor * norm(c));
         arms.add_doubt(&q3);
         for q3 in q3.iter().filter(|q3| of_q3.may_hold(q3)) {
             let u = add(c, &q3.about(h3, w));
             // Remaining equation: rot2 u = rot1' a.
-            let (q2, back) = two_axes(h2, &u, h1, a, self.floor);
+            let (q2, back) = subproblem2(h2, &u, h1, a, self.floor);
             arms.add_doubt(&q2);
             for (q2, back) in q2.iter().zip(&back) {
                 arms.push([back.back(), *q2, *q3]);
@@ -176,9 +169,9 @@ impl ThreeAxes {
 
     /// Solves skew axes 1 and 2 (subproblem 5): distance and height are linear in rot2 u, so that its length is a quadratic
     /// form in q3.
-    fn general(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> Arms {
+    fn general(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
+        let mut arms = ThreeJointSolutions::NONE;
         let (e1, e2) = (perpendicular(h2), cross(h2, &perpendicular(h2)));
         // Vector u = c + rot3 w, as constant + cosine cos q3 + sine sin q3.
         let along = scaled(h3, dot(h3, w));
@@ -195,10 +188,7 @@ impl ThreeAxes {
         });
         let k2: Linear = std::array::from_fn(|k| if k == 0 { dot(h1, &sub(a, b)) } else { 0.0 } - hz * z[k]);
         let m = [[dot(b, &e1), dot(b, &e2)], [dot(h1, &e1), dot(h1, &e2)]];
-        let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-        let inverse = 1.0 / determinant;
-        let y1: Linear = std::array::from_fn(|k| inverse * (m[1][1] * k1[k] - m[0][1] * k2[k]));
-        let y2: Linear = std::array::from_fn(|k| inverse * (m[0][0] * k2[k] - m[1][0] * k1[k]));
+        let ([y1, y2], determinant) = solved(&m, &[k1, k2]);
         let mut form = QuadraticForm::default();
         form.add_product(1.0, &y1, &y1);
         form.add_product(1.0, &y2, &y2);
@@ -206,13 +196,13 @@ impl ThreeAxes {
         form.add_linear(&square.map(|s| -s));
         let zeros = form.zeros();
         // Axes that nearly meet, or are nearly parallel, amplify rounding.
-        arms.doubt = if determinant.abs() > NEARLY_JOINED * self.floor { zeros.doubt } else { Doubt::Open };
+        arms.doubt = if determinant.abs() > NEARLY_JOINED * self.floor { zeros.doubt } else { Doubt::Anywhere };
         for q3 in zeros.iter() {
             let at = |p: &Linear| p[0] + p[1] * q3.cos + p[2] * q3.sin;
             let u = add(c, &q3.about(h3, w));
             let reached = add(&scaled(&e1, at(&y1)), &scaled(&e2, at(&y2)));
-            let q2 = onto_point(h2, &u, &reached);
-            arms.push([onto_point(h1, &add(b, &q2.about(h2, &u)), a), q2, *q3]);
+            let q2 = subproblem1(h2, &u, &reached);
+            arms.push([subproblem1(h1, &add(b, &q2.about(h2, &u)), a), q2, *q3]);
         }
         arms
     }

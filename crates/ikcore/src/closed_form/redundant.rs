@@ -1,23 +1,19 @@
-//! Seven joints and a pose: all branches for a value of the self-motion parameter.
+//! Closed form of seven joints: chooses the self-motion parameter.
 //!
 //! The parameter is the arm angle if the first and the last three axes meet (shoulder and wrist of an SRS arm): the angle of
 //! the elbow axis about the shoulder-wrist line. Otherwise it is the first or the last joint, whichever leaves six joints
 //! with the better method.
 
-use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
-use crate::closed_form::arm_angle::{ArmAngle, ArmAnglePose};
-use crate::closed_form::arm_angle_limits::{Decisive, Values};
+use crate::closed_form::arm_angle::ArmAngle;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
-use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::configurations::Drives;
 use crate::closed_form::elbow_distance::ElbowDistance;
 use crate::closed_form::given_joint::GivenJoint;
 use crate::closed_form::limit_proof::LimitProof;
-use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::six::Structure;
-use crate::closed_form::verify::{Verifier, verified_seven};
+use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
-use crate::math::arithmetic::{Baseline, by_instructions};
 
 /// Self-motion parameter of a redundant arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,42 +27,47 @@ pub enum Parameter {
 /// Closed form of seven joints.
 #[derive(Debug, Clone)]
 pub struct Redundant {
-    chain: AxisChain<7>,
-    back: Frame,
-    method: Method,
-    distance: Option<ElbowDistance>,
+    pub(super) chain: AxisChain<7>,
+    pub(super) back: Frame,
+    pub(super) method: Method,
+    pub(super) distance: Option<ElbowDistance>,
     /// Proof of infeasibility, used if the parameter is a joint.
-    proof: Option<Box<LimitProof>>,
-    verifier: Verifier<7>,
+    pub(super) proof: Option<Box<LimitProof>>,
+    pub(super) verifier: Verifier<7>,
+    pub(super) drives: Drives,
+    /// Joint limits of the arm.
+    own_limits: FamilyLimits,
 }
 
 #[derive(Debug, Clone)]
-enum Method {
+pub(super) enum Method {
     Given(Box<GivenJoint>),
     ArmAngle(Box<ArmAngle>),
 }
 
-/// Pose, precomputed for any value of the parameter.
+/// Limits of the axes of a redundant arm, precomputed for any pose.
 #[derive(Debug, Clone, Copy)]
-pub struct RedundantPose {
-    /// Displacement that all joints together must produce.
-    goal: Frame,
-    by_arm_angle: Option<ArmAnglePose>,
+pub(crate) struct FamilyLimits {
+    /// Lower and upper limits (rad, m).
+    pub(super) axes: [[f64; 2]; 7],
+    pub(super) ranges: [AngleRange; 7],
+    /// Smallest and largest squared shoulder-wrist distance within the limits of joint 4.
+    pub(super) distances: [f64; 2],
 }
 
-/// Limits of the axes (rad, m), precomputed for any pose.
-#[derive(Debug, Clone, Copy)]
-pub struct AxisLimits {
-    /// Lower and upper limits.
-    pub axes: [[f64; 2]; 7],
-    ranges: [AngleRange; 7],
-    /// Smallest and largest squared shoulder-wrist distance within the limits of joint 4.
-    distances: [f64; 2],
+impl FamilyLimits {
+    fn new(chain: &AxisChain<7>, distance: Option<&ElbowDistance>, axes: [[f64; 2]; 7]) -> Self {
+        let ranges = std::array::from_fn(|k| match chain.joints[k].motion {
+            AxisKind::Turns => AngleRange::of(axes[k]),
+            AxisKind::Slides => AngleRange::ANY,
+        });
+        Self { axes, ranges, distances: distance.map_or([0.0; 2], |distance| distance.range(axes[3])) }
+    }
 }
 
 impl Redundant {
-    /// Chooses the parameter; `None` if joints are prismatic and no method fits.
-    pub fn new(chain: &AxisChain<7>) -> Option<Self> {
+    /// Chooses the parameter of an arm with these joint limits (rad, m); `None` if joints are prismatic and no method fits.
+    pub fn new(chain: &AxisChain<7>, drives: &Drives, [lower, upper]: [&[f64]; 2]) -> Option<Self> {
         let (method, distance, proof) = match ArmAngle::new(chain) {
             Some(method) => (Method::ArmAngle(Box::new(method)), ElbowDistance::by_last(chain), None),
             None => {
@@ -78,10 +79,12 @@ impl Redundant {
             }
         };
         let verifier = Verifier::new(&AxisChain { tip: Frame::IDENTITY, ..*chain }, 1e-3);
-        Some(Self { chain: *chain, back: chain.tip.inverse(), method, distance, proof, verifier })
+        let own_limits = FamilyLimits::new(chain, distance.as_ref(), drives.of_axes(lower, upper));
+        let (chain, back, drives) = (*chain, chain.tip.inverse(), drives.clone());
+        Some(Self { chain, back, method, distance, proof, verifier, drives, own_limits })
     }
 
-    /// Returns the parameter that [`Self::solve`] takes.
+    /// Returns the self-motion parameter.
     pub fn parameter(&self) -> Parameter {
         match &self.method {
             Method::Given(given) => Parameter::Axis(given.axis()),
@@ -97,141 +100,16 @@ impl Redundant {
         }
     }
 
-    /// Whether [`Self::add_candidates`] finds all configurations up to rounding.
-    pub fn has_exact_candidates(&self) -> bool {
-        match &self.method {
-            Method::Given(given) => given.has_exact_candidates(),
-            Method::ArmAngle(_) => true,
-        }
+    /// Whether candidates are solutions up to rounding, and no others exist at a value of the parameter.
+    pub fn is_exact(&self) -> bool {
+        self.structure().is_none_or(Structure::is_exact)
     }
 
-    /// Whether [`Self::add_candidates`] finds only approximate configurations, because the structure holds only
-    /// approximately.
-    pub fn has_approximate_candidates(&self) -> bool {
-        self.structure().is_some_and(Structure::is_nearly)
-    }
-
-    /// Whether [`Self::arcs`] end exactly where the branches end, so that no branch is lost there.
-    pub fn is_sure_of_arcs(&self) -> bool {
-        self.distance.is_some() && self.has_exact_candidates()
-    }
-
-    /// Prepares the pose that has the tip at `target`.
-    pub fn pose(&self, target: &Frame) -> RedundantPose {
-        let goal = target.then::<Baseline>(&self.back);
-        let by_arm_angle = match &self.method {
-            Method::ArmAngle(method) => Some(method.pose(&goal)),
-            _ => None,
-        };
-        RedundantPose { goal, by_arm_angle }
-    }
-
-    /// Prepares limits of the axes (rad, m).
-    pub fn limits(&self, axes: [[f64; 2]; 7]) -> AxisLimits {
-        let ranges = std::array::from_fn(|k| match self.chain.joints[k].motion {
-            AxisKind::Turns => AngleRange::of(axes[k]),
-            AxisKind::Slides => AngleRange::ANY,
-        });
-        let distances = self.distance.map_or([0.0; 2], |distance| distance.range(axes[3]));
-        AxisLimits { axes, ranges, distances }
-    }
-
-    /// Returns all joint values, angles in (-pi, pi], that reach a pose with the parameter at `value` (rad, m).
-    pub fn solve(&self, pose: &RedundantPose, value: f64) -> Branches<7> {
-        match &self.method {
-            Method::Given(given) => given.solve(&pose.goal, value),
-            Method::ArmAngle(_) => {
-                let mut candidates = Candidates::new();
-                self.add_candidates(pose, value, &[AngleRange::ANY; 7], &mut candidates);
-                self.verified(pose, &candidates)
-            }
-        }
-    }
-
-    /// Adds candidates that reach a pose with the parameter at `value` (rad, m), as far as `ranges` may hold them.
-    fn add_candidates(&self, pose: &RedundantPose, value: f64, ranges: &[AngleRange; 7], found: &mut Candidates) {
-        match (&self.method, &pose.by_arm_angle) {
-            (Method::Given(given), _) => given.add_candidates(&pose.goal, value, ranges, found),
-            (Method::ArmAngle(method), Some(pose)) => {
-                arm_angle_candidates(method, pose, Angle::by(value), ranges, found);
-            }
-            (Method::ArmAngle(_), None) => {}
-        }
-    }
-
-    /// Adds candidates that reach a pose with the parameter at `value` (rad, m), as far as `limits` may hold them.
-    pub fn add_candidates_within(&self, pose: &RedundantPose, value: f64, limits: &AxisLimits, found: &mut Candidates) {
-        self.add_candidates(pose, value, &limits.ranges, found);
-    }
-
-    /// Verifies candidates by forward kinematics.
-    pub fn verified(&self, pose: &RedundantPose, candidates: &Candidates) -> Branches<7> {
-        verified_seven(&self.verifier, &pose.goal, candidates)
-    }
-
-    /// Returns the verifier, which converts candidates to joint values.
-    pub fn verifier(&self) -> &Verifier<7> {
-        &self.verifier
-    }
-
-    /// Whether the limits provably exclude every value of the parameter, although [`Self::arcs`] leaves `arcs`.
-    pub fn is_excluded(&self, pose: &RedundantPose, limits: &AxisLimits, arcs: &ParameterArcs) -> bool {
-        match (&self.method, &pose.by_arm_angle) {
-            (Method::ArmAngle(method), Some(pose)) => method.is_excluded(pose, &limits.axes, &limits.ranges[3]),
-            _ => self.open_values(pose, limits, arcs, 1, &mut |_| false).is_some_and(|open| open.is_empty()),
-        }
-    }
-
-    /// Returns parameter values (rad) on `arcs` near which a configuration may lie within limits, as in
-    /// [`LimitProof::open_values`]; `None` if that proof does not apply.
-    pub fn open_values(
-        &self,
-        pose: &RedundantPose,
-        limits: &AxisLimits,
-        arcs: &ParameterArcs,
-        most: usize,
-        visit: &mut dyn FnMut(f64) -> bool,
-    ) -> Option<Values> {
-        let proof = self.proof.as_deref()?;
-        Some(proof.open_values(&pose.goal, arcs, &limits.axes, most, visit))
-    }
-
-    /// Returns parameter values that decide whether any configuration lies within limits; `None` if no such set is known.
-    pub fn decisive(&self, pose: &RedundantPose, limits: &AxisLimits) -> Option<Decisive> {
-        match (&self.method, &pose.by_arm_angle) {
-            (Method::ArmAngle(method), Some(by_angle)) => {
-                Some(method.decisive(by_angle, &pose.goal, &limits.axes, &limits.ranges[3]))
-            }
-            _ => None,
-        }
-    }
-
-    /// Returns arcs of the parameter outside which joint 4 or the parameter's own joint violates its limits.
-    ///
-    /// The ends are exact, so that an arc of zero length, with joint 4 at its limit, is not lost between samples.
-    pub fn arcs(&self, pose: &RedundantPose, limits: &AxisLimits) -> ParameterArcs {
-        let AxisLimits { axes, distances, .. } = limits;
-        match (self.parameter(), &self.distance) {
-            (Parameter::ArmAngle, Some(distance)) => distance.arm_angles(&pose.goal, *distances),
-            (Parameter::ArmAngle, None) => ParameterArcs::CIRCLE,
-            (Parameter::Axis(axis), _) if self.chain.joints[axis].motion == AxisKind::Slides => {
-                ParameterArcs::one(axes[axis])
-            }
-            (Parameter::Axis(axis), Some(distance)) => distance.angles(&pose.goal, *distances).within(axes[axis]),
-            (Parameter::Axis(axis), None) => ParameterArcs::CIRCLE.within(axes[axis]),
-        }
-    }
-}
-
-by_instructions! {
-    fn arm_angle_candidates(
-        method: &ArmAngle,
-        pose: &ArmAnglePose,
-        arm_angle: Angle,
-        ranges: &[AngleRange; 7],
-        found: &mut Candidates,
-    ) {
-        method.solve(pose, arm_angle, ranges, found);
+    /// Prepares joint limits `lower` and `upper` (n,) (rad, m).
+    pub fn limits(&self, lower: &[f64], upper: &[f64]) -> FamilyLimits {
+        let axes = self.drives.of_axes(lower, upper);
+        let is_own = self.own_limits.axes == axes;
+        if is_own { self.own_limits } else { FamilyLimits::new(&self.chain, self.distance.as_ref(), axes) }
     }
 }
 
@@ -242,15 +120,24 @@ mod tests {
     use super::*;
     use crate::closed_form::axis_chain::JointAxis;
     use crate::closed_form::branches::Doubt;
+    use crate::closed_form::pose_family::PoseFamily;
     use crate::closed_form::seven_joint_arms::{
         BAXTER, GEN3, IIWA14, PANDA, SAWYER, XARM7, iiwa14_of_urdf, random_angles,
     };
-    use crate::closed_form::vector::{norm, sub};
     use crate::math::vector::between;
+    use crate::math::vector3::{norm, sub};
+
+    const FREE: [[f64; 2]; 7] = [[-PI, PI]; 7];
 
     /// Returns the largest angle difference modulo 2 pi.
     fn apart(a: &[f64; 7], b: &[f64; 7]) -> f64 {
         a.iter().zip(b).map(|(a, b)| ((a - b + PI).rem_euclid(TAU) - PI).abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns the closed form of a chain whose joints have these limits.
+    fn method_of(chain: &AxisChain<7>, limits: [[f64; 2]; 7]) -> Redundant {
+        let drives = Drives::new((0..7).map(|joint| (joint, 1.0)));
+        Redundant::new(chain, &drives, [&limits.map(|ends| ends[0]), &limits.map(|ends| ends[1])]).expect("a method")
     }
 
     fn miss(chain: &AxisChain<7>, q: &[f64; 7], target: &Frame) -> f64 {
@@ -267,14 +154,14 @@ mod tests {
         let general = [SAWYER, BAXTER];
         for rows in by_last.into_iter().chain(by_first).chain(general) {
             let chain = AxisChain::of_rows(&rows);
-            let method = Redundant::new(&chain).expect("a method");
+            let method = method_of(&chain, FREE);
             let Parameter::Axis(axis) = method.parameter() else { panic!("{rows:?}") };
             let is_general = general.contains(&rows);
             assert_eq!(method.structure() == Some(Structure::General), is_general);
             assert!(is_general || axis == if by_last.contains(&rows) { 6 } else { 0 });
             for q in random_angles(if is_general { 40 } else { 300 }) {
                 let target = chain.tip_at(&q);
-                let found = method.solve(&method.pose(&target), q[axis]);
+                let found = PoseFamily::new(&method, &target).solve(q[axis]);
                 assert!(found.iter().all(|b| miss(&chain, b, &target) < 2e-10));
                 assert!(found.iter().any(|b| apart(b, &q) < 1e-5), "{rows:?} {q:?}");
             }
@@ -284,12 +171,12 @@ mod tests {
     #[test]
     fn an_srs_arm_has_eight_branches_at_every_arm_angle() {
         let chain = AxisChain::of_rows(&IIWA14);
-        let method = Redundant::new(&chain).expect("a method");
+        let method = method_of(&chain, FREE);
         assert_eq!(method.parameter(), Parameter::ArmAngle);
         for q in random_angles(200) {
             let target = chain.tip_at(&q);
             for angle in q {
-                let found = method.solve(&method.pose(&target), angle);
+                let found = PoseFamily::new(&method, &target).solve(angle);
                 assert!(found.len() == 8 && found.doubt == Doubt::None);
                 assert!(found.iter().all(|b| miss(&chain, b, &target) < 2e-10));
             }
@@ -299,11 +186,11 @@ mod tests {
     #[test]
     fn the_arm_angle_passes_every_configuration() {
         let chain = AxisChain::of_rows(&IIWA14);
-        let method = Redundant::new(&chain).expect("a method");
+        let method = method_of(&chain, FREE);
         for q in random_angles(20) {
             let target = chain.tip_at(&q);
             let angles = (0..2000).map(|k| PI * f64::from(k - 1000) / 1000.0);
-            let all = angles.flat_map(|angle| method.solve(&method.pose(&target), angle).to_vec());
+            let all = angles.flat_map(|angle| PoseFamily::new(&method, &target).solve(angle).to_vec());
             let nearest = all.map(|b| apart(&b, &q)).fold(f64::INFINITY, f64::min);
             assert!(nearest < 0.2, "{nearest}");
         }
@@ -312,9 +199,9 @@ mod tests {
     #[test]
     fn the_arcs_hold_every_configuration_within_limits() {
         let chain = AxisChain::of_rows(&PANDA);
-        let method = Redundant::new(&chain).expect("a method");
         let mut limits = [[-2.8973, 2.8973]; 7];
         limits[3] = [-3.0718, -0.0698];
+        let method = method_of(&chain, limits);
         let mut narrowed = 0;
         for (count, mut q) in random_angles(300).into_iter().enumerate() {
             (0..7).for_each(|k| q[k] = q[k].clamp(limits[k][0], limits[k][1]));
@@ -322,12 +209,12 @@ mod tests {
                 q[3] = limits[3][count % 2];
             }
             let target = chain.tip_at(&q);
-            let arcs = method.arcs(&method.pose(&target), &method.limits(limits));
+            let arcs = PoseFamily::new(&method, &target).arcs(&method.own_limits);
             assert!(arcs.iter().any(|[a, b]| a - 1e-6 <= q[6] && q[6] <= b + 1e-6), "{q:?} {arcs:?}");
             narrowed += usize::from(arcs.length() < 5.0);
             for [a, b] in arcs.iter() {
                 for part in [0.02, 0.5, 0.98] {
-                    let found = method.solve(&method.pose(&target), between(*a, *b, part));
+                    let found = PoseFamily::new(&method, &target).solve(between(*a, *b, part));
                     let within = |q: f64| limits[3][0] - 1e-4 <= q && q <= limits[3][1] + 1e-4;
                     assert!(found.is_empty() || found.iter().any(|set| within(set[3])), "{q:?}");
                 }
@@ -349,12 +236,12 @@ mod tests {
         let mut joints = [JointAxis::sliding([1.0, 0.0, 0.0]); 7];
         joints[1..].copy_from_slice(&ur10.joints);
         let chain = AxisChain { joints, tip: ur10.tip };
-        let method = Redundant::new(&chain).expect("a method");
+        let method = method_of(&chain, [[-1.0, 2.0]; 7]);
         assert_eq!(method.parameter(), Parameter::Axis(0));
         for q in random_angles(100) {
             let target = chain.tip_at(&q);
-            assert!(method.solve(&method.pose(&target), q[0]).iter().any(|b| apart(b, &q) < 1e-5), "{q:?}");
-            assert_eq!(*method.arcs(&method.pose(&target), &method.limits([[-1.0, 2.0]; 7])), [[-1.0, 2.0]]);
+            assert!(PoseFamily::new(&method, &target).solve(q[0]).iter().any(|b| apart(b, &q) < 1e-5), "{q:?}");
+            assert_eq!(*PoseFamily::new(&method, &target).arcs(&method.own_limits), [[-1.0, 2.0]]);
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::closed_form::general::General;
 use crate::closed_form::spherical_wrist::SphericalWrist;
 use crate::closed_form::structure::{EXACT, NEARLY, are_sharp, three_meet, three_parallel};
 use crate::closed_form::three_parallel::ThreeParallel;
-use crate::closed_form::verify::{Verifier, values_of_six, verified};
+use crate::closed_form::verify::{Verifier, verified, write_values};
 use crate::math::Frame;
 use crate::math::arithmetic::{Baseline, by_instructions};
 
@@ -40,9 +40,9 @@ pub enum Structure {
 }
 
 impl Structure {
-    /// Whether the method proves that a pose has no other solutions. The general method does not: it counts zeros of a
-    /// polynomial, and rounding may hide some.
-    pub fn proves(self) -> bool {
+    /// Whether the structure is exact: all candidates are solutions up to rounding, and a pose has no others. The general method
+    /// proves no such thing: it counts zeros of a polynomial, and rounding may hide some.
+    pub fn is_exact(self) -> bool {
         matches!(self, Self::ThreeMeet { nearly: false, .. } | Self::ThreeParallel { nearly: false, .. })
     }
 
@@ -156,11 +156,11 @@ impl ClosedForm {
         for q in samples() {
             let target = self.chain.tip_at(&q);
             let mut found = Branches::none();
-            let account = way.solve(&target.then::<Baseline>(&self.back), |candidate| {
+            let count = way.solve(&target.then::<Baseline>(&self.back), |candidate| {
                 self.verifier.add(&target, &candidate, &mut found);
             });
-            let proven = account.sound && found.len() >= account.zeros;
-            trouble += account.shared + 4 * usize::from(!proven);
+            let proven = count.sound && found.len() >= count.zeros;
+            trouble += count.shared + 4 * usize::from(!proven);
         }
         trouble
     }
@@ -185,8 +185,8 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         self.add_candidates(goal, &[AngleRange::ANY; 6], &mut candidates);
         let mut found = verified(&self.verifier, target, &candidates);
-        if !self.has_exact_candidates() {
-            found.doubt = Doubt::Open;
+        if !self.structure.is_exact() {
+            found.doubt = Doubt::Anywhere;
         }
         match &self.further {
             Some(ways) => self.solve_general(ways, goal, target, found),
@@ -212,23 +212,18 @@ impl ClosedForm {
     pub fn likely(&self, target: &Frame, drives: &Drives, found: &mut ArmConfigurations) {
         let mut candidates = Candidates::new();
         self.add_candidates(&target.then::<Baseline>(&self.back), &[AngleRange::ANY; 6], &mut candidates);
-        found.replace(drives, candidates.count, |columns| values_of_six(&self.verifier, &candidates, columns));
-        found.is_all = self.has_exact_candidates() && candidates.doubt == Doubt::None && !candidates.singular;
-    }
-
-    /// Whether candidates are solutions up to rounding.
-    pub fn has_exact_candidates(&self) -> bool {
-        !self.structure.is_nearly() && !matches!(self.method, Method::General(_) | Method::None)
+        found.replace(drives, candidates.count, |columns| write_values(&self.verifier, &candidates, columns));
+        found.is_all = self.structure.is_exact() && candidates.doubt == Doubt::None && !candidates.singular;
     }
 
     /// Solves in one direction, and in the other too if the first may have missed a solution. A count with nearly coincident
     /// zeros is no proof.
     fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame, mut found: Branches<6>) -> Branches<6> {
         for way in ways {
-            let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
+            let count = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
             // Zeros bound the number of branches: equal counts mean that none is missing.
-            let is_all = account.sound && found.len() >= account.zeros;
-            found.doubt = if is_all { Doubt::Beside } else { Doubt::Open };
+            let is_all = count.sound && found.len() >= count.zeros;
+            found.doubt = if is_all { Doubt::Nearby } else { Doubt::Anywhere };
             if is_all {
                 return found;
             }
@@ -251,7 +246,7 @@ impl ClosedForm {
         let mut turned = Candidates::new();
         // Axes that are not neighbours in the arm may meet or be parallel at this pose, exactly or nearly.
         if !are_sharp(&joints, self.size) {
-            turned.doubt = Doubt::Open;
+            turned.doubt = Doubt::Anywhere;
         }
         match self.structure {
             Structure::ThreeMeet { .. } => match three_meet(&joints[3..], self.size, 4.0 * tolerance) {
@@ -259,7 +254,7 @@ impl ClosedForm {
                     let method = SphericalWrist::new(&joints, &centre, self.size, tolerance);
                     method.solve(goal, &[AngleRange::ANY; 6], &mut turned);
                 }
-                None => turned.doubt.add(Doubt::Open),
+                None => turned.doubt.add(Doubt::Anywhere),
             },
             _ => ThreeParallel::new(&joints, self.size, tolerance).solve::<Baseline>(goal, &mut turned),
         }

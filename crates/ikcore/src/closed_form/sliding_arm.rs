@@ -3,10 +3,10 @@
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisKind, JointAxis};
 use crate::closed_form::branches::Doubt;
-use crate::closed_form::position::Arms;
+use crate::closed_form::position::ThreeJointSolutions;
 use crate::closed_form::structure::Pair;
-use crate::closed_form::subproblem::{CLAMP, NEARLY_DOUBLE, distance_to_point, onto_point, two_axes};
-use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
+use crate::closed_form::subproblem::{CLAMP, NEARLY_DOUBLE, subproblem1, subproblem2, subproblem3};
+use crate::math::vector3::{Vector, add, add_scaled, cross, dot, scaled, sub};
 
 /// Precomputed first three joints.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ impl SlidingArm {
     }
 
     /// Returns all joint values that carry `point` to `goal`. A prismatic displacement is stored in the sine.
-    pub fn reach(&self, point: &Vector, goal: &Vector) -> Arms {
+    pub fn reach(&self, point: &Vector, goal: &Vector) -> ThreeJointSolutions {
         let (point, goal) = if self.mirrored { (goal, point) } else { (point, goal) };
         let [p1, p2, _] = &self.points;
         // Equation to solve: rot1 (b + rot2 (u + d h3)) = a.
@@ -79,9 +79,9 @@ impl SlidingArm {
     }
 
     /// Solves intersecting axes: the distance from their intersection gives the prismatic displacement, subproblem 2 the angles.
-    fn meeting(&self, a: &Vector, u: &Vector) -> Arms {
+    fn meeting(&self, a: &Vector, u: &Vector) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
+        let mut arms = ThreeJointSolutions::NONE;
         // Quadratic equation d^2 + 2 d u'h3 + |u|^2 = |a|^2, in terms of the component perpendicular to the slide.
         let across = cross(h3, u);
         let (middle, distance) = (-dot(u, h3), dot(a, a));
@@ -90,12 +90,12 @@ impl SlidingArm {
             return arms;
         }
         if radicand < NEARLY_DOUBLE * distance {
-            arms.doubt.add(Doubt::Beside);
+            arms.doubt.add(Doubt::Nearby);
         }
         let root = radicand.max(0.0).sqrt();
         for slide in [middle + root, middle - root] {
             let reached = add_scaled(u, h3, slide);
-            let (q2, back) = two_axes(h2, &reached, h1, a, self.floor);
+            let (q2, back) = subproblem2(h2, &reached, h1, a, self.floor);
             arms.add_doubt(&q2);
             for (q2, back) in q2.iter().zip(&back) {
                 arms.push([back.back(), *q2, slid(slide)]);
@@ -105,26 +105,26 @@ impl SlidingArm {
     }
 
     /// Solves parallel axes: the height along them gives the prismatic displacement, subproblems 3 and 1 the angles.
-    fn parallel(&self, a: &Vector, b: &Vector, u: &Vector) -> Arms {
+    fn parallel(&self, a: &Vector, b: &Vector, u: &Vector) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
+        let mut arms = ThreeJointSolutions::NONE;
         let slide = dot(h1, &sub(&sub(a, b), u)) / dot(h1, h3);
         let reached = add_scaled(u, h3, slide);
         let flat = |v: &Vector| cross(h1, v);
         let (flat_a, flat_b) = (flat(a), flat(b));
         let floor = self.floor * dot(&flat_b, &flat_b).sqrt();
-        let q2 = distance_to_point(h2, &flat(&reached), &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), floor);
+        let q2 = subproblem3(h2, &flat(&reached), &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), floor);
         arms.add_doubt(&q2);
         for q2 in q2.iter() {
-            arms.push([onto_point(h1, &add(b, &q2.about(h2, &reached)), a), *q2, slid(slide)]);
+            arms.push([subproblem1(h1, &add(b, &q2.about(h2, &reached)), a), *q2, slid(slide)]);
         }
         arms
     }
 
     /// Solves three prismatic joints by Cramer's rule.
-    fn slides(&self, way: &Vector) -> Arms {
+    fn slides(&self, way: &Vector) -> ThreeJointSolutions {
         let [h1, h2, h3] = &self.axes;
-        let mut arms = Arms::NONE;
+        let mut arms = ThreeJointSolutions::NONE;
         let inverse = 1.0 / dot(h1, &cross(h2, h3));
         let values = [dot(way, &cross(h2, h3)), dot(h1, &cross(way, h3)), dot(h1, &cross(h2, way))];
         arms.push(values.map(|value| slid(inverse * value)));

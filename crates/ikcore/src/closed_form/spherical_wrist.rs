@@ -3,15 +3,15 @@
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
-use crate::closed_form::axis_chain::{AxisKind, JointAxis};
+use crate::closed_form::axis_chain::{AxisKind, JointAxis, reversed};
 use crate::closed_form::branches::Candidates;
 use crate::closed_form::position::{Three, ThreeAxes};
 use crate::closed_form::sliding_arm::SlidingArm;
 use crate::closed_form::structure::Pair;
-use crate::closed_form::vector::Vector;
-use crate::closed_form::wrist::{Pointing, Wrist};
+use crate::closed_form::wrist::{Wrist, WristDirections};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::Vector;
 
 /// First three joints.
 #[derive(Debug, Clone, Copy)]
@@ -55,11 +55,7 @@ impl SphericalWrist {
 
     /// Prepares an arm whose first three axes meet at `centre`, by taking the chain from tip to base.
     pub fn shoulder(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
-        let backwards = std::array::from_fn(|k| {
-            let joint = &joints[5 - k];
-            JointAxis::turning(joint.axis.map(|entry| -entry), joint.point)
-        });
-        Self { reversed: true, ..Self::new(&backwards, centre, size, tolerance) }
+        Self { reversed: true, ..Self::new(&reversed(joints), centre, size, tolerance) }
     }
 
     /// Adds candidates whose displacements make `goal`, as far as `ranges` may hold them.
@@ -95,7 +91,7 @@ impl SphericalWrist {
         found.doubt.add(arms.doubt);
         let pointing = self.wrist.pointing(goal);
         for arm in arms.iter().filter(|arm| may_hold(of_arm, *arm)) {
-            let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
+            let left = WristDirections { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
             let wrists = self.wrist.turns(&left, of_wrist);
             found.singular |= wrists.aligned;
             if wrists.near_miss {

@@ -1,7 +1,7 @@
 //! Relations between neighbouring axes of a chain, found once from its geometry: parallel, intersecting or skew.
 
 use crate::closed_form::axis_chain::{AxisKind, JointAxis};
-use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
+use crate::math::vector3::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
 
 /// Tolerance for parallel (rad) and for intersecting axes (as a fraction of the arm's size).
 ///
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     fn joint(axis: Vector, point: Vector) -> JointAxis {
-        JointAxis::turning(crate::closed_form::vector::unit(&axis), point)
+        JointAxis::turning(crate::math::vector3::unit(&axis), point)
     }
 
     #[test]

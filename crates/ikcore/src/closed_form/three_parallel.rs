@@ -12,15 +12,13 @@ use crate::closed_form::four_angles::{self, FourAngles};
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::position::NEARLY_JOINED;
 use crate::closed_form::structure::Pair;
-use crate::closed_form::subproblem::{
-    CLAMP, Linear, NEARLY_DOUBLE, Turns, angle_to_plane, line_on_circle, two_linear_equations,
-};
-use crate::closed_form::vector::{Vector, across, cross, dot, scaled, sub};
+use crate::closed_form::subproblem::{Angles, CLAMP, Linear, NEARLY_DOUBLE, line_on_circle, subproblem4, subproblem6};
 use crate::closed_form::wrist::{ALIGNED, Bend, NEARLY_ALIGNED};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline};
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
+use crate::math::vector3::{Vector, across, cross, dot, scaled, sub};
 
 /// Precomputed arm with three parallel axes.
 #[derive(Debug, Clone, Copy)]
@@ -126,7 +124,7 @@ impl ThreeParallel {
         let offset = dot(h, &sub(p5, p1));
         match self.last {
             Last::Meet => {
-                let q1 = angle_to_plane(h, &scaled(h1, -1.0), &a, offset, self.floor);
+                let q1 = subproblem4(h, &scaled(h1, -1.0), &a, offset, self.floor);
                 found.singular |= q1.free;
                 found.doubt.add(q1.doubt);
                 for q1 in q1.iter() {
@@ -139,13 +137,13 @@ impl ThreeParallel {
                 }
             }
             Last::Parallel => {
-                let q1 = angle_to_plane(h, &scaled(h1, -1.0), &n, dot(h, h6), 1e-11);
+                let q1 = subproblem4(h, &scaled(h1, -1.0), &n, dot(h, h6), 1e-11);
                 found.singular |= q1.free;
                 found.doubt.add(q1.doubt);
                 for q1 in q1.iter() {
                     let shoulder = self.shoulder(goal, *q1);
                     let height = dot(h, &q1.back().about(h1, &a)) - offset;
-                    let q5 = angle_to_plane(h, h5, &sub(p6, p5), height, self.floor);
+                    let q5 = subproblem4(h, h5, &sub(p6, p5), height, self.floor);
                     add_doubt(&q5, found);
                     for q5 in q5.iter() {
                         self.wrist::<A>(&shoulder, *q5, &mut wrists, found);
@@ -182,10 +180,10 @@ impl ThreeParallel {
         let m = [[of_n[1], of_n[2]], [of_lever[1], of_lever[2]]];
         // Axes that nearly meet, or are nearly parallel, amplify rounding.
         if (m[0][0] * m[1][1] - m[0][1] * m[1][0]).abs() <= NEARLY_JOINED * self.floor {
-            found.doubt = Doubt::Open;
+            found.doubt = Doubt::Anywhere;
         }
-        let Some((q1, q5)) = two_linear_equations(&m, &[r1, r2]) else {
-            found.doubt = Doubt::Open;
+        let Some((q1, q5)) = subproblem6(&m, &[r1, r2]) else {
+            found.doubt = Doubt::Anywhere;
             return;
         };
         found.doubt.add(q1.doubt);
@@ -217,7 +215,7 @@ impl ThreeParallel {
         let seen = self.seen.at(q5);
         let square = seen[0] * seen[0] + seen[1] * seen[1];
         if square < NEARLY_DOUBLE {
-            found.doubt.add(if square < NEARLY_ALIGNED * NEARLY_ALIGNED { Doubt::Open } else { Doubt::Beside });
+            found.doubt.add(if square < NEARLY_ALIGNED * NEARLY_ALIGNED { Doubt::Anywhere } else { Doubt::Nearby });
             if square < ALIGNED * ALIGNED {
                 return self.wrist_aligned(shoulder, q5, wrists, found);
             }
@@ -305,7 +303,7 @@ impl ThreeParallel {
 
 /// Merges the doubt about the angles of q5 for one value of q1.
 #[inline(always)]
-fn add_doubt(q5: &Turns<2>, found: &mut Candidates) {
+fn add_doubt(q5: &Angles<2>, found: &mut Candidates) {
     if q5.near_miss {
         found.doubt.add_dead_end();
     }

@@ -5,10 +5,10 @@ use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::orbit::{Orbit, about_z, seen};
 use crate::closed_form::parameter_arcs::Wave;
-use crate::closed_form::subproblem::{Turns, with_radicand};
-use crate::closed_form::vector::{Vector, across, cross, dot};
+use crate::closed_form::subproblem::{Angles, with_radicand};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, across, cross, dot};
 
 /// Sine of the angle between the outer axes below which they count as aligned: then only the sum or the difference of their
 /// angles matters.
@@ -56,14 +56,14 @@ impl Bend {
     /// The radicand r^2 - (outer'goal - constant)^2 is the product of the distances of the cosine from both ends. Either
     /// distance is small if the wrist is straight; it is then computed from |outer x goal| instead of a cosine near one.
     #[inline(always)]
-    pub fn angles(&self, goal: &Vector) -> (Turns<2>, f64) {
+    pub fn angles(&self, goal: &Vector) -> (Angles<2>, f64) {
         let normal = cross(&self.outer, goal);
         self.angles_by(dot(&self.outer, goal), dot(&normal, &normal))
     }
 
     /// Returns the same as [`Self::angles`], given outer'goal and |outer x goal|^2.
     #[inline(always)]
-    fn angles_by(&self, cosine: f64, square: f64) -> (Turns<2>, f64) {
+    fn angles_by(&self, cosine: f64, square: f64) -> (Angles<2>, f64) {
         let (below_one, above_minus_one) = if cosine > 0.0 {
             (square / (1.0 + cosine), 1.0 + cosine)
         } else {
@@ -72,7 +72,7 @@ impl Bend {
         let radicand = (below_one - self.margins[0]) * (above_minus_one - self.margins[1]);
         let mut turns = with_radicand(self.a, self.b, cosine - self.constant, radicand);
         if self.is_idle {
-            turns.doubt = Doubt::Open;
+            turns.doubt = Doubt::Anywhere;
         }
         (turns, square.sqrt())
     }
@@ -96,14 +96,14 @@ pub struct Wrist {
 
 /// Last axis of a wrist and the mark perpendicular to it, after a rotation.
 #[derive(Debug, Clone, Copy)]
-pub struct Pointing {
+pub struct WristDirections {
     /// Last axis.
     pub end: Vector,
     /// Mark.
     pub mark: Vector,
 }
 
-impl Pointing {
+impl WristDirections {
     /// Rotates both vectors by `frame`.
     #[inline(always)]
     pub fn turned(&self, frame: &Frame) -> Self {
@@ -113,7 +113,7 @@ impl Pointing {
 
 /// At most two solutions for the angles of a wrist.
 #[derive(Debug, Clone, Copy)]
-pub struct WristTurns {
+pub struct WristSolutions {
     /// Solutions; only the first `count` are valid.
     pub sets: [[Angle; 3]; 2],
     /// Number of solutions.
@@ -149,18 +149,18 @@ impl Wrist {
 
     /// Returns the directions of the wrist after the rotation of `goal`.
     #[inline(always)]
-    pub fn pointing(&self, goal: &Frame) -> Pointing {
-        Pointing { end: goal.turn::<Baseline>(&self.end), mark: goal.turn::<Baseline>(&self.mark) }
+    pub fn pointing(&self, goal: &Frame) -> WristDirections {
+        WristDirections { end: goal.turn::<Baseline>(&self.end), mark: goal.turn::<Baseline>(&self.mark) }
     }
 
     /// Returns all angles whose product rot1 rot2 rot3, applied to the zero configuration, points the wrist to `goal`. A
     /// family is represented by the member deepest inside `ranges`.
     #[inline(always)]
-    pub fn turns(&self, goal: &Pointing, ranges: &[AngleRange; 3]) -> WristTurns {
+    pub fn turns(&self, goal: &WristDirections, ranges: &[AngleRange; 3]) -> WristSolutions {
         let [x, y, z] = seen(&self.outer, &goal.end);
         let mark = seen(&self.outer, &goal.mark);
         let (bends, sine) = self.bend.angles_by(z, x * x + y * y);
-        let mut found = WristTurns {
+        let mut found = WristSolutions {
             sets: [[Angle::NONE; 3]; 2],
             count: 0,
             aligned: sine < ALIGNED,
@@ -190,7 +190,7 @@ impl Wrist {
             found.sets[0] = [q1, q2, q3];
         }
         if sine < NEARLY_ALIGNED {
-            found.doubt = Doubt::Open;
+            found.doubt = Doubt::Anywhere;
         }
         found
     }
@@ -199,7 +199,7 @@ impl Wrist {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_form::vector::{norm, sub, unit};
+    use crate::math::vector3::{norm, sub, unit};
 
     fn rotation(axes: &[Vector; 3], turns: [Angle; 3]) -> Frame {
         axes.iter().zip(turns).fold(Frame::IDENTITY, |sum, (h, t)| sum.then::<Baseline>(&t.about_line(h, &[0.0; 3])))

@@ -185,11 +185,11 @@ impl BranchCollector<'_, '_, '_> {
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
-        self.may_reach_by_tolerance |= branches.nearly;
+        self.may_reach_by_tolerance |= branches.near_miss;
         if self.found.solutions.is_empty() && self.may_reach_by_tolerance {
             self.take_within_tolerance();
         }
-        if branches.doubt == Doubt::Open && !self.found.singular {
+        if branches.doubt == Doubt::Anywhere && !self.found.singular {
             self.take_scattered();
         }
         Some(branches.len())
@@ -197,7 +197,7 @@ impl BranchCollector<'_, '_, '_> {
 
     fn take_branches(&mut self, branches: &ArmBranches) {
         self.attempt.budget.evaluations += branches.evaluations;
-        self.found.complete &= branches.doubt != Doubt::Open;
+        self.found.complete &= branches.doubt != Doubt::Anywhere;
         self.found.singular |= branches.singular;
         let is_sure = branches.doubt == Doubt::None && !branches.singular;
         for (q, error) in branches.iter() {

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::rotation_vector::RotationVector;
 use super::stages::Stages;
-use crate::math::so3::cross;
+use crate::math::vector3::{add_scaled, cross, scaled, sub};
 use crate::math::{Frame, Pose, pose};
 
 /// Motion of a stage: a rotation by turn_scale * q\[joint\] + turn_offset (rad) and a translation of the same form (m). One
@@ -44,8 +44,16 @@ impl Transmission {
     /// Returns the velocity of `point` per unit joint speed, for a point fixed in this element's frame `moved`.
     pub fn velocity(&self, moved: &Frame, point: &[f64; 3]) -> [f64; 3] {
         let Frame { axes: [_, _, axis], origin } = moved;
-        let moment = cross(axis, &std::array::from_fn(|k| point[k] - origin[k]));
-        std::array::from_fn(|k| self.turn_scale * moment[k] + self.slide_scale * axis[k])
+        add_scaled(&scaled(&cross(axis, &sub(point, origin)), self.turn_scale), axis, self.slide_scale)
+    }
+
+    /// Adds the linear and angular velocity of `point` per unit joint speed, as [`Self::velocity`], to a column of a Jacobian.
+    pub fn add_to_column(&self, moved: &Frame, point: &[f64; 3], column: &mut [f64; 6]) {
+        let velocity = self.velocity(moved, point);
+        for k in 0..3 {
+            column[k] += velocity[k];
+            column[3 + k] += self.turn_scale * moved.axes[2][k];
+        }
     }
 
     /// Returns the largest rotation (rad) and translation (m) if each joint changes by up to `reach`.

@@ -51,18 +51,15 @@ impl EightStages {
         let splat = Eight::<A>::splat;
         let vector = self.vector.as_ref().map(|vector| (vector, vector_frames(vector, qs)));
         for (i, Stage { parent, frame, motion }) in self.stages.iter().enumerate() {
-            if let Some((vector, turned)) = &vector
-                && let Some(own) = vector.own_stage(i)
-            {
-                let moved = RunningFrames::<Eight<A>>::of(&turned[own]);
-                frames[i + 1] =
-                    if *parent == 0 { moved } else { RunningFrames::of(&frames[*parent]).then(moved) }.stored();
-                continue;
-            }
-            let q = Eight::<A>::of(qs[motion.joint]);
-            let (sine, cosine) = sincos_eight(q.mul_add(splat(motion.turn_scale), splat(motion.turn_offset)));
-            let slide = q.mul_add(splat(motion.slide_scale), splat(motion.slide_offset));
-            let moved = RunningFrames::<Eight<A>>::of(frame).moved(sine, cosine, slide);
+            let of_vector = vector.as_ref().and_then(|(vector, turned)| vector.own_stage(i).map(|own| &turned[own]));
+            let moved = if let Some(turned) = of_vector {
+                RunningFrames::<Eight<A>>::of(turned)
+            } else {
+                let q = Eight::<A>::of(qs[motion.joint]);
+                let (sine, cosine) = sincos_eight(q.mul_add(splat(motion.turn_scale), splat(motion.turn_offset)));
+                let slide = q.mul_add(splat(motion.slide_scale), splat(motion.slide_offset));
+                RunningFrames::of(frame).moved(sine, cosine, slide)
+            };
             frames[i + 1] = if *parent == 0 { moved } else { RunningFrames::of(&frames[*parent]).then(moved) }.stored();
         }
     }

@@ -131,12 +131,7 @@ impl LinkTree {
         let frame = self.link_frame(link, frames);
         columns.fill([0.0; 6]);
         for (moved, motion) in self.carriers(chain, self.links[link].stages, 0) {
-            let velocity = motion.velocity(&frames[moved], &frame.origin);
-            let (axis, column) = (&frames[moved].axes[2], &mut columns[motion.joint]);
-            for k in 0..3 {
-                column[k] += velocity[k];
-                column[3 + k] += motion.turn_scale * axis[k];
-            }
+            motion.add_to_column(&frames[moved], &frame.origin, &mut columns[motion.joint]);
         }
         frame
     }

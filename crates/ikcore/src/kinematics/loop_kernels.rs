@@ -42,12 +42,7 @@ pub(super) fn jacobian(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame
     columns.fit(q.len());
     columns[..q.len()].fill([0.0; 6]);
     for (motion, frame) in chain.motions[..chain.moving].iter().zip(&moved) {
-        let velocity = motion.velocity(frame, &tip.origin);
-        let column = &mut columns[motion.joint];
-        for k in 0..3 {
-            column[k] += velocity[k];
-            column[3 + k] += motion.turn_scale * frame.axes[2][k];
-        }
+        motion.add_to_column(frame, &tip.origin, &mut columns[motion.joint]);
     }
     tip
 }

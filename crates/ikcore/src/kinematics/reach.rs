@@ -8,7 +8,7 @@ use super::chain::{Chain, Transmission};
 use super::fixed_direction::FixedDirection;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
-use crate::math::so3::norm;
+use crate::math::vector3::{add_scaled, dot, norm, sub};
 use crate::wording::number;
 
 /// Rounding error of positions, relative to the reach, and of angles (rad): a target outside by less may be reachable.
@@ -73,18 +73,16 @@ impl Reach {
 
     /// Returns the distance of `position` from the reach (m); zero or negative inside.
     pub fn excess(&self, position: &[f64; 3]) -> f64 {
-        let offset: [f64; 3] = std::array::from_fn(|k| position[k] - self.center[k]);
+        let offset = sub(position, &self.center);
         let Some(normal) = self.normal else { return norm(&offset) - self.radius };
         let height = self.off_plane(position);
-        let in_plane: [f64; 3] = std::array::from_fn(|k| offset[k] - height * normal[k]);
-        let beyond = norm(&in_plane) - self.radius;
+        let beyond = norm(&add_scaled(&offset, &normal, -height)) - self.radius;
         if beyond > 0.0 { height.hypot(beyond) } else { height.abs() }
     }
 
     /// Returns the distance of `position` from the plane of the disk, along its normal (m); 0 for a ball.
     pub fn off_plane(&self, position: &[f64; 3]) -> f64 {
-        let along = |normal: [f64; 3]| (0..3).map(|k| (position[k] - self.center[k]) * normal[k]).sum();
-        self.normal.map_or(0.0, along)
+        self.normal.map_or(0.0, |normal| dot(&sub(position, &self.center), &normal))
     }
 }
 
@@ -127,10 +125,10 @@ impl Reach {
     fn of_planar_links(at_zero: &[Frame], normal: [f64; 3]) -> Self {
         let (mut center, mut radius) = (at_zero[0].origin, 0.0);
         for ends in at_zero.windows(2) {
-            let link: [f64; 3] = std::array::from_fn(|k| ends[1].origin[k] - ends[0].origin[k]);
-            let along = (0..3).map(|k| link[k] * normal[k]).sum::<f64>();
-            radius += norm(&std::array::from_fn(|k| link[k] - along * normal[k]));
-            center = std::array::from_fn(|k| center[k] + along * normal[k]);
+            let link = sub(&ends[1].origin, &ends[0].origin);
+            let along = dot(&link, &normal);
+            radius += norm(&add_scaled(&link, &normal, -along));
+            center = add_scaled(&center, &normal, along);
         }
         Self { center, radius, normal: Some(normal), fixed_direction: None }
     }

@@ -2,7 +2,7 @@
 
 use super::chain::{Chain, Transmission};
 use crate::math::arithmetic::NoFma;
-use crate::math::so3::cross;
+use crate::math::vector3::{cross, scaled, sub};
 use crate::math::{Frame, MAX_DOF};
 
 /// Screw of a moving element in base axes, per unit speed of its joint.
@@ -26,8 +26,7 @@ impl Screw {
     /// Returns the linear and angular velocity of a point after this element: its contribution to the Jacobian column of its
     /// joint.
     pub fn column(&self, point: &[f64; 3]) -> [f64; 6] {
-        let lever = std::array::from_fn(|k| point[k] - self.origin[k]);
-        let [x, y, z] = cross(&self.turn, &lever);
+        let [x, y, z] = cross(&self.turn, &sub(point, &self.origin));
         let ([sx, sy, sz], [wx, wy, wz]) = (self.slide, self.turn);
         [x + sx, y + sy, z + sz, wx, wy, wz]
     }
@@ -59,8 +58,8 @@ impl Screws {
             let end = if i + 1 < count { chain.stages.frame(i + 1).origin } else { chain.tip.origin };
             *screw = Screw {
                 joint: motion.joint,
-                turn: axis.map(|entry| motion.turn_scale * entry),
-                slide: axis.map(|entry| motion.slide_scale * entry),
+                turn: scaled(&axis, motion.turn_scale),
+                slide: scaled(&axis, motion.slide_scale),
                 origin,
                 end: reached[i + 1].transform::<NoFma>(&end),
             };

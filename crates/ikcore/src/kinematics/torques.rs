@@ -4,6 +4,7 @@ use super::chain::Chain;
 use super::forward_pass::forward_pass;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
+use crate::math::vector3::sub;
 
 /// Force (N) and moment (N m) at the tip, in base axes.
 pub type Wrench = [f64; 6];
@@ -25,7 +26,7 @@ pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
     let [fx, fy, fz, mx, my, mz] = wrench(&tip);
     torques.fill(0.0);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
-        let [lx, ly, lz]: [f64; 3] = std::array::from_fn(|k| tip.origin[k] - origins[i][k]);
+        let [lx, ly, lz] = sub(&tip.origin, &origins[i]);
         let [ax, ay, az] = axes[i];
         let about = [
             A::mul_add(ly, fz, A::mul_add(-lz, fy, mx)),

@@ -33,7 +33,7 @@ pub fn covered_mesh(path: &Path, scale: [f64; 3], most: usize) -> Result<Cover> 
     }
     let shape = parse_mesh(&name, &bytes, scale)?;
     let Geometry::Mesh(mesh) = shape.geometry() else {
-        return Err(Error::Unreadable { path: name, problem: "it holds no mesh".into() });
+        return Err(Error::unreadable(&name, "it holds no mesh"));
     };
     let cover = mesh.cover(most)?;
     if let Some(entry) = entry {

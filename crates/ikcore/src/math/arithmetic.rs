@@ -334,19 +334,32 @@ pub fn instructions() -> &'static str {
 }
 
 /// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the version for this
-/// machine. In the body `A` is the [`Arithmetic`]. Functions called by the body must be `#[inline(always)]`, or closures
+/// machine. It may have one generic parameter. In the body `A` is the [`Arithmetic`]. Functions called by the body must be `#[inline(always)]`, or closures
 /// inside the body, to be compiled with its instructions.
 macro_rules! by_instructions {
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident<const $size:ident: usize> $($rest:tt)*) => {
+        $crate::math::arithmetic::by_instructions! {
+            @[const $size: usize] $(#[$attribute])* $visibility fn $name $($rest)*
+        }
+    };
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident<$generic:ident $(: $bound:ident)?> $($rest:tt)*) => {
+        $crate::math::arithmetic::by_instructions! {
+            @[$generic $(: $bound)?] $(#[$attribute])* $visibility fn $name $($rest)*
+        }
+    };
+    ($(#[$attribute:meta])* $visibility:vis fn $($rest:tt)*) => {
+        $crate::math::arithmetic::by_instructions! { @[] $(#[$attribute])* $visibility fn $($rest)* }
+    };
     (
-        $(#[$attribute:meta])*
+        @[$($generics:tt)*] $(#[$attribute:meta])*
         $visibility:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block
     ) => {
         $(#[$attribute])*
-        $visibility fn $name($($argument: $type),*) $(-> $result)? {
+        $visibility fn $name<$($generics)*>($($argument: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             if $crate::math::arithmetic::has_fma() {
                 #[target_feature(enable = "avx2,fma")]
-                fn with_fma($($argument: $type),*) $(-> $result)? {
+                fn with_fma<$($generics)*>($($argument: $type),*) $(-> $result)? {
                     #[allow(dead_code, reason = "some bodies have no arithmetic of their own")]
                     type A = $crate::math::arithmetic::Fma;
                     $body

@@ -5,7 +5,8 @@
 //! | files | contents |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
-//! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
+//! | `so3` | rotation vectors |
+//! | `vector3`, `vec3`, `vector` | vectors of three numbers, of three SIMD lanes, of n numbers |
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `columns` | columns of Jacobians |
@@ -44,6 +45,7 @@ pub mod ticks;
 pub(crate) mod turns;
 pub(crate) mod vec3;
 pub(crate) mod vector;
+pub(crate) mod vector3;
 
 pub use arithmetic::instructions;
 pub use columns::Columns;

@@ -75,16 +75,6 @@ impl<R: Real> Vec3<R> {
             z: self.x * other.y - self.y * other.x,
         }
     }
-
-    /// Returns the cross product, with FMA if the arithmetic has it.
-    #[inline(always)]
-    pub fn cross_fma(self, other: Self) -> Self {
-        Self {
-            x: self.y.mul_add(other.z, -(self.z * other.y)),
-            y: self.z.mul_add(other.x, -(self.x * other.z)),
-            z: self.x.mul_add(other.y, -(self.y * other.x)),
-        }
-    }
 }
 
 impl<R: Real> Mul<R> for Vec3<R> {

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
@@ -27,11 +27,8 @@ impl Aabb {
     }
 }
 
-/// Indices of the four pieces of a leaf, or [`NONE`].
-pub(super) type Block = [u32; 4];
 /// Marker of an empty lane.
-pub(super) const NONE: u32 = u32::MAX;
-
+const NONE: u32 = u32::MAX;
 /// Bit of a child index that marks a leaf.
 const LEAF: u32 = 1 << 31;
 /// Length (m) below which a segment has no direction.
@@ -47,10 +44,18 @@ struct Node {
     child: [u32; 4],
 }
 
+/// Up to four pieces of a shape: their data, one piece per SIMD lane, and their indices or [`NONE`].
+#[derive(Debug, Clone)]
+pub(super) struct Leaf<L> {
+    pub lanes: L,
+    pieces: [u32; 4],
+}
+
 /// Bounding volume hierarchy.
 #[derive(Debug, Clone)]
-pub(super) struct BoundingTree {
+pub(super) struct BoundingTree<L> {
     nodes: Vec<Node>,
+    leaves: Vec<Leaf<L>>,
     root: u32,
     bounds: Aabb,
 }
@@ -63,12 +68,6 @@ pub(super) struct SegmentQuery {
     across: [[f64; 3]; 3],
     /// True for a point, whose distance from a box is exact without the vectors above.
     is_point: bool,
-}
-
-/// Returns the squared search radius for pieces nearer than `enough` (m), rounded up so that its root is at least `enough`.
-pub(super) fn squared_bound(enough: f64) -> f64 {
-    let enough = enough.max(0.0) * (1.0 + 4.0 * f64::EPSILON);
-    enough * enough
 }
 
 impl SegmentQuery {
@@ -84,13 +83,18 @@ impl SegmentQuery {
     }
 }
 
-impl BoundingTree {
-    /// Builds a tree over at least one box; also returns the pieces of its leaves.
-    pub fn new(boxes: &[Aabb]) -> (Self, Vec<Block>) {
+impl<L> BoundingTree<L> {
+    /// Builds a tree over the boxes of at least one piece. `lanes_of` gathers the data of four pieces; empty lanes repeat the
+    /// first piece.
+    pub fn new(boxes: &[Aabb], lanes_of: impl Fn([usize; 4]) -> L) -> Self {
         let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut build = Build { boxes, nodes: vec![], blocks: vec![] };
         let (root, bounds) = build.subtree(&mut items);
-        (Self { nodes: build.nodes, root, bounds }, build.blocks)
+        let leaf = |pieces: [u32; 4]| {
+            let lanes = lanes_of(pieces.map(|piece| if piece == NONE { pieces[0] } else { piece } as usize));
+            Leaf { lanes, pieces }
+        };
+        Self { nodes: build.nodes, leaves: build.blocks.into_iter().map(leaf).collect(), root, bounds }
     }
 
     /// Returns the bounding box of the whole tree.
@@ -99,14 +103,14 @@ impl BoundingTree {
     }
 
     /// Visits leaves that may hold pieces within the square root of `bound` of the segment, nearest boxes first. `visit`
-    /// takes the index of a block and returns the new bound. Returns the last bound.
+    /// takes a leaf and the bound, and returns the new bound.
     #[inline(always)]
     pub fn search<A: Arithmetic>(
         &self,
         query: &SegmentQuery,
         mut bound: f64,
-        mut visit: impl FnMut(usize, f64) -> f64,
-    ) -> f64 {
+        mut visit: impl FnMut(&Leaf<L>, f64) -> f64,
+    ) {
         let mut stack = [(0.0, 0_u32); STACK];
         stack[0] = (0.0, self.root);
         let mut waiting = 1;
@@ -118,7 +122,7 @@ impl BoundingTree {
                 continue;
             }
             if item & LEAF != 0 {
-                bound = visit((item & !LEAF) as usize, bound);
+                bound = visit(&self.leaves[(item & !LEAF) as usize], bound);
                 continue;
             }
             let node = &self.nodes[item as usize];
@@ -137,10 +141,9 @@ impl BoundingTree {
                 }
             }
         }
-        bound
     }
 
-    /// Visits the leaves whose boxes contain `point` in the projection along x, and reach at or beyond its x.
+    /// Visits the pieces of leaves whose boxes contain `point` in the projection along x, and reach at or beyond its x.
     pub fn along_x(&self, point: &Vector3<f64>, mut visit: impl FnMut(usize)) {
         let mut stack = [0_u32; STACK];
         stack[0] = self.root;
@@ -149,7 +152,7 @@ impl BoundingTree {
             waiting -= 1;
             let item = stack[waiting];
             if item & LEAF != 0 {
-                visit((item & !LEAF) as usize);
+                self.leaves[(item & !LEAF) as usize].pieces().for_each(&mut visit);
                 continue;
             }
             let node = &self.nodes[item as usize];
@@ -165,20 +168,17 @@ impl BoundingTree {
     }
 }
 
-by_instructions! {
-    /// Visits all pieces in boxes within `reach` (m) of a segment, and possibly others; `block_of` returns the pieces of a
-    /// leaf, and `visit` returns the new reach.
-    pub(super) fn each_near(
-        tree: &BoundingTree,
-        block_of: &dyn Fn(usize) -> Block,
-        segment: &[Vector3<f64>; 2],
-        reach: f64,
-        visit: &mut dyn FnMut(usize) -> f64,
-    ) {
-        tree.search::<A>(&SegmentQuery::new(segment), squared_bound(reach), |leaf, bound| {
-            let pieces = block_of(leaf).into_iter().filter(|piece| *piece != NONE);
-            pieces.fold(bound, |_, piece| squared_bound(visit(piece as usize)))
-        });
+impl<L> Leaf<L> {
+    /// Returns the index of the piece in a lane; `None` for an empty lane.
+    #[inline(always)]
+    pub fn piece(&self, lane: usize) -> Option<usize> {
+        (self.pieces[lane] != NONE).then_some(self.pieces[lane] as usize)
+    }
+
+    /// Returns the indices of all pieces.
+    #[inline(always)]
+    pub fn pieces(&self) -> impl Iterator<Item = usize> {
+        (0..4).filter_map(|lane| self.piece(lane))
     }
 }
 
@@ -214,7 +214,7 @@ fn gap<R: Real>(offset: R, half: R) -> R {
 struct Build<'a> {
     boxes: &'a [Aabb],
     nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    blocks: Vec<[u32; 4]>,
 }
 
 impl Build<'_> {

@@ -51,7 +51,7 @@ impl Polyhedron {
 }
 
 /// Result of the crate for two convex sets; normals are unit vectors from the other set to the own one.
-pub(super) enum Proposal {
+pub(super) enum ContactQuery {
     /// Disjoint sets with this direction of smallest distance, and the nearest `point` of the own set.
     Apart { point: Vector3<f64>, normal: Vector3<f64> },
     /// Sets that appear to be farther apart than `enough`, along this normal.
@@ -66,16 +66,16 @@ pub(super) fn nearest(
     other: &impl Fn(&Vector3<f64>) -> Vector3<f64>,
     towards: &Vector3<f64>,
     enough: f64,
-) -> Proposal {
+) -> ContactQuery {
     let mut simplex = VoronoiSimplex::new();
     match searched(own, other, towards, enough, &mut simplex) {
         GJKResult::ClosestPoints(point, _, direction) => {
-            Proposal::Apart { point: from_crate(point), normal: -from_crate(direction) }
+            ContactQuery::Apart { point: from_crate(point), normal: -from_crate(direction) }
         }
         GJKResult::NoIntersection(direction) | GJKResult::Proximity(direction) => {
-            Proposal::Beyond(-from_crate(direction))
+            ContactQuery::Beyond(-from_crate(direction))
         }
-        GJKResult::Intersection => Proposal::Overlapping,
+        GJKResult::Intersection => ContactQuery::Overlapping,
     }
 }
 

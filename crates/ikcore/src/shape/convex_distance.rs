@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 
 use super::checked_shape::ROUNDING;
-use super::collision_crate::{Proposal, deepest, nearest};
+use super::collision_crate::{ContactQuery, deepest, nearest};
 use super::convex::Convex;
 
 /// Separation of two sets along one normal.
@@ -42,15 +42,15 @@ pub(super) fn gap(own: &Convex, other: &Convex, enough: f64) -> Gap {
     let towards = (here - there).try_normalize(0.0).unwrap_or(Vector3::x());
     let (support, other_support) = (|n: &Vector3<f64>| own.support(n), |n: &Vector3<f64>| other.support(n));
     match nearest(&support, &other_support, &towards, enough + radii) {
-        Proposal::Apart { point, normal } => {
+        ContactQuery::Apart { point, normal } => {
             let found = separated(own, other, &normal, point);
-            if own.is_round() || other.is_round() { climbed(own, other, found) } else { found }
+            if own.is_round() || other.is_round() { ascended(own, other, found) } else { found }
         }
-        Proposal::Beyond(normal) => {
+        ContactQuery::Beyond(normal) => {
             let found = separated(own, other, &normal, here);
             if found.distance >= enough { found } else { overlapping(own, other, &[normal, towards], here) }
         }
-        Proposal::Overlapping => match deepest(&support, &other_support, &towards) {
+        ContactQuery::Overlapping => match deepest(&support, &other_support, &towards) {
             Some((point, normal)) => overlapping(own, other, &[normal, -normal, towards], point),
             None => overlapping(own, other, &[towards, -towards, Vector3::x(), Vector3::y(), Vector3::z()], here),
         },
@@ -68,11 +68,11 @@ fn separated(own: &Convex, other: &Convex, normal: &Vector3<f64>, point: Vector3
 /// Returns the largest gap along the given normals, improved by gradient ascent from the best of them.
 fn overlapping(own: &Convex, other: &Convex, normals: &[Vector3<f64>], point: Vector3<f64>) -> Gap {
     let gaps = normals.iter().map(|normal| separated(own, other, normal, point));
-    climbed(own, other, gaps.fold(Gap::beyond(f64::NEG_INFINITY), larger))
+    ascended(own, other, gaps.fold(Gap::beyond(f64::NEG_INFINITY), larger))
 }
 
 /// Increases the gap by gradient ascent on the normal: for curved sets the normal of the crate is not exact.
-fn climbed(own: &Convex, other: &Convex, mut best: Gap) -> Gap {
+fn ascended(own: &Convex, other: &Convex, mut best: Gap) -> Gap {
     let mut angle = FIRST_ANGLE;
     for _ in 0..CLIMBS {
         // Gradient of the gap with respect to the normal: the vector between the two support points.

@@ -12,28 +12,10 @@ use nalgebra::Vector3;
 use super::bounding_tree::Aabb;
 use super::mesh_pieces::{MeshPiece, MeshPieces, NO_PIECE};
 use super::segment_lanes::{TriangleLanes, to_triangle};
+use super::triangle_surface::TriangleSurface;
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
-
-/// Triangle mesh with queries for winding numbers and for nearby triangles.
-pub(super) trait TriangleSurface {
-    fn vertices(&self) -> &[[f64; 3]];
-
-    fn faces(&self) -> &[[u32; 3]];
-
-    /// Returns the corners of a triangle.
-    fn triangle(&self, face: usize) -> [Vector3<f64>; 3];
-
-    /// Returns the bounding box.
-    fn bounds(&self) -> &Aabb;
-
-    /// Returns the winding number of the triangles about `point`, with each triangle weighted by `count`.
-    fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32;
-
-    /// Visits all triangles within `reach` (m) of a segment, and possibly others; `visit` returns the new reach.
-    fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64);
-}
 
 /// Interior of a mesh.
 #[derive(Debug, Clone)]
@@ -59,12 +41,9 @@ const OF_A_PIECE: [usize; 2] = [3, 128];
 const SAMPLES: [[f64; 3]; 4] = [[1.0 / 3.0; 3], [0.96, 0.03, 0.01], [0.01, 0.96, 0.03], [0.03, 0.01, 0.96]];
 
 impl Enclosure {
-    /// Result for a mesh without an interior.
-    pub const NOTHING: Self = Self { turns: vec![], certain: false };
-
     /// Finds the interior of `mesh`.
-    pub fn of(mesh: &impl TriangleSurface) -> Self {
-        let MeshPieces { pieces, mut turns, of } = MeshPieces::of(mesh.vertices(), mesh.faces());
+    pub fn of(mesh: &TriangleSurface) -> Self {
+        let MeshPieces { pieces, mut turns, of } = MeshPieces::of(&mesh.vertices, &mesh.faces);
         let mut certain = !pieces.is_empty() && pieces.iter().all(|piece| piece.closed);
         // Original orientation of each piece: +1 is outward, 0 is mixed.
         let mut given = vec![0; pieces.len()];
@@ -89,7 +68,7 @@ impl Enclosure {
 }
 
 /// Returns the volume enclosed by a piece (m^3); negative if its triangles point inward.
-fn signed_volume(mesh: &impl TriangleSurface, piece: &MeshPiece, turns: &[i8]) -> f64 {
+fn signed_volume(mesh: &TriangleSurface, piece: &MeshPiece, turns: &[i8]) -> f64 {
     let [origin, ..] = mesh.triangle(piece.faces[0] as usize);
     let cone = |face: &u32| {
         let [a, b, c] = mesh.triangle(*face as usize).map(|corner| corner - origin);
@@ -100,12 +79,7 @@ fn signed_volume(mesh: &impl TriangleSurface, piece: &MeshPiece, turns: &[i8]) -
 
 /// Whether sampled winding numbers on both sides of the triangles of a piece are those of a body oriented outward; `own` is
 /// the weight of each triangle of the piece.
-fn encloses_for_certain(
-    mesh: &impl TriangleSurface,
-    piece: &MeshPiece,
-    own: impl Fn(usize) -> i32,
-    sampled: usize,
-) -> bool {
+fn encloses_for_certain(mesh: &TriangleSurface, piece: &MeshPiece, own: impl Fn(usize) -> i32, sampled: usize) -> bool {
     let sides = |face: u32| {
         let samples = SAMPLES.iter().filter_map(move |fractions| both_sides(mesh, face, fractions));
         samples.map(|points| points.map(|point| mesh.winding_number(&point, &own)))
@@ -116,13 +90,13 @@ fn encloses_for_certain(
 }
 
 /// Returns points on both sides of a triangle at these barycentric coordinates; `None` if it has no area.
-fn both_sides(mesh: &impl TriangleSurface, face: u32, fractions: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
+fn both_sides(mesh: &TriangleSurface, face: u32, fractions: &[f64; 3]) -> Option<[Vector3<f64>; 2]> {
     let [a, b, c] = mesh.triangle(face as usize);
     let at = fractions[0] * a + fractions[1] * b + fractions[2] * c;
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     let cross = (b - a).cross(&(c - a));
     let height = cross.norm() / longest;
-    let Aabb { lower, upper } = mesh.bounds();
+    let Aabb { lower, upper } = mesh.tree.bounds();
     let rounding = ROUNDINGS * f64::EPSILON * lower.amax().max(upper.amax());
     let off = (OFF_TRIANGLE * height).min(COINCIDENT * (upper - lower).amax()).max(rounding);
     let normal = cross.try_normalize(0.0).filter(|_| height > rounding)?;
@@ -131,12 +105,7 @@ fn both_sides(mesh: &impl TriangleSurface, face: u32, fractions: &[f64; 3]) -> O
 
 /// Returns the pieces that are walls of cavities; `of` is the piece of each triangle, `given` the original orientation of
 /// each piece, or 0.
-fn cavities(
-    mesh: &impl TriangleSurface,
-    (pieces, of): (&[MeshPiece], &[usize]),
-    given: &[i32],
-    turns: &[i8],
-) -> Vec<usize> {
+fn cavities(mesh: &TriangleSurface, (pieces, of): (&[MeshPiece], &[usize]), given: &[i32], turns: &[i8]) -> Vec<usize> {
     let closed = |sign: i32| (0..pieces.len()).any(|i| pieces[i].closed && given[i] == sign);
     if !(closed(1) && closed(-1)) {
         return vec![];
@@ -159,17 +128,17 @@ fn cavities(
 }
 
 /// Whether a triangle touches a triangle of another piece; `of` is the piece of each triangle.
-fn touches_others(mesh: &impl TriangleSurface, of: &[usize], face: u32) -> bool {
+fn touches_others(mesh: &TriangleSurface, of: &[usize], face: u32) -> bool {
     let own = mesh.triangle(face as usize);
-    let Aabb { lower, upper } = mesh.bounds();
+    let Aabb { lower, upper } = mesh.tree.bounds();
     let near = COINCIDENT * (upper - lower).amax();
     let middle = (own[0] + own[1] + own[2]) / 3.0;
     let reach = own.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max) + near;
     let mut touches = false;
-    mesh.each_near(&[middle; 2], reach, &mut |other| {
+    mesh.tree.each_near(&[middle; 2], reach, &mut |other| {
         if ![of[face as usize], NO_PIECE].contains(&of[other]) && !touches {
             let corners = mesh.triangle(other);
-            touches = meet(&own, &corners, near) || meet(&corners, &own, near);
+            touches = an_edge_is_near(&own, &corners, near) || an_edge_is_near(&corners, &own, near);
         }
         reach
     });
@@ -177,7 +146,7 @@ fn touches_others(mesh: &impl TriangleSurface, of: &[usize], face: u32) -> bool 
 }
 
 /// Whether an edge of the first triangle is nearer than `near` (m) to the second.
-fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64) -> bool {
+fn an_edge_is_near([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64) -> bool {
     let vector = |v: &Vector3<f64>| Vec3::<One<NoFma>>::splat(&(*v).into());
     let triangle = TriangleLanes::new(vector(p), vector(&(q - p)), vector(&(r - p)));
     let squared =
@@ -188,9 +157,7 @@ fn meet([a, b, c]: &[Vector3<f64>; 3], [p, q, r]: &[Vector3<f64>; 3], near: f64)
 
 #[cfg(test)]
 mod tests {
-    use super::super::checked_shape::Shape;
-    use super::super::geometry::Geometry;
-    use super::super::mesh::Mesh;
+    use super::super::test_shapes::{SQUARES, as_mesh, mesh_of};
     use super::*;
     use crate::rng::{self, LazyRng};
 
@@ -211,8 +178,7 @@ mod tests {
         /// Returns the triangles of the box, whose squares are split along one diagonal or the other.
         fn triangles(&self, other_diagonal: bool) -> Vec<Corners> {
             let corner = |bits: usize| std::array::from_fn(|k| [self.lower, self.upper][bits >> k & 1][k]);
-            let squares = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-            let halves = squares.into_iter().flat_map(|mut square| {
+            let halves = SQUARES.into_iter().flat_map(|mut square| {
                 square.rotate_left(usize::from(other_diagonal));
                 let [a, b, c, d] = square.map(corner);
                 [[a, b, c], [a, c, d]]
@@ -234,21 +200,9 @@ mod tests {
         triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
     }
 
-    fn shape(triangles: &[Corners]) -> Shape {
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
-    }
-
-    fn as_mesh(shape: &Shape) -> &Mesh {
-        match shape.geometry() {
-            Geometry::Mesh(mesh) => mesh,
-            _ => unreachable!(),
-        }
-    }
-
     /// Returns whether the mesh is closed, and which of these points on the x axis it encloses.
     fn judged(triangles: &[Corners], places: &[f64]) -> (bool, Vec<bool>) {
-        let shape = shape(triangles);
+        let shape = mesh_of(triangles);
         let mesh = as_mesh(&shape);
         let enclosed = places.iter().map(|x| mesh.encloses(&Vector3::new(*x, 0.02, 0.03)));
         (mesh.is_closed(), enclosed.collect())
@@ -317,11 +271,11 @@ mod tests {
         // Contact along a face, along an edge, and at a corner.
         for center in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]] {
             let other = Block::about(center, 0.5);
-            let both = shape(&[unit(), other.triangles(false)].concat());
+            let both = mesh_of(&[unit(), other.triangles(false)].concat());
             assert!(as_mesh(&both).is_closed(), "{center:?}");
             for reversed in [false, true] {
                 let other = if reversed { turned(other.triangles(false)) } else { other.triangles(false) };
-                let both = shape(&[unit(), other].concat());
+                let both = mesh_of(&[unit(), other].concat());
                 for inside in [[0.1, 0.2, 0.3].into(), Vector3::from(center).add_scalar(0.1)] {
                     assert!(as_mesh(&both).encloses(&inside), "{center:?} {reversed}");
                 }
@@ -390,7 +344,7 @@ mod tests {
                 }
                 triangles.extend(if outward { own } else { turned(own) });
             }
-            let shape = shape(&triangles);
+            let shape = mesh_of(&triangles);
             let mesh = as_mesh(&shape);
             closed += usize::from(mesh.is_closed());
             assert!(round || mesh.is_closed(), "{parts:?}");

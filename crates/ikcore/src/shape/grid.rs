@@ -5,12 +5,13 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::{SegmentDistance, by_tangents};
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
-use super::segment_lanes::{TOUCHING, to_box};
+use super::bounding_tree::{Aabb, BoundingTree};
+use super::nearest_piece::{PieceLanes, squared_bound};
+use super::segment_lanes::{NearestFraction, TOUCHING, to_box};
 use super::tangent::Tangent;
-use crate::math::arithmetic::by_instructions;
+use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
-use crate::math::real::{Four, Real};
+use crate::math::real::Four;
 use crate::math::vec3::Vec3;
 
 /// Occupied voxels of a grid: cubes in rows along x, y and z.
@@ -23,27 +24,14 @@ pub struct Grid {
     counts: [usize; 3],
     occupied: Vec<bool>,
     blocks: Vec<Aabb>,
-    tree: BoundingTree,
-    leaves: Vec<Leaf>,
+    tree: BoundingTree<FourBlocks>,
 }
 
-/// Four blocks: centres, half edges, indices.
-#[derive(Debug, Clone)]
-struct Leaf {
+/// Centres and half edges of four blocks, one per lane.
+#[derive(Clone)]
+struct FourBlocks {
     center: [F64x4; 3],
     half: [F64x4; 3],
-    blocks: Block,
-}
-
-/// Block nearest to a segment.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NearestBlock {
-    /// Squared distance (m^2).
-    pub squared: f64,
-    /// Fraction of the segment's length.
-    pub fraction: f64,
-    /// Index of the block; `None` if none is within the bound.
-    pub block: Option<usize>,
 }
 
 impl PartialEq for Grid {
@@ -74,9 +62,8 @@ impl Grid {
         if blocks.is_empty() {
             return None;
         }
-        let (tree, leaves) = BoundingTree::new(&blocks);
-        let leaves = leaves.into_iter().map(|block| Leaf::new(block, &blocks)).collect();
-        Some(Self { origin, voxel, counts, occupied, blocks, tree, leaves })
+        let tree = BoundingTree::new(&blocks, |lanes| FourBlocks::new(lanes.map(|block| &blocks[block])));
+        Some(Self { origin, voxel, counts, occupied, blocks, tree })
     }
 
     /// Returns the lowest corner of the first voxel (m).
@@ -104,40 +91,29 @@ impl Grid {
         &self.blocks
     }
 
-    /// Finds the nearest block within the square root of `bound`; calls `overlapping` with the blocks that the segment
-    /// crosses.
-    pub(super) fn nearest_block(
-        &self,
-        segment: &[Vector3<f64>; 2],
-        bound: f64,
-        overlapping: &mut dyn FnMut(usize),
-    ) -> NearestBlock {
-        nearest_block(self, segment, bound, overlapping)
-    }
-
     /// Visits all blocks within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
     /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        each_near(&self.tree, &|leaf| self.leaves[leaf].blocks, segment, reach, visit);
+        self.tree.each_near(segment, reach, visit);
     }
 
     /// Returns the signed distance of a point to the nearest block, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let mut deepest: Option<Tangent> = None;
-        let nearest = self.nearest_block(&[*point; 2], f64::INFINITY, &mut |block| {
+        let nearest = self.tree.nearest(&[*point; 2], f64::INFINITY, &mut |block| {
             let tangent = self.blocks[block].tangent(point);
             if deepest.is_none_or(|deepest| tangent.value < deepest.value) {
                 deepest = Some(tangent);
             }
         });
-        deepest.unwrap_or_else(|| self.blocks[nearest.block.unwrap_or(0)].tangent(point))
+        deepest.unwrap_or_else(|| self.blocks[nearest.index.unwrap_or(0)].tangent(point))
     }
 
     /// Returns the signed distance of a segment, exact up to `enough`: inside it is minus the depth of the deepest point in a
     /// block.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let mut deepest: Option<SegmentDistance> = None;
-        let nearest = self.nearest_block(segment, squared_bound(enough).max(TOUCHING), &mut |block| {
+        let nearest = self.tree.nearest(segment, squared_bound(enough).max(TOUCHING), &mut |block| {
             let inside = by_tangents(segment, |point| self.blocks[block].tangent(point), f64::INFINITY);
             if deepest.is_none_or(|deepest| inside.distance < deepest.distance) {
                 deepest = Some(inside);
@@ -147,48 +123,19 @@ impl Grid {
     }
 }
 
-impl Leaf {
-    fn new(block: Block, blocks: &[Aabb]) -> Self {
-        // An empty lane repeats the first block.
-        let aabb = |lane: usize| &blocks[block[if block[lane] == NONE { 0 } else { lane }] as usize];
-        let lanes = |value: &dyn Fn(&Aabb, usize) -> f64| {
-            std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| value(aabb(lane), k))))
-        };
+impl FourBlocks {
+    fn new(blocks: [&Aabb; 4]) -> Self {
+        let lanes =
+            |value: &dyn Fn(&Aabb, usize) -> f64| std::array::from_fn(|k| F64x4(blocks.map(|block| value(block, k))));
         let center = lanes(&|aabb, k| 0.5 * (aabb.lower[k] + aabb.upper[k]));
-        Self { center, half: lanes(&|aabb, k| 0.5 * (aabb.upper[k] - aabb.lower[k])), blocks: block }
+        Self { center, half: lanes(&|aabb, k| 0.5 * (aabb.upper[k] - aabb.lower[k])) }
     }
 }
 
-by_instructions! {
-    fn nearest_block(
-        grid: &Grid,
-        segment: &[Vector3<f64>; 2],
-        bound: f64,
-        overlapping: &mut dyn FnMut(usize),
-    ) -> NearestBlock {
-        let start = Vec3::<Four<A>>::splat(&segment[0].into());
-        let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
-        let query = SegmentQuery::new(segment);
-        let mut best = NearestBlock { squared: bound, fraction: 0.0, block: None };
-        grid.tree.search::<A>(&query, bound, |leaf, bound| {
-            let leaf = &grid.leaves[leaf];
-            let nearest = to_box(start - Vec3::of(&leaf.center), along, Vec3::of(&leaf.half));
-            let squared = nearest.squared.stored().0;
-            for lane in 0..4 {
-                if leaf.blocks[lane] == NONE {
-                    continue;
-                }
-                let block = leaf.blocks[lane] as usize;
-                if squared[lane] <= TOUCHING {
-                    overlapping(block);
-                }
-                if squared[lane] < best.squared || (squared[lane] <= bound && best.block.is_none()) {
-                    best = NearestBlock { squared: squared[lane], fraction: nearest.fraction.lane(lane), block: Some(block) };
-                }
-            }
-            best.squared
-        });
-        best
+impl PieceLanes for FourBlocks {
+    #[inline(always)]
+    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3]) -> NearestFraction<Four<A>> {
+        to_box(Vec3::splat(start) - Vec3::of(&self.center), Vec3::splat(along), Vec3::of(&self.half))
     }
 }
 

@@ -5,44 +5,18 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
-use super::enclosure::{Enclosure, TriangleSurface};
-use super::segment_lanes::{NearestFraction, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
+use super::enclosure::Enclosure;
+use super::nearest_piece::squared_bound;
+use super::segment_lanes::TOUCHING;
 use super::tangent::{Tangent, point_between};
 use super::triangle::nearest_on_triangle;
-use super::winding::winding;
-use crate::math::arithmetic::{Arithmetic, by_instructions};
-use crate::math::f64x4::F64x4;
-use crate::math::real::{Four, Real};
-use crate::math::vec3::Vec3;
+use super::triangle_surface::TriangleSurface;
 
 /// Triangle mesh, together with the interior of its closed pieces.
 #[derive(Clone)]
 pub struct Mesh {
-    vertices: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
+    surface: TriangleSurface,
     enclosure: Enclosure,
-    tree: BoundingTree,
-    leaves: Vec<Leaf>,
-}
-
-/// Four triangles: a corner and two edges of each, and their indices.
-#[derive(Debug, Clone)]
-struct Leaf {
-    corner: [F64x4; 3],
-    edges: [[F64x4; 3]; 2],
-    faces: Block,
-}
-
-/// Triangle nearest to a segment.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NearestFace {
-    /// Squared distance (m^2).
-    pub squared: f64,
-    /// Fraction of the segment's length.
-    pub fraction: f64,
-    /// Index of the triangle; `None` if none is within the bound.
-    pub face: Option<usize>,
 }
 
 /// Accuracy of the depth of a segment inside a closed mesh, relative to the depth.
@@ -55,14 +29,14 @@ const MOST_DEPTHS: usize = 400;
 impl PartialEq for Mesh {
     /// Compares vertices and faces alone, since they determine all other fields.
     fn eq(&self, other: &Self) -> bool {
-        self.vertices == other.vertices && self.faces == other.faces
+        self.vertices() == other.vertices() && self.faces() == other.faces()
     }
 }
 
 impl fmt::Debug for Mesh {
     /// Omits the pieces, which may number thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (vertices, faces) = (self.vertices.len(), self.faces.len());
+        let (vertices, faces) = (self.vertices().len(), self.faces().len());
         write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.is_closed())
     }
 }
@@ -79,23 +53,18 @@ impl Mesh {
                 return Err(format!("face {i} of the mesh names vertex {index}, but it has {count} (from 0)"));
             }
         }
-        let corner = |i: u32| Vector3::from(vertices[i as usize]);
-        let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(face.map(corner))).collect();
-        let (tree, blocks) = BoundingTree::new(&boxes);
-        let leaves = blocks.into_iter().map(|block| Leaf::new(block, &vertices, &faces)).collect();
-        let mut mesh = Self { vertices, faces, enclosure: Enclosure::NOTHING, tree, leaves };
-        mesh.enclosure = Enclosure::of(&mesh);
-        Ok(mesh)
+        let surface = TriangleSurface::new(vertices, faces);
+        Ok(Self { enclosure: Enclosure::of(&surface), surface })
     }
 
     /// Returns the corners of the triangles (m).
     pub fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices
+        &self.surface.vertices
     }
 
     /// Returns the corner indices of each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
-        &self.faces
+        &self.surface.faces
     }
 
     /// Whether the interior is fully known: the mesh has no boundary, and no two layers coincide. Triangles may have either
@@ -106,7 +75,7 @@ impl Mesh {
 
     /// Returns the volume enclosed by the closed pieces (m^3); overlaps count once per piece.
     pub fn volume(&self) -> f64 {
-        let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
+        let origin = Vector3::from(self.vertices()[self.faces()[0][0] as usize]);
         let cone = |(i, turn): (usize, &i8)| {
             let [a, b, c] = self.triangle(i).map(|corner| corner - origin);
             f64::from(*turn) * a.dot(&b.cross(&c)) / 6.0
@@ -116,30 +85,25 @@ impl Mesh {
 
     /// Returns the corners of face `i`.
     pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
-        self.faces[i].map(|corner| self.vertices[corner as usize].into())
+        self.surface.triangle(i)
     }
 
     /// Whether a closed piece encloses `point`.
     pub(super) fn encloses(&self, point: &Vector3<f64>) -> bool {
         let Enclosure { turns, .. } = &self.enclosure;
-        !turns.is_empty() && self.winding_number(point, |face| turns[face].into()) != 0
-    }
-
-    /// Finds the nearest triangle within the square root of `bound`.
-    pub(super) fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
-        nearest_face(self, segment, bound)
+        !turns.is_empty() && self.surface.winding_number(point, |face| turns[face].into()) != 0
     }
 
     /// Visits all triangles within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
     /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        each_near(&self.tree, &|leaf| self.leaves[leaf].faces, segment, reach, visit);
+        self.surface.tree.each_near(segment, reach, visit);
     }
 
     /// Returns the signed distance of a point, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
-        let nearest = self.nearest_face(&[*point; 2], f64::INFINITY);
-        let [a, b, c] = self.triangle(nearest.face.unwrap_or(0));
+        let nearest = self.surface.tree.nearest(&[*point; 2], f64::INFINITY, &mut |_| {});
+        let [a, b, c] = self.triangle(nearest.index.unwrap_or(0));
         let away = point - nearest_on_triangle(point, &[a, b, c]);
         let distance = away.norm();
         let sign = if self.encloses(point) { -1.0 } else { 1.0 };
@@ -151,8 +115,8 @@ impl Mesh {
     /// Returns the signed distance of a segment: inside a closed piece it is minus the depth of the deepest point. Exact up
     /// to `enough` outside, a lower bound inside.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
-        let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
-        let touches = surface.face.is_some() && surface.squared <= TOUCHING;
+        let surface = self.surface.tree.nearest(segment, squared_bound(enough).max(TOUCHING), &mut |_| {});
+        let touches = surface.index.is_some() && surface.squared <= TOUCHING;
         if (touches && !self.enclosure.turns.is_empty()) || self.encloses(&segment[0]) {
             return self.depth(segment);
         }
@@ -190,43 +154,6 @@ impl Mesh {
     }
 }
 
-impl TriangleSurface for Mesh {
-    fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices
-    }
-
-    fn faces(&self) -> &[[u32; 3]] {
-        &self.faces
-    }
-
-    fn triangle(&self, face: usize) -> [Vector3<f64>; 3] {
-        self.triangle(face)
-    }
-
-    fn bounds(&self) -> &Aabb {
-        self.tree.bounds()
-    }
-
-    fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        self.each_near(segment, reach, visit);
-    }
-
-    fn winding_number(&self, point: &Vector3<f64>, count: impl Fn(usize) -> i32) -> i32 {
-        let bounds = self.tree.bounds();
-        if !(0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k])) {
-            return 0;
-        }
-        let mut turns = 0;
-        self.tree.along_x(point, |leaf| {
-            let faces = self.leaves[leaf].faces;
-            for face in faces.into_iter().filter(|face| *face != NONE) {
-                turns += count(face as usize) * winding(point, &self.triangle(face as usize));
-            }
-        });
-        turns
-    }
-}
-
 /// Part of a segment, with a lower bound on the signed distance in it.
 #[derive(Clone, Copy)]
 struct Wedge {
@@ -242,93 +169,20 @@ impl Wedge {
     }
 }
 
-impl Leaf {
-    fn new(block: Block, vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
-        let mut leaf = Self { corner: [F64x4::ZERO; 3], edges: [[F64x4::ZERO; 3]; 2], faces: block };
-        for lane in 0..4 {
-            // An empty lane repeats the first triangle.
-            let face = if block[lane] == NONE { block[0] } else { block[lane] };
-            let [a, b, c] = faces[face as usize].map(|i| vertices[i as usize]);
-            for k in 0..3 {
-                leaf.corner[k].0[lane] = a[k];
-                leaf.edges[0][k].0[lane] = b[k] - a[k];
-                leaf.edges[1][k].0[lane] = c[k] - a[k];
-            }
-        }
-        leaf
-    }
-
-    #[inline(always)]
-    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestFraction<Four<A>> {
-        let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
-        let start = Vec3::splat(start);
-        if is_point {
-            let squared = point_to_triangle(start, &triangle);
-            return NearestFraction { squared, fraction: Four::splat(0.0) };
-        }
-        to_triangle(start, Vec3::splat(along), &triangle)
-    }
-}
-
-by_instructions! {
-    fn nearest_face(mesh: &Mesh, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
-        let [start, along] = [segment[0].into(), (segment[1] - segment[0]).into()];
-        let query = SegmentQuery::new(segment);
-        let is_point = along == [0.0; 3];
-        let mut best = NearestFace { squared: bound, fraction: 0.0, face: None };
-        mesh.tree.search::<A>(&query, bound, |leaf, bound| {
-            let leaf = &mesh.leaves[leaf];
-            let nearest = leaf.nearest::<A>(&start, &along, is_point);
-            let squared = nearest.squared.stored().0;
-            for lane in 0..4 {
-                if squared[lane] < best.squared || (squared[lane] <= bound && best.face.is_none()) {
-                    let face = if leaf.faces[lane] == NONE { leaf.faces[0] } else { leaf.faces[lane] };
-                    best = NearestFace {
-                        squared: squared[lane],
-                        fraction: nearest.fraction.lane(lane),
-                        face: Some(face as usize),
-                    };
-                }
-            }
-            best.squared
-        });
-        best
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::checked_shape::Shape;
-    use super::super::geometry::Geometry;
+    use super::super::test_shapes::{as_mesh, mesh_of, point};
     use super::super::triangle::nearest_on_triangle;
     use super::*;
     use crate::rng::{self, LazyRng};
 
-    fn point(rng: &mut LazyRng, reach: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
-    }
-
-    /// Returns the triangles of `shape` as a mesh, with separate corners for each.
-    fn mesh_of(shape: &Shape) -> Shape {
-        let triangles = shape.triangles();
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
-    }
-
-    fn as_mesh(shape: &Shape) -> &Mesh {
-        match shape.geometry() {
-            Geometry::Mesh(mesh) => mesh,
-            _ => unreachable!(),
-        }
-    }
-
     fn random_soup(rng: &mut LazyRng, count: u32) -> Shape {
-        let mut vertices = vec![];
-        for _ in 0..count {
+        let triangles = (0..count).map(|_| {
             let (corner, size) = (point(rng, 1.0), rng.uniform_in(0.01, 0.4));
-            vertices.extend((0..3).map(|_| <[f64; 3]>::from(corner + size * point(rng, 1.0))));
-        }
-        Shape::mesh(vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+            [(); 3].map(|()| <[f64; 3]>::from(corner + size * point(rng, 1.0)))
+        });
+        mesh_of(&triangles.collect::<Vec<_>>())
     }
 
     #[test]
@@ -336,7 +190,7 @@ mod tests {
         let mut rng = rng::stream(1, 0);
         let turn = Some(*nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
         let cuboid = Shape::cuboid([0.1, -0.2, 0.3], [0.5, 0.7, 0.9], turn).unwrap();
-        let mesh = mesh_of(&cuboid);
+        let mesh = mesh_of(&cuboid.triangles());
         assert!(as_mesh(&mesh).is_closed());
         let mut inside = 0;
         for case in 0..4000 {
@@ -380,7 +234,7 @@ mod tests {
 
     #[test]
     fn points_on_rays_through_edges_and_corners_are_inside_or_not() {
-        let cuboid = mesh_of(&Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap());
+        let cuboid = mesh_of(&Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap().triangles());
         let mesh = as_mesh(&cuboid);
         // Rays along x through the diagonals of the faces, and through edges and corners of the box.
         for (x, y, z) in [(0.0, 0.5, 0.5), (0.0, 0.5, -0.5), (0.0, 0.0, 0.0), (-0.9, 0.25, 0.25)] {
@@ -396,8 +250,7 @@ mod tests {
     fn what_lies_in_one_of_two_overlapping_bodies_is_inside() {
         let [one, other] = [[0.0; 3], [0.5, 0.0, 0.0]].map(|c| Shape::cuboid(c, [1.0; 3], None).unwrap().triangles());
         let triangles: Vec<_> = one.into_iter().chain(other).collect();
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let both = Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap();
+        let both = mesh_of(&triangles);
         // Point just outside the first box, but deep in the second.
         assert!(as_mesh(&both).encloses(&Vector3::new(0.501, 0.0, 0.0)));
         assert!(as_mesh(&both).encloses(&Vector3::zeros()) && !as_mesh(&both).encloses(&Vector3::new(1.1, 0.0, 0.0)));

@@ -15,11 +15,11 @@
 //! | `collision_crate` | interface to the collision crate |
 //! | `along_segment` | minimum signed distance along a segment |
 //! | `segment_distance` | distance of a segment to a shape or another segment |
-//! | `bounding_tree` | bounding volume hierarchy for thousands of pieces |
+//! | `bounding_tree`, `nearest_piece` | bounding volume hierarchy for thousands of pieces |
 //! | `segment_lanes`, `solid_lanes` | distances of segments, and to boxes and cylinders, for one number or in SIMD lanes |
 //! | `body_block`, `eight_shape` | "nearer than m?" for four capsules, and for one at eight configurations |
 //! | `shape_index` | shapes near a ball, among many |
-//! | `mesh`, `triangle` | triangle meshes, closed or not |
+//! | `mesh`, `triangle_surface`, `triangle` | triangle meshes, closed or not |
 //! | `mesh_pieces`, `enclosure`, `winding` | connected pieces of a mesh, and its interior |
 //! | `mesh_hull` | convex hulls of meshes |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
@@ -51,6 +51,7 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
+mod nearest_piece;
 mod point_cloud;
 mod posed_body;
 #[cfg(test)]
@@ -63,7 +64,10 @@ mod signed_distance;
 mod solid_lanes;
 mod stored_shape;
 mod tangent;
+#[cfg(test)]
+mod test_shapes;
 mod triangle;
+mod triangle_surface;
 mod triangles;
 mod winding;
 

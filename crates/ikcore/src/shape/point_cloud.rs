@@ -5,12 +5,13 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, each_near, squared_bound};
-use super::segment_lanes::to_point;
+use super::bounding_tree::{Aabb, BoundingTree};
+use super::nearest_piece::{PieceLanes, squared_bound};
+use super::segment_lanes::{NearestFraction, to_point};
 use super::tangent::Tangent;
-use crate::math::arithmetic::by_instructions;
+use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
-use crate::math::real::{Four, Real};
+use crate::math::real::Four;
 use crate::math::vec3::Vec3;
 
 /// Balls of one radius about many points.
@@ -18,20 +19,12 @@ use crate::math::vec3::Vec3;
 pub struct PointCloud {
     points: Vec<[f64; 3]>,
     radius: f64,
-    tree: BoundingTree,
-    leaves: Vec<([F64x4; 3], Block)>,
+    tree: BoundingTree<FourPoints>,
 }
 
-/// Point of a cloud nearest to a segment.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NearestPoint {
-    /// Squared distance (m^2).
-    pub squared: f64,
-    /// Fraction of the segment's length.
-    pub fraction: f64,
-    /// Index of the point; `None` if none is within the bound.
-    pub index: Option<usize>,
-}
+/// Four points, one per lane.
+#[derive(Clone)]
+struct FourPoints([F64x4; 3]);
 
 impl PartialEq for PointCloud {
     /// Compares points and radius alone, since they determine all other fields.
@@ -51,14 +44,9 @@ impl PointCloud {
     /// Builds the cloud of balls about `points`, at least one.
     pub(super) fn new(points: Vec<[f64; 3]>, radius: f64) -> Self {
         let boxes: Vec<Aabb> = points.iter().map(|point| Aabb::around([Vector3::from(*point)])).collect();
-        let (tree, blocks) = BoundingTree::new(&boxes);
-        let lanes = |block: &Block| {
-            // An empty lane repeats the first point.
-            let point = |lane: usize| points[block[if block[lane] == NONE { 0 } else { lane }] as usize];
-            std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| point(lane)[k])))
-        };
-        let leaves = blocks.iter().map(|block| (lanes(block), *block)).collect();
-        Self { points, radius, tree, leaves }
+        let lanes = |lanes: [usize; 4]| FourPoints(std::array::from_fn(|k| F64x4(lanes.map(|i| points[i][k]))));
+        let tree = BoundingTree::new(&boxes, lanes);
+        Self { points, radius, tree }
     }
 
     /// Returns the points (m).
@@ -71,20 +59,15 @@ impl PointCloud {
         self.radius
     }
 
-    /// Finds the nearest point within the square root of `bound`.
-    pub(super) fn nearest_point(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
-        nearest_point(self, segment, bound)
-    }
-
     /// Visits all points within `reach` (m) of a segment, and possibly others, by their indices; `visit` returns the new
     /// reach.
     pub(super) fn each_near(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
-        each_near(&self.tree, &|leaf| self.leaves[leaf].1, segment, reach, visit);
+        self.tree.each_near(segment, reach, visit);
     }
 
     /// Returns the signed distance of a point to the nearest ball, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
-        let nearest = self.nearest_point(&[*point; 2], f64::INFINITY);
+        let nearest = self.tree.nearest(&[*point; 2], f64::INFINITY, &mut |_| {});
         let away = point - Vector3::from(self.points[nearest.index.unwrap_or(0)]);
         Tangent { value: away.norm() - self.radius, normal: away.try_normalize(0.0).unwrap_or(Vector3::x()) }
     }
@@ -92,30 +75,15 @@ impl PointCloud {
     /// Returns the signed distance of a segment, exact up to `enough`: inside it is minus the depth in the ball that it
     /// enters deepest.
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
-        let nearest = self.nearest_point(segment, squared_bound(enough + self.radius));
+        let nearest = self.tree.nearest(segment, squared_bound(enough + self.radius), &mut |_| {});
         SegmentDistance { distance: nearest.squared.sqrt() - self.radius, fraction: nearest.fraction }
     }
 }
 
-by_instructions! {
-    fn nearest_point(cloud: &PointCloud, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
-        let start = Vec3::<Four<A>>::splat(&segment[0].into());
-        let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
-        let query = SegmentQuery::new(segment);
-        let mut best = NearestPoint { squared: bound, fraction: 0.0, index: None };
-        cloud.tree.search::<A>(&query, bound, |leaf, bound| {
-            let (points, indices) = &cloud.leaves[leaf];
-            let nearest = to_point(start, along, Vec3::of(points));
-            let squared = nearest.squared.stored().0;
-            for lane in 0..4 {
-                if squared[lane] < best.squared || (squared[lane] <= bound && best.index.is_none()) {
-                    let index = indices[if indices[lane] == NONE { 0 } else { lane }] as usize;
-                    best = NearestPoint { squared: squared[lane], fraction: nearest.fraction.lane(lane), index: Some(index) };
-                }
-            }
-            best.squared
-        });
-        best
+impl PieceLanes for FourPoints {
+    #[inline(always)]
+    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3]) -> NearestFraction<Four<A>> {
+        to_point(Vec3::splat(start), Vec3::splat(along), Vec3::of(&self.0))
     }
 }
 

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::body_block::BodyBlock;
 use super::checked_shape::{LARGEST, Shape};
 use super::posed_body::PosedBody;
+use super::test_shapes::SQUARES;
 use crate::error::Result;
 use crate::math::Frame;
 use crate::math::arithmetic::by_instructions;
@@ -55,8 +56,8 @@ fn bounded(center: [f64; 3], half: f64) -> Vec<Result<Shape>> {
 
 /// Returns the same shapes and those that only obstacles can have: a mesh, a cloud, a grid, a half-space on the far side.
 fn obstacles(center: [f64; 3], half: f64) -> Vec<Shape> {
-    let squares = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let faces = squares.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    let squares = SQUARES.iter().map(|square| square.map(|corner| corner as u32));
+    let faces = squares.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let mut all = bounded(center, half);
     all.extend([
         Shape::mesh(corners(center, half), faces),

@@ -2,14 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::bounding_tree::{Aabb, Block, BoundingTree, each_near};
+use super::bounding_tree::{Aabb, BoundingTree};
 use super::checked_shape::Shape;
 
 /// Bounding volume hierarchy over the bounding balls of shapes.
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeIndex {
-    tree: BoundingTree,
-    blocks: Vec<Block>,
+    tree: BoundingTree<()>,
     /// Unbounded shapes, which are always near.
     unbounded: Vec<usize>,
     /// Index of each bounded shape.
@@ -34,14 +33,13 @@ impl ShapeIndex {
             Aabb::around([center.add_scalar(reach), center.add_scalar(-reach)])
         };
         let boxes: Vec<Aabb> = bounded.iter().map(around).collect();
-        let (tree, blocks) = BoundingTree::new(&boxes);
-        Some(Self { tree, blocks, unbounded, bounded })
+        Some(Self { tree: BoundingTree::new(&boxes, |_| ()), unbounded, bounded })
     }
 
     /// Visits all shapes within `reach` (m) of `center`, and possibly others.
     pub fn near_ball(&self, center: &Vector3<f64>, reach: f64, mut visit: impl FnMut(usize)) {
         self.unbounded.iter().for_each(|i| visit(*i));
-        each_near(&self.tree, &|leaf| self.blocks[leaf], &[*center; 2], reach, &mut |i| {
+        self.tree.each_near(&[*center; 2], reach, &mut |i| {
             visit(self.bounded[i]);
             reach
         });

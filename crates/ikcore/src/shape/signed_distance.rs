@@ -98,12 +98,9 @@ impl Aabb {
 #[cfg(test)]
 mod tests {
     use super::super::checked_shape::Shape;
+    use super::super::test_shapes::point;
     use super::*;
-    use crate::rng::{self, LazyRng};
-
-    fn point(rng: &mut LazyRng, reach: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
-    }
+    use crate::rng;
 
     fn shapes() -> Vec<Shape> {
         let turn = Some(*Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());

@@ -6,9 +6,9 @@
 //! functions are a linear representation of the rigid motions, made of scalars and vectors, so that a rotation enters only by
 //! the first power of its cosine and sine.
 
-use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, add, add_scaled, cross, dot, scaled, sub};
 
 /// Fourteen line functions and the constant, or a linear combination of several such sets.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +80,7 @@ impl LineFunctions {
 mod tests {
     use super::*;
     use crate::closed_form::angle::Angle;
-    use crate::closed_form::vector::unit;
+    use crate::math::vector3::unit;
 
     #[test]
     fn moving_the_functions_is_moving_the_line() {

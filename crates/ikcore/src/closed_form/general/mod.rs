@@ -19,11 +19,12 @@ mod elimination;
 mod line;
 
 use crate::closed_form::angle::Angle;
-use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::axis_chain::{JointAxis, reversed};
+use crate::closed_form::subproblem::subproblem1;
 use crate::closed_form::trigonometric::Polynomial;
-use crate::closed_form::vector::{Vector, perpendicular, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, perpendicular, scaled, sub};
 use dialytic::{EQUATIONS, LoopCoefficients, PRODUCTS, determinant, null_pairs};
 use elimination::{COLUMNS, Elimination, ROWS};
 use line::LineFunctions;
@@ -65,13 +66,24 @@ pub struct General {
 
 /// Statistics of the search for zeros.
 #[derive(Debug, Clone, Copy)]
-pub struct Account {
+pub struct ZeroCount {
     /// Number of zeros that may be real angles; an upper bound on the number of branches.
     pub zeros: usize,
     /// True if all zeros were resolved and the determinant had the expected degree.
     pub sound: bool,
     /// Number of zeros shared by two branches.
     pub shared: usize,
+}
+
+/// Loop equation of one displacement.
+struct LoopEquations {
+    /// Displacement in coordinates about the centre, in units of the arm's size.
+    goal: Frame,
+    elimination: Elimination,
+    /// Constant column of the left side.
+    constant: [f64; ROWS],
+    /// Six equations in the products of q3 and q4: constant, cos q5 and sin q5 parts.
+    coefficients: [LoopCoefficients; 3],
 }
 
 impl General {
@@ -114,77 +126,59 @@ impl General {
 
     /// Prepares the same arm from tip to base.
     pub fn reversed(joints: &[JointAxis; 6], size: f64) -> Self {
-        let backwards = std::array::from_fn(|k| {
-            let joint = &joints[5 - k];
-            JointAxis::turning(scaled(&joint.axis, -1.0), joint.point)
-        });
-        Self { reversed: true, ..Self::new(&backwards, size) }
+        Self { reversed: true, ..Self::new(&reversed(joints), size) }
     }
 
     /// Calls `found` with candidates near all joint angles whose displacements make `goal`.
-    pub fn solve(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> Account {
-        if self.reversed {
-            self.solve_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]))
-        } else {
-            self.solve_forward(goal, found)
-        }
+    pub fn solve(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> ZeroCount {
+        let loops = self.loop_equations(goal);
+        let (polynomial, beyond) = self.polynomial(&loops.coefficients);
+        let noise = (SAFETY * beyond).max(1e-15 * polynomial.size());
+        let mut value = |q5: Angle| determinant(&combined(&loops.coefficients, q5)) * (0.5 * SAMPLES as f64);
+        let zeros = polynomial.zeros_by_samples::<{ 2 * DEGREE }>(noise, &mut value);
+        let shared = zeros.iter().map(|q5| self.visit_pairs(&loops, *q5, &mut found) - 1).sum();
+        let sound = zeros.settled && noise <= NOISE * polynomial.size();
+        ZeroCount { zeros: zeros.possible, sound, shared }
     }
 
     /// Calls `found` with candidates at angles spread round the circle, zeros or not: for poses whose determinant is too
     /// small on a part of the circle to locate its zeros.
     pub fn spread(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) {
-        if self.reversed {
-            self.spread_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]));
-        } else {
-            self.spread_forward(goal, found);
-        }
-    }
-
-    fn spread_forward(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) {
-        let goal = self.local(goal);
-        let (left, constant) = self.left(&goal);
-        let elimination = Elimination::new(left);
-        let equations = self.equations(&elimination, &constant);
+        let loops = self.loop_equations(goal);
         for turn in &self.circle {
             for part in SPREAD {
-                let q5 = turn.and(part);
-                let (pairs, count) = null_pairs(&combined(&equations, q5));
-                for [q3, q4] in &pairs[..count] {
-                    found(self.others(&goal, &elimination, &constant, [*q3, *q4, q5]));
-                }
+                self.visit_pairs(&loops, turn.and(part), &mut found);
             }
         }
     }
 
-    fn solve_forward(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> Account {
-        let goal = self.local(goal);
-        let (left, constant) = self.left(&goal);
-        let elimination = Elimination::new(left);
-        let equations = self.equations(&elimination, &constant);
-        let (polynomial, beyond) = self.polynomial(&equations);
-        let noise = (SAFETY * beyond).max(1e-15 * polynomial.size());
-        let mut value = |q5: Angle| determinant(&combined(&equations, q5)) * (0.5 * SAMPLES as f64);
-        let zeros = polynomial.zeros_by_samples::<{ 2 * DEGREE }>(noise, &mut value);
-        let mut shared = 0;
-        for q5 in zeros.iter() {
-            let (pairs, count) = null_pairs(&combined(&equations, *q5));
-            shared += count - 1;
-            for [q3, q4] in &pairs[..count] {
-                found(self.others(&goal, &elimination, &constant, [*q3, *q4, *q5]));
+    /// Calls `found` with the candidates at q5, and returns their number.
+    fn visit_pairs(&self, loops: &LoopEquations, q5: Angle, found: &mut impl FnMut([Angle; 6])) -> usize {
+        let (pairs, count) = null_pairs(&combined(&loops.coefficients, q5));
+        for [q3, q4] in &pairs[..count] {
+            let mut all = self.remaining_joints(loops, [*q3, *q4, q5]);
+            if self.reversed {
+                all.reverse();
             }
+            found(all);
         }
-        let sound = zeros.settled && noise <= NOISE * polynomial.size();
-        Account { zeros: zeros.possible, sound, shared }
+        count
     }
 
-    /// Converts the displacement to coordinates about the centre, in units of the arm's size.
-    fn local(&self, goal: &Frame) -> Frame {
+    /// Prepares the loop equation of a displacement.
+    fn loop_equations(&self, goal: &Frame) -> LoopEquations {
+        let goal = if self.reversed { goal.inverse() } else { *goal };
+        // Coordinates about the centre, in units of the arm's size.
         let origin = scaled(&sub(&goal.transform::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
-        Frame { origin, ..*goal }
+        let goal = Frame { origin, ..goal };
+        let (left, constant) = self.left_side(&goal);
+        let elimination = Elimination::new(left);
+        let coefficients = self.coefficients(&elimination, &constant);
+        LoopEquations { goal, elimination, constant, coefficients }
     }
 
     /// Evaluates E6 H^-1 E1 (line 2): the columns of the products of q6 and q1, and the constant column.
-    fn left(&self, goal: &Frame) -> ([[f64; ROWS]; COLUMNS], [f64; ROWS]) {
+    fn left_side(&self, goal: &Frame) -> ([[f64; ROWS]; COLUMNS], [f64; ROWS]) {
         let back = goal.inverse();
         let mut columns = [[0.0; ROWS]; COLUMNS];
         let mut constant = [0.0; ROWS];
@@ -200,7 +194,7 @@ impl General {
     }
 
     /// Returns six equations in the products of q3 and q4: constant, cos q5 and sin q5 parts.
-    fn equations(&self, elimination: &Elimination, constant: &[f64; ROWS]) -> [LoopCoefficients; 3] {
+    fn coefficients(&self, elimination: &Elimination, constant: &[f64; ROWS]) -> [LoopCoefficients; 3] {
         let rows = elimination.annihilators();
         let mut equations = [[[0.0; PRODUCTS]; EQUATIONS]; 3];
         for (equations, right) in equations.iter_mut().zip(&self.right) {
@@ -235,8 +229,8 @@ impl General {
     }
 
     /// Returns all joints, given q3, q4 and q5: q6 and q1 from the eliminated products, q2 from the remaining rotation.
-    fn others(&self, goal: &Frame, elimination: &Elimination, constant: &[f64; ROWS], known: [Angle; 3]) -> [Angle; 6] {
-        let [q3, q4, q5] = known;
+    fn remaining_joints(&self, loops: &LoopEquations, [q3, q4, q5]: [Angle; 3]) -> [Angle; 6] {
+        let LoopEquations { goal, elimination, constant, .. } = loops;
         let [h1, h2, h3, h4, h5, h6] = &self.axes;
         let mut right = [0.0; ROWS];
         for (i, a) in [1.0, q3.cos, q3.sin].iter().enumerate() {
@@ -255,8 +249,7 @@ impl General {
         for (turn, axis) in [(q3, h3), (q4, h4), (q5, h5), (q6, h6)] {
             v = turn.back().about(axis, &v);
         }
-        let q2 =
-            crate::closed_form::subproblem::onto_point(h2, &mark, &q1.back().about(h1, &goal.turn::<Baseline>(&v)));
+        let q2 = subproblem1(h2, &mark, &q1.back().about(h1, &goal.turn::<Baseline>(&v)));
         [q1, q2, q3, q4, q5, q6]
     }
 

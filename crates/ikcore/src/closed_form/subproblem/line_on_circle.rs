@@ -1,6 +1,6 @@
 //! Equation a cos q + b sin q = c: the intersection of a line with the unit circle. Subproblems 2, 3 and 4 reduce to it.
 
-use super::{CLAMP, NEAR_MISS, NEARLY_DOUBLE, SMALL_LEVER, Turns};
+use super::{Angles, CLAMP, NEAR_MISS, NEARLY_DOUBLE, SMALL_LEVER};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 
@@ -8,13 +8,13 @@ use crate::closed_form::branches::Doubt;
 ///
 /// If a and b are both below `floor`, the angle is free if c is below it too, and there is no solution otherwise.
 #[inline(always)]
-pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
+pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Angles<2> {
     let square = a * a + b * b;
     if square <= floor * floor {
         return match c.abs() {
-            c if c <= floor => Turns::FREE,
-            c if c <= SMALL_LEVER * floor => Turns { doubt: Doubt::Open, ..Turns::NONE },
-            _ => Turns::NONE,
+            c if c <= floor => Angles::FREE,
+            c if c <= SMALL_LEVER * floor => Angles { doubt: Doubt::Anywhere, ..Angles::NONE },
+            _ => Angles::NONE,
         };
     }
     // Factored form (r - c) (r + c), since r^2 - c^2 cancels where the line touches the circle.
@@ -22,22 +22,22 @@ pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
     let mut turns = with_radicand(a, b, c, (radius - c) * (radius + c));
     let small = SMALL_LEVER * floor;
     if radius <= small && c.abs() <= radius + small {
-        turns.doubt = if turns.is_empty() { Doubt::Open } else { Doubt::Beside };
+        turns.doubt = if turns.is_empty() { Doubt::Anywhere } else { Doubt::Nearby };
     }
     turns
 }
 
 /// Solves a cos q + b sin q = c, given a `radicand` r^2 - c^2 more accurate than the subtraction, with r^2 = a^2 + b^2.
 #[inline(always)]
-pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
+pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Angles<2> {
     let square = a * a + b * b;
-    let mut turns = Turns::NONE;
+    let mut turns = Angles::NONE;
     if radicand < -CLAMP * square {
         turns.near_miss = radicand > -NEAR_MISS * square;
         return turns;
     }
     if radicand < NEARLY_DOUBLE * square {
-        turns.doubt = Doubt::Beside;
+        turns.doubt = Doubt::Nearby;
     }
     // Division by the hypotenuse in `towards` puts a clamped root on the circle.
     if radicand <= 0.0 {

@@ -5,15 +5,15 @@
 //! is verified. A square root with a slightly negative radicand is taken as zero ([`CLAMP`]): the branch is kept as a double
 //! root, and forward kinematics decides whether it is a solution.
 
-mod angle_to_plane;
 mod line_on_circle;
-mod onto_point;
+mod one_and_two;
 mod quadratic_form;
+mod three_and_four;
 
-pub use angle_to_plane::{angle_to_plane, distance_to_point};
 pub use line_on_circle::{line_on_circle, with_radicand};
-pub use onto_point::{onto_point, two_axes};
-pub use quadratic_form::{Linear, QuadraticForm, two_linear_equations};
+pub use one_and_two::{subproblem1, subproblem2};
+pub use quadratic_form::{Linear, QuadraticForm, solved, subproblem6};
+pub use three_and_four::{subproblem3, subproblem4};
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
@@ -36,7 +36,7 @@ pub const SMALL_LEVER: f64 = 1e6;
 
 /// At most `N` rotations.
 #[derive(Debug, Clone, Copy)]
-pub struct Turns<const N: usize> {
+pub struct Angles<const N: usize> {
     turns: [Angle; N],
     count: usize,
     /// True if every angle is a solution; the listed one represents all.
@@ -47,13 +47,14 @@ pub struct Turns<const N: usize> {
     pub near_miss: bool,
 }
 
-impl<const N: usize> Turns<N> {
+impl<const N: usize> Angles<N> {
     /// Empty set.
     pub const NONE: Self =
         Self { turns: [Angle::NONE; N], count: 0, free: false, doubt: Doubt::None, near_miss: false };
 
     /// Free angle, represented by zero; other angles may lead to further solutions.
-    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Open, near_miss: false };
+    pub const FREE: Self =
+        Self { turns: [Angle::NONE; N], count: 1, free: true, doubt: Doubt::Anywhere, near_miss: false };
 
     /// Adds a solution; ignored when full.
     #[inline(always)]
@@ -65,7 +66,7 @@ impl<const N: usize> Turns<N> {
     }
 }
 
-impl<const N: usize> std::ops::Deref for Turns<N> {
+impl<const N: usize> std::ops::Deref for Angles<N> {
     type Target = [Angle];
 
     #[inline(always)]

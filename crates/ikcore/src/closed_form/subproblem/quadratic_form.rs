@@ -1,6 +1,6 @@
 //! Quadratic equation in cosine and sine of one angle, to which subproblems 5 and 6 reduce.
 
-use super::{NEARLY_DOUBLE, Turns};
+use super::{Angles, NEARLY_DOUBLE};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::branches::Doubt;
 use crate::closed_form::trigonometric::Polynomial;
@@ -43,21 +43,21 @@ impl QuadraticForm {
     }
 
     /// Returns the angles of the zeros on the unit circle, double roots included.
-    pub fn zeros(&self) -> Turns<4> {
+    pub fn zeros(&self) -> Angles<4> {
         let [one, c, s, cc, cs, ss] = self.entries;
         // Double-angle formulas: cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
         let cosines = [one + 0.5 * (cc + ss), c, 0.5 * (cc - ss)];
         let polynomial = Polynomial { cosines, sines: [0.0, s, 0.5 * cs] };
         let zeros = polynomial.zeros::<4>(NOISE * self.scale);
-        let mut turns = Turns::NONE;
+        let mut turns = Angles::NONE;
         zeros.iter().for_each(|root| turns.push(*root));
         // Second search with a larger noise: a pose within tolerances perturbs the coefficients by as much.
         let nearby = polynomial.zeros::<4>(NEARLY_DOUBLE * self.scale);
         turns.doubt = match zeros.settled && nearby.settled {
             true if nearby.possible == turns.len() => Doubt::None,
-            true if nearby.possible <= turns.len() => Doubt::Beside,
+            true if nearby.possible <= turns.len() => Doubt::Nearby,
             // Polynomial that nearly vanishes everywhere, or to a high order, or has zeros nearby.
-            _ => Doubt::Open,
+            _ => Doubt::Anywhere,
         };
         turns
     }
@@ -69,17 +69,24 @@ fn size(p: &Linear) -> f64 {
     p[0].abs() + p[1].abs() + p[2].abs()
 }
 
+/// Solves m y = r for two unknowns that are linear in (1, cos q, sin q) like r; also returns the determinant of m.
+#[inline(always)]
+pub fn solved(m: &[[f64; 2]; 2], r: &[Linear; 2]) -> ([Linear; 2], f64) {
+    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    let inverse = 1.0 / determinant;
+    let first = std::array::from_fn(|k| inverse * (m[1][1] * r[0][k] - m[0][1] * r[1][k]));
+    let second = std::array::from_fn(|k| inverse * (m[0][0] * r[1][k] - m[1][0] * r[0][k]));
+    ([first, second], determinant)
+}
+
 /// Solves subproblem 6: (x, y) with m (cos y, sin y) = r(x), where both entries of r are linear in (1, cos x, sin x).
 ///
 /// Returns the solutions x, and for each the direction y of m^-1 r(x); `None` if m is singular.
-pub fn two_linear_equations(m: &[[f64; 2]; 2], r: &[Linear; 2]) -> Option<(Turns<4>, [Angle; 4])> {
-    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+pub fn subproblem6(m: &[[f64; 2]; 2], r: &[Linear; 2]) -> Option<(Angles<4>, [Angle; 4])> {
+    let ([cosine, sine], determinant) = solved(m, r);
     if determinant == 0.0 || !determinant.is_finite() {
         return None;
     }
-    let inverse = 1.0 / determinant;
-    let cosine: Linear = std::array::from_fn(|k| inverse * (m[1][1] * r[0][k] - m[0][1] * r[1][k]));
-    let sine: Linear = std::array::from_fn(|k| inverse * (m[0][0] * r[1][k] - m[1][0] * r[0][k]));
     let mut form = QuadraticForm::default();
     form.add_product(1.0, &cosine, &cosine);
     form.add_product(1.0, &sine, &sine);

@@ -58,8 +58,7 @@ impl<const N: usize> Verifier<N> {
         residuals::difference(&self.chain.tip_at(set), target)
     }
 
-    /// Returns the candidates that bring the tip to `target`, as joint values. [`verified`] and [`verified_seven`] are
-    /// faster.
+    /// Returns the candidates that bring the tip to `target`, as joint values. [`verified`] is faster.
     pub fn verified(&self, target: &Frame, candidates: &Candidates) -> Branches<N> {
         self.branches_by::<Baseline>(target, candidates)
     }
@@ -109,35 +108,21 @@ impl<const N: usize> Verifier<N> {
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
         match polish::polished(&self.chain, target, set, &mut found.evaluations) {
             Ok((set, error)) => push_new(set, error, &self.slides, found),
-            Err(residual) => found.nearly |= residual < NEARLY,
+            Err(residual) => found.near_miss |= residual < NEARLY,
         }
     }
 }
 
 by_instructions! {
-    /// Writes the joint values of unverified candidates for six joints.
-    pub fn values_of_six(verifier: &Verifier<6>, candidates: &Candidates, columns: &mut AxisColumns) {
+    /// Writes the joint values of unverified candidates.
+    pub fn write_values<const N: usize>(verifier: &Verifier<N>, candidates: &Candidates, columns: &mut AxisColumns) {
         verifier.write_values::<A>(candidates, columns);
     }
 }
 
 by_instructions! {
-    /// Writes the joint values of unverified candidates for seven joints.
-    pub fn values_of_seven(verifier: &Verifier<7>, candidates: &Candidates, columns: &mut AxisColumns) {
-        verifier.write_values::<A>(candidates, columns);
-    }
-}
-
-by_instructions! {
-    /// Returns the candidates for six joints that bring the tip to `target`, as joint values.
-    pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates) -> Branches<6> {
-        verifier.branches_by::<A>(target, candidates)
-    }
-}
-
-by_instructions! {
-    /// Returns the candidates for seven joints that bring the tip to `target`, as joint values.
-    pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates) -> Branches<7> {
+    /// Returns the candidates that bring the tip to `target`, as joint values.
+    pub fn verified<const N: usize>(verifier: &Verifier<N>, target: &Frame, candidates: &Candidates) -> Branches<N> {
         verifier.branches_by::<A>(target, candidates)
     }
 }

@@ -3,10 +3,10 @@
 use super::residuals::difference;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
 use crate::closed_form::branches::BranchError;
-use crate::closed_form::vector::{Vector, add, cross, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 use crate::math::vector::{dot, norm};
+use crate::math::vector3::{Vector, add, cross, scaled, sub};
 
 /// Largest residual of a branch, in position (m) and rotation (rad).
 pub const TOLERANCE: f64 = 1e-10;

@@ -2,10 +2,10 @@
 
 use crate::closed_form::axis_chain::AxisChain;
 use crate::closed_form::branches::{BranchError, Candidates};
-use crate::closed_form::vector::{Vector, across};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, across};
 
 /// Number of candidates checked together.
 pub const LANES: usize = 8;

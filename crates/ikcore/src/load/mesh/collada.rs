@@ -10,7 +10,7 @@ use roxmltree::{Document, Node};
 
 use super::parsed::{Parsed, Triangles, number};
 
-type Problem<T> = Result<T, String>;
+type Parse<T> = Result<T, String>;
 
 /// Largest depth of a scene; deeper ones may contain themselves.
 const DEEPEST: usize = 64;
@@ -61,7 +61,7 @@ struct File<'a, 'i> {
 }
 
 impl<'a, 'i> File<'a, 'i> {
-    fn of(document: &'a Document<'i>) -> Problem<Self> {
+    fn of(document: &'a Document<'i>) -> Parse<Self> {
         let root = document.root_element();
         if !root.has_tag_name_any("COLLADA") {
             return Err("its root is not <COLLADA>".into());
@@ -78,7 +78,7 @@ impl<'a, 'i> File<'a, 'i> {
     }
 
     /// Returns the element with a URL of the form "#part".
-    fn named(&self, url: &str) -> Problem<Node<'a, 'i>> {
+    fn named(&self, url: &str) -> Parse<Node<'a, 'i>> {
         let id = url.strip_prefix('#').ok_or("a url that is not in this file")?;
         self.by_id.get(id).copied().ok_or("nothing has the id that a url names".into())
     }
@@ -92,7 +92,7 @@ impl<'a, 'i> File<'a, 'i> {
         }
     }
 
-    fn add_node(&self, node: Node<'a, 'i>, parent: &Matrix4<f64>, read: &mut Triangles, depth: usize) -> Problem<()> {
+    fn add_node(&self, node: Node<'a, 'i>, parent: &Matrix4<f64>, read: &mut Triangles, depth: usize) -> Parse<()> {
         self.visited.set(self.visited.get() + 1);
         if depth > DEEPEST || self.visited.get() > MOST_NODES {
             return Err(format!("its scene has more than {MOST_NODES} nodes, or is nested more than {DEEPEST} times"));
@@ -118,7 +118,7 @@ impl<'a, 'i> File<'a, 'i> {
         Ok(())
     }
 
-    fn add_geometry(&self, geometry: Node<'a, 'i>, place: &Matrix4<f64>, read: &mut Triangles) -> Problem<()> {
+    fn add_geometry(&self, geometry: Node<'a, 'i>, place: &Matrix4<f64>, read: &mut Triangles) -> Parse<()> {
         for mesh in children(geometry, "mesh") {
             for primitive in mesh.children().filter(Node::is_element) {
                 let faces = match primitive.tag_name().name() {
@@ -131,7 +131,7 @@ impl<'a, 'i> File<'a, 'i> {
         Ok(())
     }
 
-    fn add_primitive(&self, primitive: Node<'a, 'i>, place: &Matrix4<f64>, read: &mut Triangles) -> Problem<()> {
+    fn add_primitive(&self, primitive: Node<'a, 'i>, place: &Matrix4<f64>, read: &mut Triangles) -> Parse<()> {
         let mut stride = 0;
         let mut positions = None;
         for input in children(primitive, "input") {
@@ -168,7 +168,7 @@ impl<'a, 'i> File<'a, 'i> {
                 Some(index) => Err(format!("<{name}> names vertex {index} of {}", points.len())),
                 None => Err(format!("<{name}> ends within a corner")),
             };
-            let corners: Vec<u32> = numbers.chunks(stride).map(index).collect::<Problem<_>>()?;
+            let corners: Vec<u32> = numbers.chunks(stride).map(index).collect::<Parse<_>>()?;
             match name {
                 "triangles" => corners.chunks_exact(3).for_each(&mut add),
                 "tristrips" => {
@@ -191,13 +191,13 @@ impl<'a, 'i> File<'a, 'i> {
     }
 
     /// Returns the points of a `<vertices>` element.
-    fn positions(&self, vertices: &str) -> Problem<Vec<[f64; 3]>> {
+    fn positions(&self, vertices: &str) -> Parse<Vec<[f64; 3]>> {
         let vertices = self.named(vertices)?;
         let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
         let source = input.and_then(|input| input.attribute("source")).ok_or("<vertices> has no positions")?;
         let source = self.named(source)?;
         let array = children(source, "float_array").next().ok_or("a <source> has no <float_array>")?;
-        let numbers: Vec<f64> = words(array).map(number).collect::<Problem<_>>()?;
+        let numbers: Vec<f64> = words(array).map(number).collect::<Parse<_>>()?;
         let accessor = source.descendants().find(|node| node.has_tag_name_any("accessor"));
         let stride = accessor.and_then(|accessor| accessor.attribute("stride")).map_or(Ok(3), str::parse::<usize>);
         match stride {
@@ -208,12 +208,12 @@ impl<'a, 'i> File<'a, 'i> {
 }
 
 /// Returns the transform of a child element of a node; the identity if the child is not a transform.
-fn transform(child: Node) -> Problem<Matrix4<f64>> {
+fn transform(child: Node) -> Parse<Matrix4<f64>> {
     let name = child.tag_name().name();
     if !matches!(name, "matrix" | "translate" | "scale" | "rotate" | "lookat" | "skew") {
         return Ok(Matrix4::identity());
     }
-    let numbers: Vec<f64> = words(child).map(number).collect::<Problem<_>>()?;
+    let numbers: Vec<f64> = words(child).map(number).collect::<Parse<_>>()?;
     match (name, &numbers[..]) {
         ("matrix", entries) if entries.len() == 16 => Ok(Matrix4::from_row_slice(entries)),
         ("translate", [x, y, z]) => Ok(Matrix4::new_translation(&Vector3::new(*x, *y, *z))),
@@ -234,7 +234,7 @@ fn words<'a>(node: Node<'a, '_>) -> impl Iterator<Item = &'a str> {
     node.text().unwrap_or_default().split_whitespace()
 }
 
-fn whole_numbers(node: Node) -> Problem<Vec<usize>> {
+fn whole_numbers(node: Node) -> Parse<Vec<usize>> {
     let whole = |word: &str| word.parse::<usize>().map_err(|_| "an index that is no whole number".to_string());
     words(node).map(whole).collect()
 }

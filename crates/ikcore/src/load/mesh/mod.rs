@@ -11,7 +11,7 @@ use std::path::Path;
 
 use nalgebra::Point3;
 
-use crate::error::{Error, Result, shortened};
+use crate::error::{Error, Result};
 use crate::robot::LinkMesh;
 use crate::shape::{Geometry, Shape};
 
@@ -40,12 +40,12 @@ pub fn read_link_mesh(mesh: &LinkMesh) -> Result<Shape> {
 
 /// Reads the content of a mesh file.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    let unreadable = |problem: String| Error::Unreadable { path: shortened(&path.display().to_string()), problem };
-    let size = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
+    let name = path.display().to_string();
+    let size = std::fs::metadata(path).map_err(|error| Error::unreadable(&name, error))?.len();
     if size > LARGEST {
-        return Err(unreadable(format!("it has {size} bytes; meshes may have {LARGEST}")));
+        return Err(Error::unreadable(&name, format!("it has {size} bytes; meshes may have {LARGEST}")));
     }
-    std::fs::read(path).map_err(|error| unreadable(error.to_string()))
+    std::fs::read(path).map_err(|error| Error::unreadable(&name, error))
 }
 
 /// Parses the content of a mesh file, as [`read_mesh`] does; the ending of `name` gives the format.
@@ -53,7 +53,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`read_mesh`].
 pub fn parse_mesh(name: &str, bytes: &[u8], scale: [f64; 3]) -> Result<Shape> {
-    let unreadable = |problem: String| Error::Unreadable { path: shortened(name), problem };
+    let unreadable = |problem: String| Error::unreadable(name, problem);
     let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let parsed = match ending.as_deref() {
         Some("stl") => stl::parse(bytes),

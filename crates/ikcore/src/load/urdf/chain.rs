@@ -37,7 +37,7 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
             UrdfKind::Fixed => None,
             _ => {
                 let Coupling { master, drive } = couplings.of(at.joint)?;
-                Some(step::Moved { joint: index_in_q[&master], kind: step::kind(document, at.joint)?, drive })
+                Some(step::DrivenJoint { joint: index_in_q[&master], kind: step::kind(document, at.joint)?, drive })
             }
         };
         step::elements(document, *at, moved)?.into_iter().for_each(|element| chain.push(element));

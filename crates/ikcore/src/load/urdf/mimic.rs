@@ -34,21 +34,21 @@ impl<'a> Couplings<'a> {
             let (follower, master) = (&joints[joint].name, &joints[coupling.master].name);
             return Err(self.document.error_at(joint, format!("joint '{follower}' mimics '{master}', which is fixed")));
         }
-        Ok(self.recorded(coupling, &followers))
+        Ok(self.cached(coupling, &followers))
     }
 
     /// Resolves the coupling of a joint beside the chain, without errors: if the chain of `<mimic>` elements does not end in
     /// a movable joint, its last movable joint counts as independent.
-    pub(super) fn of_bystander(&mut self, joint: usize) -> Coupling {
+    pub(super) fn of_off_chain(&mut self, joint: usize) -> Coupling {
         let mut followers = vec![];
         let movable = |joint: usize| self.document.joints[joint].kind.moves_one_way();
         match self.master_above(joint, &mut followers) {
-            Ok(coupling) if movable(coupling.master) => self.recorded(coupling, &followers),
+            Ok(coupling) if movable(coupling.master) => self.cached(coupling, &followers),
             _ => {
                 let last = followers.iter().rposition(|follower| movable(*follower)).unwrap_or(0);
                 let alone = Coupling { master: followers.get(last).copied().unwrap_or(joint), drive: Drive::DIRECT };
                 self.found[alone.master] = Some(alone);
-                self.recorded(alone, &followers[..last])
+                self.cached(alone, &followers[..last])
             }
         }
     }
@@ -79,7 +79,7 @@ impl<'a> Couplings<'a> {
     }
 
     /// Caches the couplings of `followers`, the last of which follows `coupling`, and returns the coupling of the first.
-    fn recorded(&mut self, mut coupling: Coupling, followers: &[usize]) -> Coupling {
+    fn cached(&mut self, mut coupling: Coupling, followers: &[usize]) -> Coupling {
         for &follower in followers.iter().rev() {
             if let Some(mimic) = &self.document.joints[follower].mimic {
                 let Drive { scale, offset } = coupling.drive;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::document::Document;
 use super::mimic::Couplings;
-use super::step::{self, Moved};
+use super::step::{self, DrivenJoint};
 use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
@@ -26,7 +26,7 @@ pub(super) fn of(
         let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
             true => {
-                let coupling = couplings.of_bystander(at.joint);
+                let coupling = couplings.of_off_chain(at.joint);
                 let joint = match drivers.get(&coupling.master) {
                     Some(known) => *known,
                     None => {
@@ -36,7 +36,7 @@ pub(super) fn of(
                         number
                     }
                 };
-                Some(Moved { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
+                Some(DrivenJoint { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
             }
         };
         let elements = step::elements(document, at, moved)?;

@@ -10,7 +10,7 @@ use super::document::Document;
 use super::package::Packages;
 use super::tree::Tree;
 use super::visuals;
-use crate::error::{Error, Result, shortened};
+use crate::error::{Error, Result};
 use crate::robot::Robot;
 
 /// Options for loading a URDF.
@@ -104,8 +104,7 @@ pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) 
 }
 
 pub(super) fn read(path: &str) -> Result<String> {
-    let bytes =
-        std::fs::read(path).map_err(|error| Error::Unreadable { path: shortened(path), problem: error.to_string() })?;
+    let bytes = std::fs::read(path).map_err(|error| Error::unreadable(path, error))?;
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 

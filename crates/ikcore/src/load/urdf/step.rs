@@ -9,7 +9,7 @@ use crate::math::{Pose, pose};
 use crate::robot::{Drive, Element, Joint, JointKind};
 
 /// Motion of a joint: the robot joint that drives it, its kind and its drive.
-pub(super) struct Moved {
+pub(super) struct DrivenJoint {
     pub(super) joint: usize,
     pub(super) kind: JointKind,
     pub(super) drive: Drive,
@@ -17,12 +17,12 @@ pub(super) struct Moved {
 
 /// Returns the elements of one joint; `moved` is `None` for a joint that does not move. A reversed joint is the inverse: the
 /// motion by -q first, then the inverse of its origin.
-pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Moved>) -> Result<Vec<Element>> {
+pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<DrivenJoint>) -> Result<Vec<Element>> {
     let origin = origin(document, step.joint);
     let sign = if step.reversed { -1.0 } else { 1.0 };
     let motion = match moved {
         None => None,
-        Some(Moved { joint, kind, drive: Drive { scale, offset } }) => {
+        Some(DrivenJoint { joint, kind, drive: Drive { scale, offset } }) => {
             let axis = axis(document, step.joint)?;
             Some(Element::moving(joint, kind, axis, Drive { scale: sign * scale, offset: sign * offset }))
         }

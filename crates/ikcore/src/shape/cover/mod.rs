@@ -101,24 +101,14 @@ impl Piece {
         Some(Cut { halves, gain })
     }
 }
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
 
     use super::*;
     use crate::rng::{self, LazyRng};
-
-    fn as_mesh(shape: &Shape) -> &Mesh {
-        match shape.geometry() {
-            super::super::geometry::Geometry::Mesh(mesh) => mesh,
-            _ => unreachable!(),
-        }
-    }
-
-    fn mesh(triangles: &[[[f64; 3]; 3]]) -> Shape {
-        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
-    }
+    use crate::shape::test_shapes::{as_mesh, mesh_of};
 
     /// Returns an L of two overlapping boxes, and a ring of boxes.
     fn bodies(rng: &mut LazyRng) -> Vec<Shape> {
@@ -131,7 +121,7 @@ mod tests {
         });
         let ball = Shape::sphere([0.1, 0.2, 0.3], 0.2).unwrap().triangles();
         let soup = (0..40).map(|_| [(); 3].map(|()| std::array::from_fn(|_| rng.uniform_in(-1.0, 1.0))));
-        vec![mesh(&l), mesh(&ring.collect::<Vec<_>>()), mesh(&ball), mesh(&soup.collect::<Vec<_>>())]
+        vec![mesh_of(&l), mesh_of(&ring.collect::<Vec<_>>()), mesh_of(&ball), mesh_of(&soup.collect::<Vec<_>>())]
     }
 
     #[test]
@@ -184,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_needle_of_extreme_length_has_a_cover() {
-        let needle = |length: f64| mesh(&[[[0.0; 3], [length, 0.0, 0.0], [0.0, 1e-3, 1e-4]]]);
+        let needle = |length: f64| mesh_of(&[[[0.0; 3], [length, 0.0, 0.0], [0.0, 1e-3, 1e-4]]]);
         // Termination is all that is required here.
         let _ = as_mesh(&needle(1e300)).cover(4);
         let cover = as_mesh(&needle(1e30)).cover(4).unwrap();

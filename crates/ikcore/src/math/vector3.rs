@@ -1,4 +1,4 @@
-//! Three-dimensional vectors, inlined into the closed forms.
+//! Vectors of three numbers, inlined into the closed forms.
 
 pub use crate::math::so3::{cross, dot, norm};
 
