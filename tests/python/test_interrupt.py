@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Callable
@@ -108,3 +109,27 @@ def test_threads_solve_at_the_same_time() -> None:
     for seed, found in results.items():
         assert found.success
         assert found.q.tolist() == bik.solve(IIWA, IIWA.fk([0.1 * seed] * 7), seed=seed).q.tolist()
+
+
+def test_ctrl_c_while_numpy_is_imported_ends_no_process() -> None:
+    program = """
+import sys
+
+import beetle_ik as bik
+
+class Interrupted:
+    def find_spec(self, name, *_):
+        if name.split(".")[0] == "numpy":
+            sys.meta_path.remove(self)
+            raise KeyboardInterrupt
+
+assert "numpy" not in sys.modules
+sys.meta_path.insert(0, Interrupted())
+for _ in range(2):
+    try:
+        print(bik.Robot.named("ur5e").fk([0.0] * 6).shape)
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+    made = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (made.returncode, made.stdout) == (0, "interrupted\n(4, 4)\n"), made.stderr

@@ -10,6 +10,7 @@
 use std::collections::HashMap;
 use std::ffi::CString;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::exceptions::{PyOverflowError, PyRuntimeError, PyTypeError};
 use pyo3::ffi::{
@@ -59,6 +60,9 @@ unsafe extern "C" fn gate<const I: usize>(
     count: ffi::Py_ssize_t,
     names: *mut PyObject,
 ) -> *mut PyObject {
+    if !numpy_is_imported() {
+        return std::ptr::null_mut();
+    }
     let Some(member) = MEMBERS[I].get() else { return std::ptr::null_mut() };
     let Some(call) = member.call.get().or_else(|| member.resolved(this)) else { return std::ptr::null_mut() };
     // SAFETY: these are the arguments of a call by Python, passed on as they are.
@@ -71,6 +75,20 @@ unsafe extern "C" fn gate<const I: usize>(
         });
     }
     made
+}
+
+/// Imports numpy at the first call; sets an exception where that fails. The crate numpy panics if its own first import is interrupted by
+/// Ctrl-C, and a panic cannot leave a C function.
+fn numpy_is_imported() -> bool {
+    static IMPORTED: AtomicBool = AtomicBool::new(false);
+    if IMPORTED.load(Ordering::Relaxed) {
+        return true;
+    }
+    Python::attach(|py| match py.import(intern!(py, "numpy")) {
+        Ok(_) => IMPORTED.store(true, Ordering::Relaxed),
+        Err(error) => error.restore(py),
+    });
+    IMPORTED.load(Ordering::Relaxed)
 }
 
 impl Member {
@@ -274,6 +292,9 @@ fn gated_constructor<'py>(
 
 /// Makes an instance. The first argument is the class or a subclass of it.
 unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywords: *mut PyObject) -> *mut PyObject {
+    if !numpy_is_imported() {
+        return std::ptr::null_mut();
+    }
     Python::attach(|py| {
         // SAFETY: Python calls with the class that the function belongs to, a tuple, and a dict or null.
         let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use super::assessment::Assessment;
 use super::checked_task::CheckedTask;
 use super::criterion::Criterion;
-use super::named_task::Subject;
+use super::subject::Subject;
 use super::target::Target;
 use super::tip_error::{SquaredError, TipError};
 use crate::error::{Error, Result};

@@ -2,7 +2,7 @@
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
-use super::named_task::Subject;
+use super::subject::Subject;
 use super::target::Target;
 use super::tip_task::TaskKind;
 use crate::error::Result;

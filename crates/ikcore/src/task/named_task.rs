@@ -1,24 +1,11 @@
 //! Task of a tip or of a pair of tips, as given by the caller.
 
 use super::checked_task::CheckedTask;
+use super::subject::Subject;
 use super::tip_error::Tolerance;
 use super::tip_task::Task;
 use crate::error::Result;
 use crate::math::Frame;
-
-/// Frame that a target refers to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Subject {
-    /// Tip of this number.
-    Tip(usize),
-    /// Tip `of`, relative to tip `from`.
-    Pair {
-        /// Number of the reference tip.
-        from: usize,
-        /// Number of the moving tip.
-        of: usize,
-    },
-}
 
 /// Task of a tip, or of a pair of tips.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,12 +37,5 @@ impl NamedTask {
         criterion.validate()?;
         let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
         Ok(CheckedTask { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
-    }
-}
-
-impl Subject {
-    /// Whether the subject is a pair of tips.
-    pub(crate) fn is_pair(&self) -> bool {
-        matches!(self, Self::Pair { .. })
     }
 }
