@@ -41,9 +41,9 @@ pub fn distance(axis: &Vector, v: &Vector) -> f64 {
     dot(&across, &across).sqrt()
 }
 
-/// Sinusoid constant + cosine cos q + sine sin q.
+/// First harmonic constant + cosine cos q + sine sin q.
 #[derive(Debug, Clone, Copy)]
-pub struct Sinusoid {
+pub struct Harmonic {
     /// Mean value.
     pub constant: f64,
     /// Coefficient of cos q.
@@ -52,7 +52,7 @@ pub struct Sinusoid {
     pub sine: f64,
 }
 
-impl Sinusoid {
+impl Harmonic {
     /// Returns the component along `axis` of a point on a circle.
     pub fn along(axis: &Vector, circle: &Orbit) -> Self {
         Self { constant: dot(axis, &circle.centre), cosine: dot(axis, &circle.cosine), sine: dot(axis, &circle.sine) }
@@ -157,20 +157,20 @@ mod tests {
         let mut rng = rng::stream(3, 0);
         for _ in 0..20_000 {
             let mut draw = |most: f64| rng.uniform_in(-most, most);
-            let sinusoid = Sinusoid { constant: draw(1.0), cosine: draw(1.0), sine: draw(1.0) };
+            let harmonic = Harmonic { constant: draw(1.0), cosine: draw(1.0), sine: draw(1.0) };
             let (q, doubt) = (draw(PI), draw(1.1).abs());
             let factor = 1.0 + doubt * draw(1.0);
-            let value = sinusoid.constant + factor * (sinusoid.cosine * q.cos() + sinusoid.sine * q.sin());
+            let value = harmonic.constant + factor * (harmonic.cosine * q.cos() + harmonic.sine * q.sin());
             let range = [value - draw(0.5).abs() - 1e-12, value + draw(0.5).abs() + 1e-12];
-            let arcs = sinusoid.arcs(range, doubt).expect("it is within");
+            let arcs = harmonic.arcs(range, doubt).expect("it is within");
             let angle = Arc { middle: q + TAU, half: 0.0 };
-            assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{sinusoid:?} {q} {range:?}");
+            assert!(arcs.iter().any(|arc| angle.within(&arc.wider(1e-6)).is_some()), "{harmonic:?} {q} {range:?}");
             let half = draw(1.0).abs();
-            let near = sinusoid.range_near(Angle::by(q + half * draw(1.0)), half, 1e-12);
-            let value = sinusoid.constant + sinusoid.cosine * q.cos() + sinusoid.sine * q.sin();
+            let near = harmonic.range_near(Angle::by(q + half * draw(1.0)), half, 1e-12);
+            let value = harmonic.constant + harmonic.cosine * q.cos() + harmonic.sine * q.sin();
             assert!(near[0] <= value && value <= near[1]);
         }
-        assert!(Sinusoid { constant: 0.0, cosine: 0.6, sine: 0.8 }.arcs([1.2, 2.0], 0.1).is_none());
+        assert!(Harmonic { constant: 0.0, cosine: 0.6, sine: 0.8 }.arcs([1.2, 2.0], 0.1).is_none());
     }
 
     #[test]

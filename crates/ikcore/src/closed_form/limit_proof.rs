@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use crate::closed_form::arm_angle_limits::Values;
 use crate::closed_form::axis_chain::{AxisChain, reversed};
-use crate::closed_form::enclosure::{Arc, Ball, Sinusoid, distance};
+use crate::closed_form::enclosure::{Arc, Ball, Harmonic, distance};
 use crate::closed_form::orbit::Orbit;
 use crate::closed_form::parameter_arcs::ParameterArcs;
 use crate::closed_form::structure::{EXACT, Pair, three_meet};
@@ -52,9 +52,9 @@ pub struct LimitProof {
     /// Vectors from the root to a point on the axis of C, and on to the centre.
     links: [Vector; 2],
     /// Squared distance from root to centre, as a function of C.
-    distance: Sinusoid,
+    distance: Harmonic,
     /// Cosine of the angle between the axes of D and F, as a function of E.
-    bend: Sinusoid,
+    bend: Harmonic,
     /// Unit vectors perpendicular to the axes of D and F.
     across: [[Vector; 2]; 2],
     /// True if the parameter is the last joint: the chain is taken from tip to base.
@@ -70,8 +70,8 @@ struct PoseMotion<'a> {
     /// Vector from the root to the centre.
     centre: Orbit,
     /// Squared length of that vector, and its component along the axis of A.
-    distance: Sinusoid,
-    height: Sinusoid,
+    distance: Harmonic,
+    height: Harmonic,
     /// Axis of F.
     end: Orbit,
     /// Axis of F in the pose, and unit vectors perpendicular to it.
@@ -94,8 +94,8 @@ impl LimitProof {
             parameter: joints[0].point,
             root,
             centre,
-            distance: Sinusoid::squared_distance(&Orbit::of(c, &links[1]), &scaled(&links[0], -1.0)),
-            bend: Sinusoid::along(d, &Orbit::of(e, f)),
+            distance: Harmonic::squared_distance(&Orbit::of(c, &links[1]), &scaled(&links[0], -1.0)),
+            bend: Harmonic::along(d, &Orbit::of(e, f)),
             across: [d, f].map(|axis| [across(axis)[0], across(axis)[1]]),
             reversed: !by_first,
             off: POSE_ERROR * (1.0 + size + norm(&chain.tip.origin)),
@@ -158,8 +158,8 @@ impl<'a> PoseMotion<'a> {
         Self {
             arm,
             limits,
-            distance: Sinusoid::squared_distance(&centre, &[0.0; 3]),
-            height: Sinusoid::along(&arm.axes[1], &centre),
+            distance: Harmonic::squared_distance(&centre, &[0.0; 3]),
+            height: Harmonic::along(&arm.axes[1], &centre),
             centre,
             end: Orbit::of(&back, &end_axis),
             end_axis,
@@ -207,7 +207,7 @@ impl<'a> PoseMotion<'a> {
         let (slant, along, lever) = (dot(a, b), dot(b, &u.middle), distance(b, &u.middle));
         let constant = slant * along;
         let height_by_b =
-            Sinusoid { constant, cosine: dot(a, &u.middle) - constant, sine: dot(a, &cross(b, &u.middle)) };
+            Harmonic { constant, cosine: dot(a, &u.middle) - constant, sine: dot(a, &cross(b, &u.middle)) };
         let height = self.height.range_near(part.turn(), part.half, off + slant.abs() * u.radius);
         let doubt = u.radius / lever;
         let Some(arcs) = height_by_b.arcs(height, if doubt < 1.0 { doubt } else { 1.0 }) else { return [None; 2] };
