@@ -57,7 +57,7 @@ pub fn calls() -> Vec<Row> {
         "KinematicPlant::with_orientation" OutOfRange: KinematicPlant::new(two(), 0.0, 0).unwrap().with_orientation(-1.0), "rotation_noise must be zero or more and finite, got -1";
         "Record::trajectory" WrongLength: track(&two(), &reference(4), None, &options, &mut Unattended).unwrap().trajectory(names(3)), "trajectory samples: expected 12 numbers (4 times of 3 joints), got 8";
         "Session::step" NotFinite: session().step(&Target::Position([NAN; 3]), &mut Unattended), "target must be finite, but coordinate x is NaN";
-        "Session::reset_moving" Contradiction: eased_session().reset(&[0.55; 2], Some(&[1.0; 2]), None), "joint '0' at 0.5500 with velocity 1.000 and acceleration 0 cannot stop inside its limits; start slower or farther inside";
+        "Session::reset" Contradiction: eased_session().reset(&[0.55; 2], Some(&[1.0; 2]), None), "joint '0' at 0.5500 with velocity 1.000 and acceleration 0 cannot stop inside its limits; start slower or farther inside";
         "track_tips" WrongLength: track_tips(&two(), &TipPaths { tips: &[], paths: &[reference(4), reference(5)] }, None, &options, &mut Unattended), "a path of several: expected 4 samples of 0.1 s, as the first path has, got 5";
         "ControlSession::command" Contradiction: answered().command(&TipPose::from(&Pose::identity())), "target: expected a position (3,), as before, got a pose (4, 4)";
         "ControlSession::observe" Contradiction: posed().observe(&[0.0; 3].into()), "position: expected a pose (4, 4), like the target, got a position (3,)";
