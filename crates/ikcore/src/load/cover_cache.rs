@@ -12,7 +12,7 @@ use crate::shape::{Cover, Geometry};
 use crate::stored;
 
 /// Cache version, raised whenever covers change: entries of other versions are ignored.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Largest valid entry (bytes): a cover has few shapes, so larger entries are damaged.
 const LARGEST_ENTRY: u64 = 1 << 20;
 
