@@ -308,11 +308,6 @@ impl ArmModel {
         })
     }
 
-    /// Which ends are fitted.
-    pub fn fits_ends(&self) -> [bool; 2] {
-        self.ends.map(|end| end.is_some())
-    }
-
     /// Whether a parameter belongs to base or tool, or is a landmark.
     pub fn is_placement(&self, parameter: &Parameter) -> bool {
         match parameter.place {

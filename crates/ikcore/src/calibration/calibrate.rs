@@ -1,9 +1,9 @@
 //! The call: from measurements to the arm as it is built.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
-use super::arm_model::{ArmModel, FreeEnds, Marks, Outside};
-use super::calibration::{Calibration, FittedParameter, RmsError, RowErrors};
+use super::arm_model::{ArmModel, FreeEnds, Outside};
+use super::calibration::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
 use super::doubts::{check_configurations, check_lengths, still_joints};
 use super::estimate::Estimate;
 use super::identifiability::{Identifiability, identifiability};
@@ -15,6 +15,7 @@ use super::placement::{outside_start, placed_ends};
 use super::residual::Comparison;
 use super::robust_fit::{Noise, RobustFit, fitted};
 use super::statistics::{Influence, covariance, influences};
+use super::suggestion::{SuggestionOptions, suggested};
 use crate::error::{Error, Result};
 use crate::math::Pose;
 use crate::rng::stream;
@@ -30,11 +31,13 @@ pub struct CalibrationOptions {
     pub sigma: Option<Vec<[f64; 2]>>,
     /// Whether measurements that do not belong with the others are found and left out.
     pub robust: bool,
+    /// Further configurations to suggest.
+    pub suggestion: SuggestionOptions,
 }
 
 impl Default for CalibrationOptions {
     fn default() -> Self {
-        Self { fit: Part::ALL.to_vec(), sigma: None, robust: true }
+        Self { fit: Part::ALL.to_vec(), sigma: None, robust: true, suggestion: SuggestionOptions::default() }
     }
 }
 
@@ -55,13 +58,14 @@ const SEED: u64 = 46;
 pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &CalibrationOptions) -> Result<Calibration> {
     robot.require_one_tip("calibration")?;
     measured.check(robot, qs)?;
+    options.suggestion.check()?;
     check_sigma(measured, options.sigma.as_deref())?;
     check_configurations(robot, measured, qs)?;
     check_lengths(robot, measured, qs)?;
     let parts = Parts::new(&options.fit)?;
     let start = Setup::new(robot, qs, measured, &parts)?;
     let noise = Noise { given: options.sigma.clone(), robust: options.robust };
-    start.calibrated(robot, qs, &noise)
+    start.calibrated(robot, qs, &noise, &options.suggestion)
 }
 
 /// Model of the arm, begun near the optimum.
@@ -100,7 +104,13 @@ impl<'a> Setup<'a> {
         Estimate { corrections: self.model.corrections(), offsets: vec![0.0; self.dof], landmark }
     }
 
-    fn calibrated(&self, robot: &Robot, qs: &[f64], noise: &Noise) -> Result<Calibration> {
+    fn calibrated(
+        &self,
+        robot: &Robot,
+        qs: &[f64],
+        noise: &Noise,
+        suggestion: &SuggestionOptions,
+    ) -> Result<Calibration> {
         let comparison = self.comparison();
         let all: Vec<f64> = self.model.parameters.iter().map(|parameter| parameter.usual).collect();
         let placements = self.model.parameters.iter().map(|parameter| self.model.is_placement(parameter));
@@ -122,7 +132,7 @@ impl<'a> Setup<'a> {
             fitted(&comparison, placed.descent.estimate.clone(), noise, placed.scale, &all)?
         };
         self.require_enough(&comparison, &fit, &all)?;
-        self.result(robot, qs, &placed, &fit, &all, noise)
+        self.result(robot, qs, [&placed, &fit], &all, noise, suggestion)
     }
 
     /// Checks that there are as many equations as unknowns that matter.
@@ -148,7 +158,7 @@ impl<'a> Setup<'a> {
         let each = (0..self.measured.count()).map(|index| self.measured.rows(index)).max().unwrap_or(1).max(1);
         let count = scales.len().div_ceil(each) + ELSEWHERE;
         let qs = self.placed.random_configurations(count * configurations, &mut stream(SEED, 0))?;
-        let kind = elsewhere(self.measured, count);
+        let kind = self.measured.like(count);
         let weighing = Weighing { sigma: vec![fit.weighing.sigma[0]; count], weights: vec![1.0; count] };
         let anywhere = Comparison { model: &self.model, measured: &kind, qs: &qs, dof: self.dof };
         identifiability(comparison, (&anywhere, &weighing), &fit.descent.estimate, &fit.weighing, scales)
@@ -158,10 +168,10 @@ impl<'a> Setup<'a> {
         &self,
         robot: &Robot,
         qs: &[f64],
-        placed: &RobustFit,
-        fit: &RobustFit,
+        [placed, fit]: [&RobustFit; 2],
         scales: &[f64],
         noise: &Noise,
+        suggestion: &SuggestionOptions,
     ) -> Result<Calibration> {
         let comparison = self.comparison();
         let estimate = &fit.descent.estimate;
@@ -179,7 +189,7 @@ impl<'a> Setup<'a> {
         });
         let calibrated = self.model.robot(&self.placed, estimate)?;
         let (camera, board) = self.camera_and_board(estimate);
-        Ok(Calibration {
+        let findings = Findings {
             camera,
             board,
             centre: match &estimate.landmark {
@@ -204,10 +214,10 @@ impl<'a> Setup<'a> {
             still_joints: still_joints(robot, qs),
             iterations: placed.descent.iterations + fit.descent.iterations,
             converged: fit.descent.converged,
-            unit: self.measured.unit(),
-            suggested: vec![],
-            robot: calibrated,
-        })
+            in_pixels: matches!(self.measured, Measured::Pixels { .. }),
+            suggested: suggested(&calibrated, &comparison, estimate, fit.weighing.sigma[0], scales, &covariance, suggestion)?,
+        };
+        Ok(Calibration { robot: calibrated, findings })
     }
 
     /// The estimate of the robot as it was given.
@@ -310,25 +320,7 @@ fn check_sigma(measured: &Measured, sigma: Option<&[[f64; 2]]>) -> Result<()> {
     wrong.map_or(Ok(()), |value| Err(Error::out_of_range("standard deviation of a measurement", "positive and finite", *value)))
 }
 
-/// Measurements of the same kind for `count` other configurations; only their derivatives are used.
-fn elsewhere(measured: &Measured, count: usize) -> Measured {
-    match measured.clone() {
-        Measured::Positions(_) => Measured::Positions(vec![[0.0; 3]; count]),
-        Measured::Poses(_) => Measured::Poses(vec![Pose::identity(); count]),
-        Measured::BoardPoses { camera, .. } => Measured::BoardPoses { poses: vec![Pose::identity(); count], camera },
-        Measured::Pixels { board, lens, camera, .. } => {
-            Measured::Pixels { seen: vec![vec![[0.0; 2]; board.len()]; count], board, lens, camera }
-        }
-        Measured::BallBar { centre, .. } => Measured::BallBar { distances: vec![1.0; count], centre },
-        Measured::Pairs(_) => Measured::Pairs(vec![1.0; count]),
-        Measured::Heights { normal, height, .. } => Measured::Heights { heights: vec![0.0; count], normal, height },
-    }
-}
-
 /// Poses of the robot's tip at each measurement; `q` of the first configuration of each.
 pub(super) fn tips(robot: &Robot, qs: &[f64]) -> Vec<Pose> {
     qs.chunks(robot.dof()).map(|q| Pose::from(robot.tip(q))).collect()
 }
-
-#[allow(dead_code)]
-fn unused(_: &Marks, _: Vector3<f64>) {}

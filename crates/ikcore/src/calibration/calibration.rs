@@ -1,6 +1,7 @@
 //! The result of a calibration, and the sentence about it.
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use super::identifiability::Identifiability;
 use crate::math::Pose;
@@ -9,7 +10,7 @@ use crate::robot::Robot;
 use crate::wording::{joined, listed, number};
 
 /// Root mean square of the errors: of lengths (m, or pixels), and of rotations (rad; NaN where none are measured).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RmsError {
     /// Lengths (m or pixels).
     pub length: f64,
@@ -18,7 +19,7 @@ pub struct RmsError {
 }
 
 /// A parameter with its value: its deviation from the model.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FittedParameter {
     /// Name, such as "offset elbow" or "link elbow rx".
     pub name: String,
@@ -31,7 +32,7 @@ pub struct FittedParameter {
 }
 
 /// Errors of one measurement before and after (m or pixels, rad).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RowErrors {
     /// Of the robot as it was given.
     pub before: RmsError,
@@ -39,11 +40,18 @@ pub struct RowErrors {
     pub after: RmsError,
 }
 
-/// Arm as it is built.
+/// Arm as it is built, and what is known of it.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     /// The robot with the geometry, base and tool that were found.
     pub robot: Robot,
+    /// What was found.
+    pub findings: Findings,
+}
+
+/// Parameters of a calibration, their errors, and what the measurements tell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Findings {
     /// Pose of the camera, where one sees the measurements: in the frame of the robot's base if it is fixed, else in that of the tip.
     pub camera: Option<Pose>,
     /// Pose of the board: in the frame of the tip if the camera is fixed, else in that of the robot's base.
@@ -80,8 +88,8 @@ pub struct Calibration {
     pub iterations: usize,
     /// Whether the descent ended at an optimum.
     pub converged: bool,
-    /// Unit of the lengths: "m" or "px".
-    pub unit: &'static str,
+    /// Whether lengths are in pixels.
+    pub in_pixels: bool,
     /// Configurations that would tell most if they were measured too, (k, n) row by row.
     pub suggested: Vec<f64>,
 }
@@ -89,7 +97,7 @@ pub struct Calibration {
 /// Excess of the residuals over the given noise from which the message mentions it.
 const EXCESS: f64 = 1.5;
 
-impl Calibration {
+impl Findings {
     /// Outcome, and what to do about what is not known.
     pub fn message(&self) -> Message {
         let mut sentences = vec![self.errors_in_words(), self.identified_in_words()];
@@ -113,9 +121,9 @@ impl Calibration {
     }
 
     fn errors_in_words(&self) -> String {
-        let length = |error: &RmsError| match self.unit {
-            "m" => format!("{} mm", number(1e3 * error.length)),
-            unit => format!("{} {unit}", number(error.length)),
+        let length = |error: &RmsError| match self.in_pixels {
+            false => format!("{} mm", number(1e3 * error.length)),
+            true => format!("{} pixels", number(error.length)),
         };
         let (before, after, held_out) = (length(&self.before), length(&self.after), length(&self.held_out));
         format!("error {before} before, {after} after, {held_out} on held-out measurements")

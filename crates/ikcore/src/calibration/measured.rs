@@ -100,11 +100,6 @@ impl Measured {
         !matches!(self, Self::Poses(_) | Self::BoardPoses { .. } | Self::Pixels { .. })
     }
 
-    /// Unit of the residuals that are lengths.
-    pub fn unit(&self) -> &'static str {
-        if matches!(self, Self::Pixels { .. }) { "px" } else { "m" }
-    }
-
     pub(super) fn landmark(&self) -> Landmark {
         match self {
             Self::BallBar { centre, .. } => Landmark::Centre(Vector3::from(*centre)),
@@ -113,6 +108,21 @@ impl Measured {
                 Landmark::Plane { normal: Unit::new_normalize(normal), height: height / normal.norm() }
             }
             _ => Landmark::Nothing,
+        }
+    }
+
+    /// Measurements of the same kind for `count` other configurations, of which only the derivatives are used.
+    pub(super) fn like(&self, count: usize) -> Self {
+        match self.clone() {
+            Self::Positions(_) => Self::Positions(vec![[0.0; 3]; count]),
+            Self::Poses(_) => Self::Poses(vec![Pose::identity(); count]),
+            Self::BoardPoses { camera, .. } => Self::BoardPoses { poses: vec![Pose::identity(); count], camera },
+            Self::Pixels { board, lens, camera, .. } => {
+                Self::Pixels { seen: vec![vec![[0.0; 2]; board.len()]; count], board, lens, camera }
+            }
+            Self::BallBar { centre, .. } => Self::BallBar { distances: vec![1.0; count], centre },
+            Self::Pairs(_) => Self::Pairs(vec![1.0; count]),
+            Self::Heights { normal, height, .. } => Self::Heights { heights: vec![0.0; count], normal, height },
         }
     }
 

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::arm_model::Outside;
+use super::board_pose::board_pose;
 use super::calibrate::tips;
 use super::measured::{CameraPlace, Measured};
 use super::start::{aligned, both_ends, first_end};
@@ -14,7 +15,9 @@ use crate::robot::Robot;
 pub(super) fn outside_start(robot: &Robot, qs: &[f64], measured: &Measured) -> Result<Option<Outside>> {
     let (poses, camera) = match measured {
         Measured::BoardPoses { poses, camera } => (poses.clone(), *camera),
-        Measured::Pixels { .. } => return Ok(None),
+        Measured::Pixels { board, seen, lens, camera } => {
+            (seen.iter().map(|points| board_pose(board, points, lens)).collect(), *camera)
+        }
         _ => return Ok(None),
     };
     let beside: Vec<Pose> = match camera {

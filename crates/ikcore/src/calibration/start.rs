@@ -52,7 +52,7 @@ pub(super) fn aligned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Alignment {
 }
 
 /// Rotation nearest to a matrix.
-fn nearest_rotation(matrix: &Matrix3<f64>) -> Rotation3<f64> {
+pub(super) fn nearest_rotation(matrix: &Matrix3<f64>) -> Rotation3<f64> {
     let svd = matrix.svd(true, true);
     let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else { return Rotation3::identity() };
     if (u * v_t).determinant() < 0.0 {
