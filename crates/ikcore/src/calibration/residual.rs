@@ -180,3 +180,105 @@ impl Block {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::arm_model::{FreeEnds, Outside};
+    use crate::calibration::parameters::{Parameter, Part, Parts, usual};
+    use crate::math::pose;
+    use crate::rng::stream;
+    use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
+
+    const PINHOLE: PinholeCamera = PinholeCamera { focal: [600.0, 610.0], centre: [320.0, 240.0] };
+
+    /// A joint that drives two axes, a slide right behind a turn, and transforms beside links.
+    fn odd_arm() -> Robot {
+        let mut arm = ChainBuilder::new("odd", "base");
+        let joints = ["turn", "slide", "swing"].map(|name| {
+            let kind = if name == "slide" { JointKind::Prismatic } else { JointKind::Revolute };
+            arm.add_joint(Joint::new(name, kind).with_range(-1.5, 1.5))
+        });
+        arm.fixed(pose::from_rpy([0.1, 0.2, 0.3], [0.0, 0.1, 0.2]));
+        arm.moving(joints[0], JointKind::Revolute, Vector3::new(0.0, 1.0, 1.0), Drive { scale: -1.0, offset: 0.2 });
+        arm.moving(joints[1], JointKind::Prismatic, Vector3::x(), Drive { scale: 0.5, offset: 0.1 });
+        arm.link("middle");
+        arm.fixed(pose::from_rpy([0.0, 0.7, 0.0], [0.3, 0.0, 0.1]));
+        arm.fixed(pose::translation(0.1, 0.0, 0.0));
+        arm.moving(joints[2], JointKind::Revolute, Vector3::z(), Drive::DIRECT);
+        arm.fixed(pose::translation(0.3, 0.1, 0.0));
+        arm.moving(joints[0], JointKind::Revolute, Vector3::y(), Drive { scale: 0.5, offset: 0.0 });
+        arm.link("tip");
+        arm.build().expect("a robot")
+    }
+
+    fn kinds() -> Vec<Measured> {
+        let near = pose::from_rpy([0.3, -0.2, 2.0], [0.1, 0.2, 0.9]);
+        let board = vec![[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.02], [0.1, 0.1, 0.0]];
+        let mut kinds = vec![
+            Measured::Positions(vec![[0.1, -0.2, 0.3]]),
+            Measured::Poses(vec![near]),
+            Measured::BallBar { distances: vec![0.4], centre: [0.5, -0.3, 0.1] },
+            Measured::Pairs(vec![0.4]),
+            Measured::Heights { heights: vec![0.01], normal: [0.2, -0.1, 2.0], height: 0.3 },
+        ];
+        for camera in [CameraPlace::Fixed, CameraPlace::Hand] {
+            kinds.push(Measured::BoardPoses { poses: vec![near], camera });
+            let seen = vec![vec![[100.0, 90.0], [f64::NAN; 2], [300.0, 200.0], [320.0, 240.0]]];
+            kinds.push(Measured::Pixels { board: board.clone(), seen, lens: PINHOLE, camera });
+        }
+        kinds
+    }
+
+    #[test]
+    fn derivatives_are_those_of_finite_differences() {
+        for robot in [odd_arm(), Robot::named("panda").expect("built in")] {
+            for measured in kinds() {
+                let outside = measured.camera().map(|_| Outside {
+                    before: (pose::from_rpy([0.2, 0.1, -0.4], [0.1, -0.1, 2.0]), "camera"),
+                    after: (pose::from_rpy([0.0, 0.3, 0.1], [0.02, 0.01, 0.1]), "board"),
+                });
+                let parts = Parts::new(&Part::ALL).expect("parts");
+                let mut model = ArmModel::new(&robot, &parts, FreeEnds { base: 6, tool: 6 }, outside);
+                for (entry, (name, is_angle)) in measured.landmark().parameters().iter().enumerate() {
+                    let place = Place::Landmark(entry);
+                    let usual = usual::PLACEMENT;
+                    model.parameters.push(Parameter { name: (*name).into(), is_angle: *is_angle, usual, place });
+                }
+                let qs = robot.random_configurations(2, &mut stream(3, 0)).expect("configurations");
+                let qs = &qs[..measured.configurations() * robot.dof()];
+                check(&Comparison { model: &model, measured: &measured, qs, dof: robot.dof() }, robot.dof());
+            }
+        }
+    }
+
+    fn check(comparison: &Comparison<'_>, dof: usize) {
+        let parameters = &comparison.model.parameters;
+        let nominal = Estimate {
+            corrections: comparison.model.corrections(),
+            offsets: vec![0.0; dof],
+            landmark: comparison.measured.landmark(),
+        };
+        let away: Vec<f64> = (0..parameters.len()).map(|k| 0.02 * ((k * 7 % 5) as f64 - 2.0)).collect();
+        let estimate = nominal.stepped(parameters, &away);
+        let (mut scratch, mut block, mut moved) = (Scratch::default(), Block::default(), Block::default());
+        comparison.write(0, &estimate, &mut scratch, &mut block);
+        let n = parameters.len();
+        for k in 0..n {
+            let h = 1e-6;
+            let mut beside = |sign: f64| {
+                let mut step = vec![0.0; n];
+                step[k] = sign * h;
+                comparison.write(0, &estimate.stepped(parameters, &step), &mut scratch, &mut moved);
+                moved.residual.clone()
+            };
+            let (after, before) = (beside(1.0), beside(-1.0));
+            for row in 0..block.residual.len() {
+                let difference = (after[row] - before[row]) / (2.0 * h);
+                let slope = block.jacobian[row * n + k];
+                let name = &parameters[k].name;
+                assert!((difference - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{name} {row}: {difference} {slope}");
+            }
+        }
+    }
+}

@@ -139,6 +139,12 @@ impl PyCalibration {
         table(py, self.core.covariance.as_slice().to_vec(), &[size, size])
     }
 
+    /// Unit of the errors: "m", or "pixels" for image points.
+    #[getter]
+    fn unit(&self) -> &'static str {
+        if self.core.in_pixels { "pixels" } else { "m" }
+    }
+
     /// Root mean square of the errors of the robot as it was given. All errors leave out `outliers`.
     #[getter]
     fn rms_before(&self) -> f64 {
@@ -212,6 +218,18 @@ impl PyCalibration {
         PyIdentifiability(self.core.identifiability.clone())
     }
 
+    /// Pose of the robot's base (4, 4) in the frame of the measurements, for `Robot.with_base`.
+    #[getter]
+    fn base<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pose_array(py, self.robot.get().core.base())
+    }
+
+    /// Pose of the tool (4, 4) in the frame of the tip link, for `Robot.with_tool`.
+    #[getter]
+    fn tool<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pose_array(py, self.robot.get().core.tool())
+    }
+
     /// Pose of the camera (4, 4): in the frame of the robot's base if it is fixed, in that of the tip if it is on the arm; None without.
     #[getter]
     fn camera<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
@@ -247,7 +265,7 @@ impl PyCalibration {
 
     /// Returns a URDF with the geometry of `robot`: `path_or_xml`, which the model was loaded from, with the origins of the joints that
     /// changed, and every other byte as it was. The zero of a joint becomes a part of its origin. No URDF has base and tool: give them to
-    /// the loaded robot by `with_base(c.robot.base)` and `with_tool(c.robot.tool)`.
+    /// the loaded robot by `with_base(c.base)` and `with_tool(c.tool)`.
     ///
     /// Args:
     ///     path_or_xml: the file, or its text.
@@ -267,7 +285,7 @@ impl PyCalibration {
     fn __repr__(&self) -> String {
         let Findings { before, after, errors, .. } = &self.core;
         let measurements = counted(errors.len(), "measurement");
-        let unit = if self.core.in_pixels { "pixels" } else { "m" };
+        let unit = self.unit();
         format!("<Calibration: {measurements}, error {:.3e} {unit} before, {:.3e} after>", before.length, after.length)
     }
 
