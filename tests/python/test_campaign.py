@@ -79,6 +79,10 @@ SPOILED = {
         "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
         "a pose that the arm has is called out of reach",
     ),
+    "calibrations": (
+        "found = Changed(found, errors_after=found.errors_after + 1e-3)",
+        "the errors after are not as told",
+    ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
         "q is not finite",

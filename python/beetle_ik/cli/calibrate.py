@@ -75,6 +75,8 @@ def calibrate(
     if tool is not None:
         arm = arm.with_tool(pose(numbers("--tool", tool, 3)))
     q, measured = _read(measurements, arm)
+    if measured.ndim == 1 and center is None:
+        raise InvalidInputError("distances need a guess of the fixed end of the ball bar: --center x,y,z")
     options: dict[str, Any] = {
         "fit": None if fit is None else [part.strip() for part in fit.split(",")],
         "sigma": None if sigma is None else _noise(sigma),

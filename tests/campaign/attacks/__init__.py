@@ -4,6 +4,7 @@ from importlib import import_module
 
 from ..attack import Attack
 from . import (
+    calibration,
     calls,
     clearance,
     command_line,
@@ -21,7 +22,7 @@ from . import (
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line),
+    *(calibration, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -34,7 +34,7 @@ fn positions(robot: &Robot, qs: &[f64]) -> Vec<[f64; 3]> {
 fn noisy(mut points: Vec<[f64; 3]>, sigma: f64, seed: u64) -> Vec<[f64; 3]> {
     let mut rng = stream(seed, 1);
     for entry in points.as_flattened_mut() {
-        *entry += sigma * rng.normal();
+        *entry += sigma * rng.normal_pair()[0];
     }
     points
 }
@@ -174,9 +174,10 @@ fn distances_alone_find_links_and_zeros() {
     let result = found(&model, &qs, &bar);
     let there = result.findings.centre.unwrap();
     let (from, to) = (positions(&result.robot, &qs), Vector3::from(there));
-    let worst = from.iter().zip(&points).map(|(a, b)| {
-        ((Vector3::from(*a) - to).norm() - (Vector3::from(*b) - centre).norm()).abs()
-    });
+    let worst = from
+        .iter()
+        .zip(&points)
+        .map(|(a, b)| ((Vector3::from(*a) - to).norm() - (Vector3::from(*b) - centre).norm()).abs());
     assert!(worst.fold(0.0, f64::max) < 1e-6);
     let pairs = points.chunks(2).map(|pair| (Vector3::from(pair[0]) - Vector3::from(pair[1])).norm());
     let result = found(&model, &qs, &Measured::Pairs(pairs.collect()));
@@ -199,7 +200,8 @@ fn contacts_with_a_plane_find_the_plane() {
 fn both_arrangements_of_a_camera_are_found() {
     let robot = Robot::named("ur5e").unwrap();
     let qs = configurations(&robot, 12, 4);
-    let (camera, board) = (pose::from_rpy([3.0, 0.1, 0.2], [0.3, 0.1, 1.5]), pose::from_rpy([0.1, 0.2, 0.3], [0.02, 0.0, 0.1]));
+    let (camera, board) =
+        (pose::from_rpy([3.0, 0.1, 0.2], [0.3, 0.1, 1.5]), pose::from_rpy([0.1, 0.2, 0.3], [0.02, 0.0, 0.1]));
     for place in [CameraPlace::Fixed, CameraPlace::Hand] {
         let seen = |tip: Pose| match place {
             CameraPlace::Fixed => camera.inverse() * tip * board,

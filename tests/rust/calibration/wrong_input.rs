@@ -67,7 +67,10 @@ fn degrees_are_told() {
     let degrees: Vec<f64> = qs.iter().map(|angle| angle.to_degrees()).collect();
     let said = refused(&degrees, &points(&qs, [1.0; 3]));
     assert!(said.starts_with("joint 'shoulder_pan_joint' reaches "), "{said}");
-    assert!(said.ends_with(" rad, far beyond its limits: angles are in radians, and these look like degrees"), "{said}");
+    assert!(
+        said.ends_with(" rad, far beyond its limits: angles are in radians, and these look like degrees"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -94,6 +97,7 @@ fn options_are_checked() {
     let pairs = Measured::Pairs(vec![0.1; 15]);
     let options = CalibrationOptions { fit: vec![Part::Base], ..CalibrationOptions::default() };
     let error = calibrate(&arm(), &qs, &pairs, &options).unwrap_err().to_string();
-    let said = "nothing of what is to be fitted has an effect on these measurements: add link transforms or joint offsets";
+    let said =
+        "nothing of what is to be fitted has an effect on these measurements: add link transforms or joint offsets";
     assert_eq!(error, said);
 }

@@ -15,9 +15,21 @@ use crate::robot::{Element, Robot};
 enum Stage {
     Constant(Pose),
     /// A transform, and the first parameter of its correction.
-    Corrected { nominal: Pose, number: usize, first: usize },
-    Moving { axis: Vector3<f64>, turns: bool, joint: usize, scale: f64, offset: f64 },
-    RotationVector { joint: usize },
+    Corrected {
+        nominal: Pose,
+        number: usize,
+        first: usize,
+    },
+    Moving {
+        axis: Vector3<f64>,
+        turns: bool,
+        joint: usize,
+        scale: f64,
+        offset: f64,
+    },
+    RotationVector {
+        joint: usize,
+    },
 }
 
 /// How much of the poses at both ends can be told from the measurements.

@@ -23,8 +23,10 @@ pub(super) fn board_pose(board: &[[f64; 3]], seen: &[[f64; 2]], lens: &PinholeCa
         .map(|(point, at)| (Vector3::from(*point), *at))
         .collect();
     let (frame, is_flat) = principal_frame(&points);
-    let local: Vec<(Vector3<f64>, [f64; 2])> =
-        points.iter().map(|(point, at)| (frame.rotation.inverse() * (point - frame.translation.vector), lens.ray(*at))).collect();
+    let local: Vec<(Vector3<f64>, [f64; 2])> = points
+        .iter()
+        .map(|(point, at)| (frame.rotation.inverse() * (point - frame.translation.vector), lens.ray(*at)))
+        .collect();
     let start = if is_flat || local.len() < 6 { from_homography(&local) } else { from_projection(&local) };
     refined(start * frame.inverse(), &points, lens)
 }
@@ -54,10 +56,7 @@ fn null_vector(rows: &[Vec<f64>]) -> Vec<f64> {
 fn from_homography(points: &[(Vector3<f64>, [f64; 2])]) -> Pose {
     let rows = points.iter().flat_map(|(p, [u, v])| {
         let (x, y) = (p.x, p.y);
-        [
-            vec![x, y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y, -u],
-            vec![0.0, 0.0, 0.0, x, y, 1.0, -v * x, -v * y, -v],
-        ]
+        [vec![x, y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y, -u], vec![0.0, 0.0, 0.0, x, y, 1.0, -v * x, -v * y, -v]]
     });
     let h = Matrix3::from_row_slice(&null_vector(&rows.collect::<Vec<_>>()));
     let size = 0.5 * (h.column(0).norm() + h.column(1).norm());

@@ -57,12 +57,12 @@ const SEED: u64 = 46;
 /// [`Error::Contradiction`] if nothing is to be fitted.
 pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &CalibrationOptions) -> Result<Calibration> {
     robot.require_one_tip("calibration")?;
+    let parts = Parts::new(&options.fit)?;
     measured.check(robot, qs)?;
     options.suggestion.check()?;
     check_sigma(measured, options.sigma.as_deref())?;
     check_configurations(robot, measured, qs)?;
     check_lengths(robot, measured, qs)?;
-    let parts = Parts::new(&options.fit)?;
     let start = Setup::new(robot, qs, measured, &parts)?;
     let noise = Noise { given: options.sigma.clone(), robust: options.robust };
     start.calibrated(robot, qs, &noise, &options.suggestion)
@@ -179,7 +179,8 @@ impl<'a> Setup<'a> {
         let covariance = covariance(&system).unwrap_or_else(|| DMatrix::identity(scales.len(), scales.len()));
         let after = influences(&comparison, estimate, &fit.weighing, scales, &covariance)?;
         let at = |estimate: &Estimate| influences(&comparison, estimate, &fit.weighing, scales, &covariance);
-        let nominal = if self.model.outside(estimate).is_some() { &placed.descent.estimate } else { &self.given(robot) };
+        let nominal =
+            if self.model.outside(estimate).is_some() { &placed.descent.estimate } else { &self.given(robot) };
         let before = at(nominal)?;
         let used: Vec<usize> = (0..after.len()).filter(|index| fit.weighing.weights[*index] > 0.0).collect();
         let rms = |found: &[Influence], squares: fn(&Influence) -> [f64; 2]| self.rms(&used, found, squares);
@@ -209,13 +210,25 @@ impl<'a> Setup<'a> {
             errors: errors.collect(),
             outliers: fit.outliers.clone(),
             noise: self.noise_of(fit, noise),
-            excess: if noise.given.is_some() { fit.scale[0].max(if self.measured.has_rotations() { fit.scale[1] } else { 0.0 }) } else { 1.0 },
+            excess: if noise.given.is_some() {
+                fit.scale[0].max(if self.measured.has_rotations() { fit.scale[1] } else { 0.0 })
+            } else {
+                1.0
+            },
             identifiability: self.identifiability(&comparison, fit, scales)?,
             still_joints: still_joints(robot, qs),
             iterations: placed.descent.iterations + fit.descent.iterations,
             converged: fit.descent.converged,
             in_pixels: matches!(self.measured, Measured::Pixels { .. }),
-            suggested: suggested(&calibrated, &comparison, estimate, fit.weighing.sigma[0], scales, &covariance, suggestion)?,
+            suggested: suggested(
+                &calibrated,
+                &comparison,
+                estimate,
+                fit.weighing.sigma[0],
+                scales,
+                &covariance,
+                suggestion,
+            )?,
         };
         Ok(Calibration { robot: calibrated, findings })
     }
@@ -317,7 +330,9 @@ fn check_sigma(measured: &Measured, sigma: Option<&[[f64; 2]]>) -> Result<()> {
         return Err(Error::WrongLength { what: "standard deviations".into(), expected, got: sigma.len() });
     }
     let wrong = sigma.as_flattened().iter().find(|value| !(**value > 0.0 && value.is_finite()));
-    wrong.map_or(Ok(()), |value| Err(Error::out_of_range("standard deviation of a measurement", "positive and finite", *value)))
+    wrong.map_or(Ok(()), |value| {
+        Err(Error::out_of_range("standard deviation of a measurement", "positive and finite", *value))
+    })
 }
 
 /// Poses of the robot's tip at each measurement; `q` of the first configuration of each.

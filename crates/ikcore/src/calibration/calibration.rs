@@ -145,8 +145,13 @@ impl Findings {
         let names = || self.still_joints.iter().map(String::as_str);
         match &self.still_joints[..] {
             [] => None,
-            [one] => Some(format!("joint '{one}' never moved, so that its zero and the links beside it cannot be told apart")),
-            _ => Some(format!("joints {} never moved, so that their zeros and the links beside them cannot be told apart", joined(names()))),
+            [one] => Some(format!(
+                "joint '{one}' never moved, so that its zero and the links beside it cannot be told apart"
+            )),
+            _ => Some(format!(
+                "joints {} never moved, so that their zeros and the links beside them cannot be told apart",
+                joined(names())
+            )),
         }
     }
 

@@ -19,6 +19,8 @@ const MIRRORED: f64 = 0.2;
 const SOLID: f64 = 0.02;
 /// Factors of a wrong unit of length, and its name.
 const UNITS: [(f64, &str); 3] = [(1000.0, "millimetres"), (100.0, "centimetres"), (39.37, "inches")];
+/// Likeness of the measured shape and the arm's from which their sizes are compared.
+const ALIKE: f64 = 0.9;
 /// Tolerance of these factors.
 const NEAR: f64 = 0.2;
 
@@ -75,7 +77,7 @@ pub(super) fn check_lengths(robot: &Robot, measured: &Measured, qs: &[f64]) -> R
         Measured::Poses(poses) => {
             let tips: Vec<_> = qs.chunks(n).map(tip).collect();
             let measured: Vec<_> = poses.iter().map(|pose| pose.translation.vector).collect();
-            check_unit(aligned(&tips, &measured).scale, "the measured positions spread")
+            check_spread(&aligned(&tips, &measured))
         }
         Measured::BallBar { distances, centre } => {
             let centre = Vector3::from(*centre);
@@ -89,7 +91,7 @@ pub(super) fn check_lengths(robot: &Robot, measured: &Measured, qs: &[f64]) -> R
 }
 
 fn check_alignment(alignment: &Alignment) -> Result<()> {
-    check_unit(alignment.scale, "the measured positions spread")?;
+    check_spread(alignment)?;
     let Alignment { rms, mirrored_rms, flatness, .. } = alignment;
     if *flatness > SOLID && *mirrored_rms < MIRRORED * rms {
         let (rms, mirrored) = (number(*rms), number(*mirrored_rms));
@@ -100,9 +102,22 @@ fn check_alignment(alignment: &Alignment) -> Result<()> {
     Ok(())
 }
 
+/// Checks the size of the measured shape, if it is that of the arm's.
+fn check_spread(alignment: &Alignment) -> Result<()> {
+    if alignment.likeness < ALIKE {
+        return Ok(());
+    }
+    check_unit(alignment.scale, "the measured positions spread")
+}
+
 fn check_distances(distances: &[f64], predicted: impl Iterator<Item = f64>) -> Result<()> {
     let mut ratios: Vec<f64> = distances.iter().zip(predicted).map(|(d, p)| d / p.max(1e-9)).collect();
     ratios.sort_by(f64::total_cmp);
+    let quarter = ratios.len() / 4;
+    let [first, last] = [ratios[quarter], ratios[ratios.len() - 1 - quarter]];
+    if last - first > NEAR * last {
+        return Ok(());
+    }
     check_unit(ratios[ratios.len() / 2], "the measured distances are")
 }
 

@@ -44,9 +44,7 @@ impl Estimate {
             Place::Correction { number, direction } if direction < 3 => {
                 self.corrections[number].translation.vector[direction]
             }
-            Place::Correction { number, direction } => {
-                self.corrections[number].rotation.scaled_axis()[direction - 3]
-            }
+            Place::Correction { number, direction } => self.corrections[number].rotation.scaled_axis()[direction - 3],
             Place::Landmark(entry) => self.landmark.displacement(start)[entry],
         };
         parameters.iter().map(value).collect()

@@ -17,6 +17,8 @@ use crate::error::Result;
 const NEGLIGIBLE: f64 = 1e-7;
 /// Coefficient, over the largest of a combination, from which a parameter is named.
 const NAMED: f64 = 0.35;
+/// Rows that are reduced at once, as a multiple of the parameters.
+const MOST_ROWS: usize = 8;
 /// Parameters named of one combination.
 const MOST_NAMED: usize = 3;
 
@@ -42,6 +44,7 @@ struct Spectrum {
 }
 
 impl Spectrum {
+    /// Decomposes the whitened Jacobian of all measurements in use; rows are reduced by QR as they come.
     fn of(comparison: &Comparison<'_>, estimate: &Estimate, weighing: &Weighing, scales: &[f64]) -> Result<Self> {
         let n = scales.len();
         let mut rows = Vec::new();
@@ -49,17 +52,13 @@ impl Spectrum {
             if weighing.weights[index] > 0.0 {
                 rows.extend_from_slice(&block.jacobian);
             }
+            if rows.len() > MOST_ROWS * n * n {
+                rows = triangle(&rows, n).transpose().as_slice().to_vec();
+            }
         })?;
-        Ok(Self::of_matrix(DMatrix::from_row_slice(rows.len() / n, n, &rows)))
-    }
-
-    /// Decomposes a matrix with as many vectors as columns: QR first, as rows are many.
-    fn of_matrix(matrix: DMatrix<f64>) -> Self {
-        let (rows, n) = matrix.shape();
-        let square = if rows > n { matrix.qr().r() } else { matrix.resize_vertically(n, 0.0) };
-        let svd = SVD::new(square, false, true);
+        let svd = SVD::new(triangle(&rows, n), false, true);
         let vectors = svd.v_t.unwrap_or_else(|| DMatrix::identity(n, n));
-        Self { values: svd.singular_values.iter().copied().collect(), vectors }
+        Ok(Self { values: svd.singular_values.iter().copied().collect(), vectors })
     }
 
     fn rank(&self) -> usize {
@@ -71,6 +70,12 @@ impl Spectrum {
     fn vectors_from(&self, first: usize) -> impl Iterator<Item = DVector<f64>> {
         (first..self.vectors.nrows()).map(|row| self.vectors.row(row).transpose())
     }
+}
+
+/// Square matrix R with R'R = A'A for the rows of A.
+fn triangle(rows: &[f64], n: usize) -> DMatrix<f64> {
+    let matrix = DMatrix::from_row_slice(rows.len() / n, n, rows);
+    if matrix.nrows() > n { matrix.qr().r() } else { matrix.resize_vertically(n, 0.0) }
 }
 
 /// Compares these configurations with `elsewhere`, the same kind of measurement all over the joint ranges.

@@ -9,7 +9,10 @@ pub(super) enum Landmark {
     /// Fixed end of a ball bar (m).
     Centre(Vector3<f64>),
     /// Plane of the points p with normal . p = height (m).
-    Plane { normal: Unit<Vector3<f64>>, height: f64 },
+    Plane {
+        normal: Unit<Vector3<f64>>,
+        height: f64,
+    },
 }
 
 impl Landmark {

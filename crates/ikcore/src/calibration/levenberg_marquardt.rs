@@ -18,7 +18,6 @@ const LAST_DAMPING: f64 = 1e8;
 #[derive(Debug, Clone)]
 pub(super) struct Descent {
     pub estimate: Estimate,
-    pub cost: f64,
     pub iterations: usize,
     pub converged: bool,
 }
@@ -33,20 +32,18 @@ pub(super) fn descend(
 ) -> Result<Descent> {
     let mut here = start;
     let mut damping = FIRST_DAMPING;
-    let mut last = f64::INFINITY;
     for iterations in 0..most {
         let system = NormalEquations::at(comparison, &here, weighing, scales)?;
-        last = system.cost;
-        let Some((next, cost, step)) = accepted_step(comparison, &here, &system, weighing, scales, &mut damping)? else {
-            return Ok(Descent { estimate: here, cost: last, iterations, converged: true });
+        let Some((next, cost, step)) = accepted_step(comparison, &here, &system, weighing, scales, &mut damping)?
+        else {
+            return Ok(Descent { estimate: here, iterations, converged: true });
         };
         here = next;
         if step < SMALL_STEP || system.cost - cost <= SMALL_DECREASE * system.cost {
-            return Ok(Descent { estimate: here, cost, iterations: iterations + 1, converged: true });
+            return Ok(Descent { estimate: here, iterations: iterations + 1, converged: true });
         }
-        last = cost;
     }
-    Ok(Descent { estimate: here, cost: last, iterations: most, converged: false })
+    Ok(Descent { estimate: here, iterations: most, converged: false })
 }
 
 /// Finds a damping whose step lowers the cost: the estimate there, its cost and the largest entry of the step.

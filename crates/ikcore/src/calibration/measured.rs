@@ -202,7 +202,9 @@ fn check_pixels(board: &[[f64; 3]], seen: &[Vec<[f64; 2]>], lens: &PinholeCamera
             let expected = format!("{}, one for each point of the board", board.len());
             return Err(Error::WrongLength { what: what.into(), expected, got: points.len() });
         }
-        if let Some(entry) = points.iter().position(|[u, v]| u.is_nan() != v.is_nan() || u.is_infinite() || v.is_infinite()) {
+        if let Some(entry) =
+            points.iter().position(|[u, v]| u.is_nan() != v.is_nan() || u.is_infinite() || v.is_infinite())
+        {
             let [u, v] = points[entry];
             let value = if u.is_finite() { v } else { u };
             let place = format!("point {entry} of row {row} (give NaN twice for a point that was not seen)");
@@ -210,7 +212,8 @@ fn check_pixels(board: &[[f64; 3]], seen: &[Vec<[f64; 2]>], lens: &PinholeCamera
         }
         let count = points.iter().filter(|point| point[0].is_finite()).count();
         if count < 4 {
-            let problem = format!("row {row} sees {count} points of the board; at least 4 are needed: leave the row out");
+            let problem =
+                format!("row {row} sees {count} points of the board; at least 4 are needed: leave the row out");
             return Err(Error::InvalidMeasurement { problem: problem.into() });
         }
     }

@@ -38,7 +38,11 @@ pub(super) fn placed_ends(robot: &Robot, qs: &[f64], measured: &Measured, [base,
         (Measured::Positions(positions), true, _) => {
             let points: Vec<Vector3<f64>> = tips(robot, qs).iter().map(|tip| tip.translation.vector).collect();
             let measured: Vec<Vector3<f64>> = positions.iter().map(|p| Vector3::from(*p)).collect();
-            robot.with_geometry(robot.elements().to_vec(), aligned(&points, &measured).pose * robot.base(), *robot.tool())?
+            robot.with_geometry(
+                robot.elements().to_vec(),
+                aligned(&points, &measured).pose * robot.base(),
+                *robot.tool(),
+            )?
         }
         (Measured::Poses(poses), true, true) => {
             let [before, after] = both_ends(&tips(robot, qs), poses);

@@ -56,7 +56,9 @@ impl Comparison<'_> {
         self.model.derivatives(&tip, marks, columns);
         let point = tip.translation.vector;
         match self.measured {
-            Measured::Positions(positions) => block.push_difference(&(point - Vector3::from(positions[index])), columns, 0),
+            Measured::Positions(positions) => {
+                block.push_difference(&(point - Vector3::from(positions[index])), columns, 0)
+            }
             Measured::Poses(poses) => block.push_pose(&tip, columns, &poses[index]),
             Measured::BoardPoses { poses, camera } => {
                 let seen = as_seen(tip, columns, *camera);
@@ -172,8 +174,12 @@ impl Block {
                 // The point moves by v + w x arm.
                 let turning = arm.cross(&slope);
                 let of = |c: &[f64; 6]| {
-                    slope.x * c[0] + slope.y * c[1] + slope.z * c[2]
-                        + turning.x * c[3] + turning.y * c[4] + turning.z * c[5]
+                    slope.x * c[0]
+                        + slope.y * c[1]
+                        + slope.z * c[2]
+                        + turning.x * c[3]
+                        + turning.y * c[4]
+                        + turning.z * c[5]
                 };
                 self.jacobian.extend(columns.iter().map(of));
             }

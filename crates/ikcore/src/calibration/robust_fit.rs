@@ -49,7 +49,7 @@ pub(super) fn fitted(
 ) -> Result<RobustFit> {
     let count = comparison.measured.count();
     let mut fit = RobustFit {
-        descent: Descent { estimate: start, cost: f64::INFINITY, iterations: 0, converged: false },
+        descent: Descent { estimate: start, iterations: 0, converged: false },
         weighing: noise.weighing(count, first_scale),
         outliers: vec![],
         scale: first_scale,

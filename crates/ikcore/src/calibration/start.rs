@@ -15,6 +15,8 @@ pub(super) struct Alignment {
     pub mirrored_rms: f64,
     /// Spread of the second points over that of the first.
     pub scale: f64,
+    /// How alike the shapes are, whatever their sizes: 1 if one is the other, turned and scaled.
+    pub likeness: f64,
     /// Smallest spread of the first points over the largest: 0 in a plane.
     pub flatness: f64,
 }
@@ -47,6 +49,7 @@ pub(super) fn aligned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Alignment {
         rms: left(sign),
         mirrored_rms: left(-sign),
         scale: (to_square / from_square.max(f64::MIN_POSITIVE)).sqrt(),
+        likeness: (values[0] + values[1] + sign * values[2]) / (from_square * to_square).sqrt().max(f64::MIN_POSITIVE),
         flatness: (extents.min().max(0.0) / extents.max().max(f64::MIN_POSITIVE)).sqrt(),
     }
 }
@@ -97,7 +100,8 @@ pub(super) fn both_ends(arm: &[Pose], measured: &[Pose]) -> [Pose; 2] {
 
 /// Pose Z nearest to M_i F_i' for all i: the base if the tool is known.
 pub(super) fn first_end(arm: &[Pose], measured: &[Pose]) -> Pose {
-    let sum: Matrix3<f64> = arm.iter().zip(measured).map(|(f, m)| m.rotation.matrix() * f.rotation.matrix().transpose()).sum();
+    let sum: Matrix3<f64> =
+        arm.iter().zip(measured).map(|(f, m)| m.rotation.matrix() * f.rotation.matrix().transpose()).sum();
     let rotation = nearest_rotation(&sum);
     let apart: Vector3<f64> =
         arm.iter().zip(measured).map(|(f, m)| m.translation.vector - rotation * f.translation.vector).sum();

@@ -42,13 +42,7 @@ pub(super) fn influences(
     Ok(found)
 }
 
-fn influence(
-    block: &Block,
-    sigma: [f64; 2],
-    weight: f64,
-    has_rotations: bool,
-    covariance: &DMatrix<f64>,
-) -> Influence {
+fn influence(block: &Block, sigma: [f64; 2], weight: f64, has_rotations: bool, covariance: &DMatrix<f64>) -> Influence {
     let (rows, n) = (block.residual.len(), covariance.nrows());
     let jacobian = DMatrix::from_row_slice(rows, n, &block.jacobian);
     let hat = weight * &jacobian * covariance * jacobian.transpose();

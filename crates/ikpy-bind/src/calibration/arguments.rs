@@ -50,14 +50,18 @@ pub fn read_measured(value: &Bound<'_, PyAny>, pairs: bool, kind: &Kind<'_, '_>)
     }
     let others = [kind.camera.is_some(), kind.center.is_some(), kind.plane.is_some(), pairs];
     if others.into_iter().filter(|given| *given).count() > 1 {
-        return Err(invalid("camera=, center=, plane= and q (m, 2, n) are different measurements: give one of them".into()));
+        return Err(invalid(
+            "camera=, center=, plane= and q (m, 2, n) are different measurements: give one of them".into(),
+        ));
     }
     match (&shape[..], kind.camera, kind.board) {
         ([_, 4, 4], Some(camera), None) => {
             Ok(Measured::BoardPoses { poses: rigid_matrices(numbers.as_slice()?)?, camera })
         }
         ([_, points, 2], Some(camera), Some(board)) => read_pixels(&numbers, *points, camera, board, kind.lens),
-        (_, Some(_), _) => Err(expected("poses of a board (m, 4, 4), or image points (m, k, 2) with board= and lens=", &shape)),
+        (_, Some(_), _) => {
+            Err(expected("poses of a board (m, 4, 4), or image points (m, k, 2) with board= and lens=", &shape))
+        }
         (_, None, Some(_)) => Err(invalid("image points need camera=\"fixed\" or camera=\"hand\"".into())),
         _ => read_without_camera(&numbers, &shape, pairs, kind),
     }

@@ -37,7 +37,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 ///     fit: what may differ from the model: "offsets" (the zero of each joint), "links" (the transform before each joint but the first),
 ///         "tool", "base". With a camera, "tool" and "base" stand for the poses of camera and board. None: all; with a camera "tool" and
 ///         "base", which is hand-eye calibration.
-///     sigma: standard deviation of the noise (m or pixels): a number, (length, angle (rad)) for poses, or one row per measurement, (m,)
+///     sigma: standard deviation of the noise (m or pixels): a number, for poses also of angles (rad) or (length, angle), or one row per measurement, (m,)
 ///         or (m, 2). None: estimated from the residuals.
 ///     robust: whether measurements that do not belong with the others are found and left out.
 ///     camera: "fixed": beside the robot, the board on the tip; "hand": on the tip, the board beside the robot. None: no camera.

@@ -34,14 +34,18 @@ impl Robot {
         let path = tree.path(base, tip)?;
         let nominal = chain::build(&document, &tree, base, &[tip])?;
         let origins = new_origins(self, &nominal, &path)?;
-        let changed = |(step, origin): (&TreeStep, Option<Pose>)| Some((document.joints[step.joint].name.as_str(), origin?));
+        let changed =
+            |(step, origin): (&TreeStep, Option<Pose>)| Some((document.joints[step.joint].name.as_str(), origin?));
         let changed: Vec<(&str, Pose)> = path.iter().zip(origins).filter_map(changed).collect();
         with_origins(&text, &changed)
     }
 }
 
 fn another(robot: &Robot) -> Error {
-    let problem = format!("its chain of joints is not that of robot '{}': give the file that the robot was loaded from", robot.name());
+    let problem = format!(
+        "its chain of joints is not that of robot '{}': give the file that the robot was loaded from",
+        robot.name()
+    );
     Error::Urdf { line: None, problem: problem.into() }
 }
 
@@ -55,12 +59,14 @@ fn new_origins(robot: &Robot, nominal: &Robot, path: &[TreeStep]) -> Result<Vec<
     for (found, before) in robot.elements().iter().zip(nominal.elements()) {
         match (found, before) {
             (Element::Fixed(found), Element::Fixed(before)) => step.fixed = Some((*found, *before)),
-            (Element::Moving { axis, turns, offset, .. }, Element::Moving { axis: same, turns: kind, offset: zero, .. })
-                if turns == kind && (axis - same).amax() < 1e-9 =>
-            {
+            (
+                Element::Moving { axis, turns, offset, .. },
+                Element::Moving { axis: same, turns: kind, offset: zero, .. },
+            ) if turns == kind && (axis - same).amax() < 1e-9 => {
                 let by = offset - zero;
                 let shift = by * axis;
-                step.zero = if *turns { pose::rotation(*axis, by) } else { pose::translation(shift.x, shift.y, shift.z) };
+                step.zero =
+                    if *turns { pose::rotation(*axis, by) } else { pose::translation(shift.x, shift.y, shift.z) };
             }
             (Element::Link(name), Element::Link(same)) if name == same => {
                 if let (Some(of), Some(change)) = (path.get(origins.len()), step.fixed.take()) {
