@@ -70,7 +70,8 @@ def main() -> None:
     with (given.out / "calibration.csv").open("w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADER)
-        for name, rows in [*runs.items(), ("all", [row for rows in runs.values() for row in rows])]:
+        every = [row for robot in runs.values() for row in robot]
+        for name, rows in [*runs.items(), ("all", every)]:
             writer.writerow([name, *summary(rows)])
             print(name, dict(zip(HEADER[1:], summary(rows), strict=True)))
 

@@ -2,8 +2,9 @@
 
     python benches/hand_eye.py --sets 50 --out docs
 
-writes `hand_eye.csv`: errors of the camera's pose. It needs `opencv-python-headless<5`, the last with these methods. An arm without errors moves a board
-in front of a fixed camera, or a camera in front of a board; the poses that the camera sees have noise.
+writes `hand_eye.csv`: errors of the camera's pose. It needs `opencv-python-headless<5`, the last with these methods. An
+arm without errors moves a board in front of a fixed camera, or a camera in front of a board; the poses that the camera
+sees have noise.
 """
 
 import argparse
@@ -77,7 +78,9 @@ def main() -> None:
     given = options.parse_args()
     with (given.out / "hand_eye.csv").open("w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["camera", "method", "position error [mm]", "worst [mm]", "rotation error [mrad]", "worst [mrad]"])
+        writer.writerow(
+            ["camera", "method", "position error [mm]", "worst [mm]", "rotation error [mrad]", "worst [mrad]"]
+        )
         for camera in ("hand", "fixed"):
             found: dict[str, list[tuple[float, float]]] = {name: [] for name in ("beetle-ik", *METHODS)}
             for seed in range(given.sets):

@@ -1,10 +1,10 @@
-"""A wrong model, mended or lived with: the same wrong arms track a circle with their model, after a calibration, and without a model.
+"""A wrong model, mended or lived with: wrong arms track a circle with their model, calibrated, and without a model.
 
     python benches/wrong_model.py --arms 20 --out docs
 
-writes `wrong_model.csv` and `images/wrong_model_error.png`. The sensor of both, calibration and tracking, is the same: positions with
-0.1 mm of noise on each axis, of an arm that is 1 mm and 0.5 degrees off. `track_model_free` measures the tip while it runs, once or
-as often as it likes per tick of 20 ms; the others run without a sensor.
+writes `wrong_model.csv` and `images/wrong_model_error.png`. Calibration and tracking have the same sensor: positions
+with 0.1 mm of noise on each axis, of an arm that is 1 mm and 0.5 degrees off. `track_model_free` measures the tip while it
+runs, once or several times in a tick of 20 ms; the others run without a sensor.
 """
 
 import argparse
@@ -77,7 +77,9 @@ def main() -> None:
     runs = [one_arm(seed) for seed in range(given.arms)]
     with (given.out / "wrong_model.csv").open("w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["way", "error after 1 s [mm], median", "largest after 1 s [mm], median", "largest of all arms [mm]"])
+        writer.writerow(
+            ["way", "error after 1 s [mm], median", "largest after 1 s [mm], median", "largest of all arms [mm]"]
+        )
         for name in runs[0]:
             settled = [1e3 * run[name][round(APPROACH / DT) :] for run in runs]
             largest = [float(values.max()) for values in settled]

@@ -21,6 +21,7 @@ class Arm:
     """Chain of a robot as plain numbers: constant transforms, and the joints between them."""
 
     def __init__(self, robot: bik.Robot) -> None:
+        """Reads the chain."""
         base, elements, tool = robot._chain()
         self.fixed: list[Array] = [np.array(base)]
         self.joints: list[tuple[Array, bool, int, float, float]] = []
@@ -78,7 +79,7 @@ class Arm:
 
 
 def built(model: bik.Robot, rng: np.random.Generator, length: float, angle: float) -> bik.Robot:
-    """The arm as it is built: each transform off by up to `length` along and `angle` about each axis, each zero by `angle`."""
+    """The arm as it is built: each transform is off by up to `length` along and `angle` about each axis."""
     base, elements, tool = model._chain()
 
     def off(pose: Array) -> Array:
@@ -92,9 +93,7 @@ def built(model: bik.Robot, rng: np.random.Generator, length: float, angle: floa
             changed.append((*element[:5], element[5] + rng.uniform(-1, 1) * (angle if element[2] else length)))
         else:
             changed.append(element)
-    joints = list(
-        zip(model.joint_names, model.joint_kinds, model.lower, model.upper, [1.0] * model.dof, strict=True)
-    )
+    joints = list(zip(model.joint_names, model.joint_kinds, model.lower, model.upper, [1.0] * model.dof, strict=True))
     arm = bik.Robot._from_chain(model.name, elements[0][1], joints, changed)
     return arm.with_base(off(base)).with_tool(off(tool))
 
@@ -106,7 +105,7 @@ def rank(jacobian: Array) -> int:
 
 
 def bound(arm: Arm, q: Array, new: Array, sigma: float) -> float:
-    """Cramér-Rao bound on the root mean square of position errors at `new`, after positions at `q` with noise `sigma`."""
+    """Cramér-Rao bound on the rms error of positions at `new`, after positions at `q` with noise `sigma`."""
     information = arm.jacobian(q, rotations=False).reshape(-1, arm.parameters)
     covariance = sigma**2 * np.linalg.pinv(information.T @ information, rcond=1e-11, hermitian=True)
     slopes = arm.jacobian(new, rotations=False)

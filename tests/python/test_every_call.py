@@ -83,6 +83,7 @@ VIEWER = bik.view(ARM, port=0)
 FLAT = PLANAR.with_capsules(radius=0.05)
 MAP = bik.reachability(FLAT, voxel=0.5, rolls=2)
 
+TURNS = np.linspace(0.0, 3.0, 9)[:, None]
 MEASURED_Q = PLANAR.random_configurations(20)
 CALIBRATION = bik.calibrate(PLANAR, MEASURED_Q, PLANAR.fk(MEASURED_Q))
 
@@ -96,7 +97,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "ModelFreeResult.": {".": MODEL_FREE},
     "MultiStart": {"solver": bik.papers.BAS()},
     "Calibration.": {".": CALIBRATION},
-    "Calibration.to_urdf": {".": bik.calibrate(ONE_JOINT, [[0.0], [1.0]] * 9, ONE_JOINT.fk([[0.0], [1.0]] * 9)), "path_or_xml": URDF},
+    "Calibration.to_urdf": {".": bik.calibrate(ONE_JOINT, TURNS, ONE_JOINT.fk(TURNS)), "path_or_xml": URDF},
     "Path.": {".": LINE},
     "Path.pose": {".": LINE.with_orientation(np.eye(3)), "t": 0.0},
     "Path.position": {"t": 0.0},

@@ -38,8 +38,8 @@ def calibrate(
     measurements: Annotated[
         Path,
         typer.Argument(
-            help="A CSV file: a column for each joint, by its name or q1, q2, ... (rad, m), and x,y,z (m), perhaps with qx,qy,qz,qw, or "
-            "distance (m) of a ball bar."
+            help="A CSV file: a column for each joint, by its name or q1, q2, ... (rad, m), and x,y,z (m), perhaps "
+            "with qx,qy,qz,qw, or distance (m) of a ball bar."
         ),
     ],
     robot: RobotName = None,
@@ -59,9 +59,7 @@ def calibrate(
     margin: Margin = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for calibrated.urdf (of a URDF), report.md, calibration.png, parameters.csv and errors.csv."
-        ),
+        typer.Option(help="Folder for calibrated.urdf (of a URDF), report.md with a figure, and tables."),
     ] = None,
     seed: Seed = 0,
     urdf: UrdfFile = None,
@@ -70,7 +68,7 @@ def calibrate(
     trusted: Trusted = False,
     as_json: AsJson = False,
 ) -> None:
-    """Calibration: joint zeros, links, tool and base of an arm as it is built, from measured positions or poses of its tip."""
+    """Calibration: zeros, links, tool and base of an arm as it is built, from positions or poses of its tip."""
     arm = load_robot(robot, urdf, base, tip, trusted=trusted)
     if tool is not None:
         arm = arm.with_tool(pose(numbers("--tool", tool, 3)))
@@ -118,7 +116,7 @@ def _read(file: Path, arm: Robot) -> tuple[NDArray[np.float64], NDArray[np.float
     if not set(_QUATERNION) <= set(table):
         return q, points
     turns = np.column_stack([table[name] for name in _QUATERNION])
-    return q, np.array([pose(point, quaternion=turn) for point, turn in zip(points, turns, strict=True)])
+    return q, np.array([pose(point, xyzw=turn) for point, turn in zip(points, turns, strict=True)])
 
 
 def _write(folder: Path, found: Calibration, file: Path | None) -> None:
