@@ -3,8 +3,8 @@
     python benches/wrong_model.py --arms 20 --out docs
 
 writes `wrong_model.csv` and `images/wrong_model_error.png`. Calibration and tracking have the same sensor: positions
-with 0.1 mm of noise on each axis, of an arm that is 1 mm and 0.5 degrees off. `track_model_free` measures the tip while it
-runs, once or several times in a tick of 20 ms; the others run without a sensor.
+with 0.1 mm of noise on each axis, of an arm that is 1 mm and 0.5 degrees off. `track_model_free` measures the tip while
+it runs, once or several times in a tick of 20 ms; the others run without a sensor.
 """
 
 import argparse
