@@ -17,8 +17,13 @@ const OUTLIER: f64 = 4.0;
 const ROUNDS: usize = 20;
 /// Largest part of the measurements that may be outliers.
 const MOST_OUTLIERS: f64 = 0.4;
-/// Steps of the descent between two changes of the weights.
+/// Round after which changes of the noise are too small to matter.
+const LAST_ROUND: usize = 4;
+/// Relative change of the noise that counts as none.
+const STEADY: f64 = 0.02;
+/// Steps of the descent between two changes of the weights, and after the last.
 const STEPS: usize = 4;
+const LAST_STEPS: usize = 50;
 
 /// Noise as it was given; without it, it is estimated from the residuals.
 #[derive(Debug, Clone)]
@@ -149,26 +154,22 @@ fn share_left(influences: &[Influence]) -> f64 {
 /// Least squares over the measurements that are no outliers, until these stay the same.
 fn reject(comparison: &Comparison<'_>, noise: &Noise, scales: &[f64], fit: &mut RobustFit) -> Result<()> {
     let count = comparison.measured.count();
-    let mut outliers = if noise.robust { outliers_of(comparison, fit, scales)? } else { vec![] };
+    fit.outliers = if noise.robust { outliers_of(comparison, fit, scales)? } else { vec![] };
     for round in 0..ROUNDS {
         fit.weighing = noise.weighing(count, fit.scale);
-        outliers.iter().for_each(|row| fit.weighing.weights[*row] = 0.0);
+        fit.outliers.iter().for_each(|row| fit.weighing.weights[*row] = 0.0);
         let before = fit.descent.iterations;
-        fit.descent = descend(comparison, fit.descent.estimate.clone(), &fit.weighing, scales, 50)?;
+        fit.descent = descend(comparison, fit.descent.estimate.clone(), &fit.weighing, scales, LAST_STEPS)?;
         fit.descent.iterations += before;
         let Some(found) = judged(comparison, fit, scales)? else { break };
         let scale = noise.mean_scale(&found, &fit.weighing.weights);
-        let steady = (0..2).all(|group| (scale[group] - fit.scale[group]).abs() <= 0.02 * fit.scale[group]);
+        let steady = (0..2).all(|group| (scale[group] - fit.scale[group]).abs() <= STEADY * fit.scale[group]);
         fit.scale = scale;
-        let next = outliers_of(comparison, fit, scales)?;
-        let same = next == outliers || !noise.robust;
-        fit.outliers = next.clone();
-        if same && (steady || noise.given.is_some() || round > 3) {
+        let outliers = if noise.robust { outliers_of(comparison, fit, scales)? } else { vec![] };
+        if outliers == fit.outliers && (steady || noise.given.is_some() || round >= LAST_ROUND) || round + 1 == ROUNDS {
             break;
         }
-        if noise.robust {
-            outliers = next;
-        }
+        fit.outliers = outliers;
     }
     Ok(())
 }
