@@ -59,7 +59,7 @@ pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &Calib
     robot.require_one_tip("calibration")?;
     let parts = Parts::new(&options.fit)?;
     measured.check(robot, qs)?;
-    options.suggestion.check()?;
+    options.suggestion.check(robot)?;
     check_sigma(measured, options.sigma.as_deref())?;
     check_configurations(robot, measured, qs)?;
     check_lengths(robot, measured, qs)?;

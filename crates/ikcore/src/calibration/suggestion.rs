@@ -36,11 +36,12 @@ pub struct SuggestionOptions {
 }
 
 impl SuggestionOptions {
-    pub(super) fn check(&self) -> Result<()> {
-        if self.count <= MOST {
-            return Ok(());
+    pub(super) fn check(&self, robot: &Robot) -> Result<()> {
+        if self.count > MOST {
+            let most = format!("at most {MOST}");
+            return Err(Error::out_of_range("number of suggested configurations", most, self.count as f64));
         }
-        Err(Error::out_of_range("number of suggested configurations", format!("at most {MOST}"), self.count as f64))
+        self.surroundings.clear_space(robot).map(|_| ())
     }
 }
 
