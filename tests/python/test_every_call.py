@@ -161,7 +161,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "distributed.reachability": {"client": None, "robot": FLAT, "voxel": 1.0, "threads": 1},
     "distributed.solve_batch": {"client": None, "robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
     "best_base": {"robot": FLAT, "targets": FLAT.fk([[0.1, 0.2, 0.3]]), "region": [(-1, -1, 0), (1, 1, 0)], "map": MAP},
-    "calibrate": {"robot": PLANAR, "q": MEASURED_Q, "measured": PLANAR.fk(MEASURED_Q)},
+    "calibrate": {"robot": FLAT, "q": MEASURED_Q, "measured": PLANAR.fk(MEASURED_Q)},
     "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.papers.BAS(), **QUICK},

@@ -80,7 +80,7 @@ fn read_without_camera(numbers: &Numbers<'_>, shape: &[usize], pairs: bool, kind
         ([_], ..) if pairs => Ok(Measured::Pairs(values.to_vec())),
         _ if pairs => Err(expected("distances (m,) with q (m, 2, n)", shape)),
         ([_], ..) => Err(invalid(
-            "distances need center=(x, y, z), heights above a plane plane=(nx, ny, nz, h), and distances between two positions q (m, 2, n)"
+            "measured: distances need center=(x, y, z), heights above a plane plane=(nx, ny, nz, h), and distances between two positions q (m, 2, n)"
                 .into(),
         )),
         ([_, 3], ..) => Ok(Measured::Positions(values.as_chunks::<3>().0.to_vec())),
