@@ -239,7 +239,11 @@ impl ArmModel {
     }
 
     /// Writes the derivative of the tip by each parameter: linear (m), then angular (rad), in the frame of the measurements.
+    /// Without columns it writes nothing.
     pub fn derivatives(&self, tip: &Pose, marks: &Marks, columns: &mut [[f64; 6]]) {
+        if columns.is_empty() {
+            return;
+        }
         columns.fill([0.0; 6]);
         let tip = tip.translation.vector;
         for (number, first, frame) in &marks.corrections {

@@ -73,7 +73,7 @@ impl NormalEquations {
             }
             for (residual, slopes) in block.residual.iter().zip(block.jacobian.chunks_exact(n)) {
                 cost += weight * residual * residual;
-                for (k, slope) in slopes.iter().enumerate() {
+                for (k, slope) in slopes.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
                     let factor = weight * slope;
                     gradient[k] += factor * residual;
                     let column = &mut matrix[k * n + k..(k + 1) * n];
@@ -112,8 +112,14 @@ pub(super) fn cost(
     scales: &[f64],
 ) -> Result<f64> {
     let mut cost: f64 = prior_residuals(comparison, estimate, scales).iter().map(|z| z * z).sum();
-    comparison.each(estimate, weighing, scales, |index, block| {
-        cost += weighing.weights[index] * block.residual.iter().map(|r| r * r).sum::<f64>();
-    })?;
+    let has_rotations = comparison.measured.has_rotations();
+    let (mut scratch, mut block) = (Scratch::default(), Block::default());
+    for (index, (weight, sigma)) in weighing.weights.iter().zip(&weighing.sigma).enumerate() {
+        checkpoint_at(index)?;
+        comparison.write_residual(index, estimate, &mut scratch, &mut block);
+        let group = |row: usize| usize::from(has_rotations && row >= LENGTHS);
+        let whitened = block.residual.iter().enumerate().map(|(row, residual)| residual / sigma[group(row)]);
+        cost += weight * whitened.map(|r| r * r).sum::<f64>();
+    }
     Ok(cost)
 }

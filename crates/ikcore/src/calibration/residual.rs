@@ -46,9 +46,19 @@ impl Comparison<'_> {
 
     /// Writes residual and Jacobian of measurement `index`.
     pub fn write(&self, index: usize, estimate: &Estimate, scratch: &mut Scratch, block: &mut Block) {
-        let unknowns = self.model.parameters.len();
+        scratch.columns.resize(self.model.parameters.len(), [0.0; 6]);
+        self.write_columns(index, estimate, scratch, block);
+    }
+
+    /// Writes the residual of measurement `index`, and no Jacobian.
+    pub fn write_residual(&self, index: usize, estimate: &Estimate, scratch: &mut Scratch, block: &mut Block) {
+        scratch.columns.clear();
+        self.write_columns(index, estimate, scratch, block);
+    }
+
+    /// Writes the residual of measurement `index`, and the derivatives of as many parameters as there are columns: all or none.
+    fn write_columns(&self, index: usize, estimate: &Estimate, scratch: &mut Scratch, block: &mut Block) {
         let Scratch { marks, columns } = scratch;
-        columns.resize(unknowns, [0.0; 6]);
         block.residual.clear();
         block.jacobian.clear();
         let q = self.configurations(index);
@@ -76,7 +86,7 @@ impl Comparison<'_> {
             }
             Measured::Pairs(distances) => {
                 let other = self.model.tip(estimate, &q[self.dof..], marks);
-                let mut others = vec![[0.0; 6]; unknowns];
+                let mut others = vec![[0.0; 6]; columns.len()];
                 self.model.derivatives(&other, marks, &mut others);
                 for (column, other) in columns.iter_mut().zip(&others) {
                     column.iter_mut().zip(other).for_each(|(entry, other)| *entry -= other);
