@@ -9,6 +9,8 @@ use crate::error::Result;
 const SMALL_STEP: f64 = 1e-10;
 /// Relative decrease of the cost that ends the descent.
 const SMALL_DECREASE: f64 = 1e-9;
+/// Relative increase of the cost that is rounding.
+const ROUNDING: f64 = 1e-12;
 /// Damping at the start; the start is good, so that Gauss-Newton usually works.
 const FIRST_DAMPING: f64 = 1e-6;
 /// Damping beyond which no step helps.
@@ -61,7 +63,7 @@ fn accepted_step(
             let moved: Vec<f64> = step.iter().zip(scales).map(|(z, scale)| z * scale).collect();
             let next = here.stepped(&comparison.model.parameters, &moved);
             let found = cost(comparison, &next, weighing, scales)?;
-            if found <= system.cost {
+            if found <= system.cost * (1.0 + ROUNDING) {
                 *damping = (*damping * 0.1).max(1e-12);
                 return Ok(Some((next, found, step.amax())));
             }
