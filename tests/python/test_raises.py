@@ -213,7 +213,7 @@ ROWS: list[Row] = [
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.0), 'voxel must be positive and finite, got 0'),
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.4, directions=6, rolls=1, store=at.file("a.zarr", "no store")), "store: folder '{folder}/a.zarr' cannot be written: File exists"),
     ("reachability", OSError, lambda at: api.reachability(PLANAR, task=api.tasks.Position(), voxel=0.3, store=at.full().path("a.zarr")), '[Errno 28] No space left on device'),
-    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[:5], MEASURED[:5]), "5 measurements give 15 equations for 24 unknowns: measure 8 configurations or more, twice as many if you can, or fit fewer parts"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[:5], MEASURED[:5]), "5 measurements give 15 equations for 25 unknowns: measure 9 configurations or more, twice as many if you can, or fit fewer parts"),
     ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[[0] * 20], MEASURED[[0] * 20]), "all configurations are alike: move the arm between measurements, each joint over as much of its range as possible"),
     ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, 1e3 * MEASURED), "the measured positions spread 1000 times as far as the arm moves: lengths are in metres, and these look like millimetres; divide by 1000"),
     ("calibrate", Invalid, lambda at: api.calibrate(UR5, np.degrees(MEASURED_Q).clip(-300, 300), MEASURED), "joint 'shoulder_pan_joint' reaches 300.0 rad, far beyond its limits: angles are in radians, and these look like degrees"),

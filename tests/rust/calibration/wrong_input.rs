@@ -30,7 +30,7 @@ fn too_few_measurements_say_how_many_are_needed() {
     let qs = configurations(5);
     assert_eq!(
         refused(&qs, &points(&qs, [1.0; 3])),
-        "5 measurements give 15 equations for 24 unknowns: measure 8 configurations or more, twice as many if you can, or fit fewer parts"
+        "5 measurements give 15 equations for 25 unknowns: measure 9 configurations or more, twice as many if you can, or fit fewer parts"
     );
     assert_eq!(refused(&qs[..6], &points(&qs[..6], [1.0; 3])), "1 measurement: two or more are needed");
 }

@@ -94,6 +94,8 @@ pub struct Findings {
     pub suggested: Vec<f64>,
 }
 
+/// Error (m or pixels) below which measurements are exact.
+const EXACT: f64 = 1e-9;
 /// Excess of the residuals over the given noise from which the message mentions it.
 const EXCESS: f64 = 1.5;
 
@@ -109,7 +111,7 @@ impl Findings {
                 number(self.excess)
             ));
         }
-        if self.held_out.length > self.placed.length {
+        if self.held_out.length > self.placed.length && self.held_out.length > EXACT {
             sentences.push(
                 "measurements that are held out fit worse than with the uncalibrated arm: measure more configurations, or fit fewer parameters".into(),
             );

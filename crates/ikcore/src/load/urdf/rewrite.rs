@@ -30,7 +30,8 @@ impl Robot {
         let tree = Tree::new(&document)?;
         let names: Vec<&str> = self.link_names().collect();
         let [base, .., tip] = names[..] else { return Err(another(self)) };
-        let (base, tip) = (tree.link(base)?, tree.link(tip)?);
+        let link = |name| tree.link(name).map_err(|_| another(self));
+        let (base, tip) = (link(base)?, link(tip)?);
         let path = tree.path(base, tip)?;
         let nominal = chain::build(&document, &tree, base, &[tip])?;
         let origins = new_origins(self, &nominal, &path)?;
