@@ -94,6 +94,8 @@ pub struct Findings {
     pub suggested: Vec<f64>,
 }
 
+/// Error (m) beyond which the model or the order of the rows is wrong.
+const FAR: f64 = 0.02;
 /// Error (m or pixels) below which measurements are exact.
 const EXACT: f64 = 1e-9;
 /// Excess of the residuals over the given noise from which the message mentions it.
@@ -110,6 +112,11 @@ impl Findings {
                 "residuals are {} times the noise that was given: the arm has errors that these parameters do not describe, such as bending or play",
                 number(self.excess)
             ));
+        }
+        if !self.in_pixels && self.after.length > FAR {
+            sentences.push(
+                "the measurements do not fit this arm: see that joint angles and measurements are in the same order, and of this model".into(),
+            );
         }
         if self.held_out.length > self.placed.length && self.held_out.length > EXACT {
             sentences.push(
@@ -132,15 +139,13 @@ impl Findings {
     }
 
     fn identified_in_words(&self) -> String {
-        let Identifiability { rank, possible, unknown, .. } = &self.identifiability;
+        let unknown = &self.identifiability.unknown;
         if unknown.is_empty() {
-            return format!("all {possible} combinations of parameters that matter are determined");
+            return "all is determined that such measurements can tell".into();
         }
-        let known = possible.saturating_sub(unknown.len()).min(*rank);
-        format!(
-            "{known} of {possible} combinations of parameters are determined, and not: {}; other configurations would tell",
-            listed(unknown.iter().map(String::as_str))
-        )
+        let names = listed(unknown.iter().map(String::as_str));
+        let are = if unknown.len() == 1 { "combination of parameters is" } else { "combinations of parameters are" };
+        format!("{} {are} not determined, and other configurations would tell: {names}", unknown.len())
     }
 
     fn still_in_words(&self) -> Option<String> {

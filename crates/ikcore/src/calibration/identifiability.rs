@@ -66,6 +66,11 @@ impl Spectrum {
         self.values.iter().filter(|value| **value > NEGLIGIBLE * largest).count()
     }
 
+    /// Number of combinations that are known better than arms usually are.
+    fn told(&self) -> usize {
+        self.values[..self.rank()].iter().filter(|value| **value > 1.0).count()
+    }
+
     /// Vectors from this one on.
     fn vectors_from(&self, first: usize) -> impl Iterator<Item = DVector<f64>> {
         (first..self.vectors.nrows()).map(|row| self.vectors.row(row).transpose())
@@ -90,10 +95,9 @@ pub(super) fn identifiability(
     let anywhere = Spectrum::of(elsewhere.0, estimate, elsewhere.1, scales)?;
     let (rank, possible) = (here.rank(), anywhere.rank());
     // A combination whose standard deviation is above its usual deviation is as good as unknown.
-    let known = here.values[..rank].iter().filter(|value| **value > 1.0).count();
-    let mut basis: Vec<DVector<f64>> = anywhere.vectors_from(possible).collect();
+    let mut basis: Vec<DVector<f64>> = anywhere.vectors_from(anywhere.told()).collect();
     let mut unknown = vec![];
-    for vector in here.vectors_from(known) {
+    for vector in here.vectors_from(here.told()) {
         let mut rest = vector;
         for other in &basis {
             rest -= other * other.dot(&rest);
