@@ -13,6 +13,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
         Setting::Method(name) => return format!("method=\"{name}\""),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
+        Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),
         Setting::Budget => "budget in stop=Stop(...)",
         Setting::MethodWithSolver => "method=TPBSO(solver=...)",
         Setting::Tip => "tip=",

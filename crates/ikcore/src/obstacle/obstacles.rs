@@ -52,6 +52,13 @@ impl Obstacle {
     }
 }
 
+impl Obstacle {
+    /// The obstacle with another shape, and the same links that may touch it.
+    pub(super) fn reshaped(&self, shape: Shape) -> Self {
+        Self { shape, touch: self.touch.clone() }
+    }
+}
+
 impl From<(Shape, Vec<String>)> for Obstacle {
     fn from((shape, touch): (Shape, Vec<String>)) -> Self {
         Self::new(shape, touch)

@@ -293,7 +293,7 @@ impl<'a> Scene<'a> {
     }
 
     #[inline]
-    fn posed<'b>(&'b self, body: usize, poses: &'b BodyPoses) -> PosedBody<'b> {
+    pub(super) fn posed<'b>(&'b self, body: usize, poses: &'b BodyPoses) -> PosedBody<'b> {
         self.posed_at(body, &poses.segments[body], &poses.frames)
     }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::message::{Message, message};
+use crate::obstacle::{Contact, Measured};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -28,8 +29,9 @@ pub struct Step {
 }
 
 impl Step {
-    /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> Message {
+    /// Returns a sentence on the outcome, with advice. An arm that is in collision with what a sensor measured is probably in it
+    /// itself: `nearest` is its nearest contact.
+    pub fn message(&self, nearest: Option<&Contact>) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         let how = match self.status {
@@ -40,6 +42,8 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
+        let measured = nearest.filter(|_| self.status == Status::InCollision).and_then(Contact::measured);
+        let advice = measured.map_or_else(|| self.status.advice(), Measured::advice);
+        message![format!("{how}, {error} away{limits}: "), advice]
     }
 }
