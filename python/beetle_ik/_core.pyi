@@ -2882,6 +2882,11 @@ class PointCloud(Obstacle):
     @property
     def radius(self) -> float:
         """Radius of the ball about each point (m)."""
+    @property
+    def removed(self) -> int:
+        """-"""
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> PointCloud:
+        """-"""
 
 @final
 class Grid(Obstacle):
@@ -2901,6 +2906,11 @@ class Grid(Obstacle):
     @property
     def occupied(self) -> NDArray[np.bool_]:
         """Whether each voxel is occupied (nx, ny, nz)."""
+    @property
+    def removed(self) -> int:
+        """-"""
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> Grid:
+        """-"""
 
 @final
 class Body:
@@ -2920,7 +2930,7 @@ class Body:
 class PreparedObstacles:
     """The obstacles of a `Scene`, read and prepared once."""
 
-    def __new__(cls, obstacles: Sequence[Obstacle]) -> PreparedObstacles: ...
+    def __new__(cls, obstacles: Sequence[Obstacle], carried: Sequence[Sequence[str]] = ()) -> PreparedObstacles: ...
 
 @final
 class Moving:

@@ -38,6 +38,7 @@ pub fn spelt(setting: &Setting) -> String {
         }
         Setting::CapsulesAlone => "robot.with_capsules(robot.capsules)",
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
+        Setting::Attach => "scene.attach_to(robot)",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
         _ => return setting.to_string(),
     };

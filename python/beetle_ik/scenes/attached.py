@@ -57,6 +57,20 @@ def carried(link: str, name: str, shapes: Iterable[Obstacle], touch: tuple[str, 
     return entries
 
 
+def require_carried(robot: Robot, attached: Iterable[Attached]) -> None:
+    """Checks that the robot carries the objects.
+
+    Raises:
+        InvalidInputError: it does not; the message names the object and the remedy.
+    """
+    for link, _, _, name in attached:
+        if name not in robot.all_link_names:
+            raise InvalidInputError(
+                f"in the scene, link '{link}' carries '{name}', which robot '{robot.name}' does not: "
+                "use scene.attach_to(robot)"
+            )
+
+
 def attached_to(robot: Robot, attached: Iterable[Attached]) -> Robot:
     """Returns a copy of the robot that carries the objects.
 

@@ -13,10 +13,10 @@
     0               number of its subframes, each with a line for its name and two for its pose
     .               the end
 
-The older format (before ROS Noetic) lacks the pose and the subframes of objects. As in MoveIt, it is recognised by the line
-behind the first object, which holds a single number. Sizes: box x y z; sphere radius; cylinder and cone radius length; mesh,
-the numbers of vertices and triangles, then these. Source: `saveGeometryToStream` of moveit_core, `saveAsText` of
-geometric_shapes.
+The older format (before ROS Noetic) lacks the pose and the subframes of objects. As in MoveIt, it is recognised by the
+line behind the first object, which holds a single number. Sizes: box x y z; sphere radius; cylinder and cone radius
+length; mesh, the numbers of vertices and triangles, then these. Source: `saveGeometryToStream` of moveit_core,
+`saveAsText` of geometric_shapes.
 """
 
 import numpy as np
@@ -49,8 +49,8 @@ def rviz_obstacles(where: str, text: str, place: NDArray[np.float64]) -> list[Ob
     while (marker := words.word("'*' and the name of an object, or '.' at the end")) == "*":
         name = words.rest("the name of an object")
         at = place @ words.pose(f"object '{name}'") if posed else place
-        for number in range(words.count(f"the number of shapes of object '{name}'")):
-            found.append(_shape(words, f"shape {number} of object '{name}'", at))
+        shapes = range(words.count(f"the number of shapes of object '{name}'"))
+        found += [_shape(words, f"shape {number} of object '{name}'", at) for number in shapes]
         for _ in range(words.count(f"the number of subframes of object '{name}'") if posed else 0):
             subframe = words.word(f"the name of a subframe of object '{name}'")
             words.pose(f"subframe '{subframe}' of object '{name}'")
@@ -66,8 +66,8 @@ def _shape(words: "_Words", what: str, at: NDArray[np.float64]) -> Obstacle:
     line = words.line
     if kind == "mesh":
         counts = [words.count(f"the number of {parts} of {what}") for parts in ("vertices", "triangles")]
-        vertices = np.reshape(words.numbers(3 * counts[0], f"the vertices (x y z) of {what}"), (-1, 3))
-        faces = np.reshape(words.numbers(3 * counts[1], f"the triangles (three vertices) of {what}"), (-1, 3))
+        vertices = np.array([words.numbers(3, f"vertex {i} (x y z) of {what}") for i in range(counts[0])])
+        faces = np.array([words.numbers(3, f"triangle {i} (three vertices) of {what}") for i in range(counts[1])])
         sizes: list[float] = []
     elif kind in _SIZES:
         sizes = words.numbers(len(_SIZES[kind].split()), f"the sizes ({_SIZES[kind]}) of {what}, a {kind}")
@@ -79,7 +79,7 @@ def _shape(words: "_Words", what: str, at: NDArray[np.float64]) -> Obstacle:
     words.numbers(4, f"the colour (r g b a) of {what}")
     try:
         if kind == "mesh":
-            return obstacles.Mesh(vertices @ at[:3, :3].T + at[:3, 3], faces)
+            return obstacles.Mesh(vertices.reshape(-1, 3) @ at[:3, :3].T + at[:3, 3], faces.reshape(-1, 3))
         return solid(kind, sizes[::-1] if kind in ("cylinder", "cone") else sizes, at)
     except BeetleIkError as error:
         raise words.error(f"{what}: {error}", line) from error
@@ -89,6 +89,7 @@ class _Words:
     """Words of a text, read one by one, with the lines they are in."""
 
     def __init__(self, where: str, text: str) -> None:
+        """Begins before the first word."""
         self._where = where
         self._lines = text.lstrip("\ufeff").splitlines()
         self._next = 0
@@ -132,15 +133,16 @@ class _Words:
         return word
 
     def numbers(self, count: int, what: str) -> list[float]:
-        """Returns this many numbers."""
-        found = []
-        for _ in range(count):
-            word = self.word(what)
-            try:
-                found.append(float(word))
-            except ValueError:
-                raise self.wrong(what, word) from None
-        return found
+        """Returns the numbers of the line, which must be this many."""
+        found = [self.word(what), *self._words]
+        self._words = []
+        try:
+            numbers = [float(word) for word in found]
+        except ValueError:
+            numbers = []
+        if len(numbers) != count:
+            raise self.wrong(what, " ".join(found))
+        return numbers
 
     def count(self, what: str) -> int:
         """Returns a whole number."""

@@ -15,7 +15,8 @@ _SIDES = 64  # of the hull around a cone
 def solid(shape: str, sizes: Sequence[float], at: NDArray[np.float64]) -> Obstacle:
     """Returns a primitive at the pose `at` (4, 4): a box (x, y, z), sphere (radius), cylinder or cone (height, radius).
 
-    A cone, its tip on the positive z axis and its origin halfway up, becomes the hull of a pyramid around it, wider by 0.12 %.
+    A cone, its tip on the positive z axis and its origin halfway up, becomes the hull of a pyramid around it, wider by
+    0.12 %.
 
     Raises:
         InvalidInputError: another shape, or another number of sizes.
