@@ -83,7 +83,7 @@ def test_each_point_goes_by_its_clearance() -> None:
     left = bik.obstacles.PointCloud(points, 0.01).without_robot(robot, Q, padding=0.02)
     each = [bik.obstacles.clearance(robot, Q, [bik.obstacles.PointCloud([point], 0.01)]) for point in points]
     np.testing.assert_array_equal(left.points, points[np.array(each) > 0.02])
-    assert 50 < left.removed < 350
+    assert 20 < left.removed < 380
     assert bik.obstacles.clearance(robot, Q, [left]) > 0.02
 
 
@@ -172,7 +172,7 @@ def test_calls_that_begin_in_a_cloud_name_the_remedy(kind: str, remedy: str) -> 
 
 
 def test_a_cloud_at_the_end_alone_may_be_real() -> None:
-    seen = [at_the_arm("cloud")]
+    seen = [bik.obstacles.PointCloud(PANDA.all_link_poses(Q)[6:, :3, 3], 0.01)]
     away = Q * [-1, 1, 1, 1, 1, 1, 1]
     assert bik.obstacles.clearance(PANDA, away, seen) > 0.0
     said = message(lambda: bik.plan_point_to_point(PANDA, start_q=away, end_q=Q, limits=LIMITS, obstacles=seen))

@@ -287,7 +287,7 @@ def test_the_objects_of_a_moveit_scene_keep_their_places(tmp_path: Path) -> None
         ),
         (
             "world:",
-            "world:\n  octomap: {octomap: {data: [1]}}",
+            "world:\n  octomap: {header: {frame_id: base}, octomap: {data: [1]}}",
             "octomap: expected the fields binary, id, resolution and data (bytes), got KeyError('binary')",
         ),
         ("mesh_poses:", "places:", 'object \'can\': "meshes" and "mesh_poses" must be lists of one length'),
