@@ -243,6 +243,8 @@ def test_scenes_with_attached_objects_are_kept(tmp_path: Path) -> None:
         assert again.attached == scene.attached
         assert again != bik.Scene(list(scene))
     assert "attached=[('link_7', obstacles.Box(" in repr(scene)
+    with pytest.raises(bik.InvalidInputError, match="two attached objects are called 'part'"):
+        _ = scene + scene
 
 
 @pytest.mark.parametrize(

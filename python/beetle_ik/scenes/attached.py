@@ -28,19 +28,25 @@ class Attached(NamedTuple):
     name: str
 
 
-def checked(attached: Iterable[Attached]) -> tuple[Attached, ...]:
-    """Returns attached objects as a tuple.
+def checked(attached: Iterable[Attached], before: tuple[Attached, ...] = ()) -> tuple[Attached, ...]:
+    """Returns attached objects as a tuple, behind those that were checked before.
 
     Raises:
         InvalidInputError: an entry is no (link, shape, touch, name), or a name is used twice.
     """
+    try:
+        given = tuple(attached)
+    except TypeError:
+        form = "a list of (link, shape, touch, name)"
+        raise InvalidInputError(f"attached must be {form}, got {attached!r:.60}") from None
     entries = []
-    for i, entry in enumerate(attached):
+    for i, entry in enumerate(given):
         match entry:
             case (str(link), Obstacle() as shape, (list() | tuple()) as touch, str(name)):
                 entries.append(Attached(link, shape, tuple(touch), name))
             case _:
                 raise InvalidInputError(f"attached {i} must be (link, shape, touch, name), got {entry!r:.60}")
+    entries = [*before, *entries]
     names = [entry.name for entry in entries]
     if twice := [name for name in names if names.count(name) > 1]:
         raise InvalidInputError(f"two attached objects are called '{twice[0]}'")

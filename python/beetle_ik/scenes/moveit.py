@@ -132,7 +132,7 @@ def _shape(kind: str, item: Any, at: NDArray[np.float64]) -> Obstacle:
     if kind == "planes":
         raise two_sided()
     given = item["type"]
-    shape = _PRIMITIVES.get(given, given) if isinstance(given, int) else str(given).lower()
+    shape = _PRIMITIVES.get(given, str(given)) if isinstance(given, int) else str(given).lower()
     return solid(shape, [float(size) for size in item["dimensions"]], at)
 
 

@@ -54,8 +54,9 @@ def read_octomap(
     Raises:
         InvalidInputError: not such a file; the message names it.
     """
-    where, content = os.fspath(file), path_of(file).read_bytes()
-    return _grid(where, _tree(where, content), np.eye(4) if frame is None else rigid(frame), _corners(region))
+    path, where = path_of(file), os.fspath(file)
+    place, corners = np.eye(4) if frame is None else rigid(frame), _corners(region)
+    return _grid(where, _tree(where, path.read_bytes()), place, corners)
 
 
 def octomap_message(where: str, message: Any, at: NDArray[np.float64]) -> list[Obstacle]:

@@ -6,14 +6,13 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
-from .._core import InvalidInputError, Obstacle, PreparedObstacles
+from .._core import InvalidInputError, Obstacle, PreparedObstacles, Robot
+from ..calls.arguments import require
 from ..calls.wording import worded_call
 from .attached import Attached, attached_to, checked, require_carried
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from .._core import Robot
 
 _WRITTEN_OUT = 8  # a longer scene is represented by its length
 
@@ -54,7 +53,7 @@ class Scene(Sequence[Obstacle]):
                 made = "must be made by bik.obstacles, such as Sphere or Box"
                 raise InvalidInputError(f"obstacle {i} {made}, got {obstacle!r:.60}")
         self._obstacles = given
-        self._attached = checked((*getattr(obstacles, "attached", ()), *attached))
+        self._attached = checked(attached, obstacles.attached if isinstance(obstacles, Scene) else ())
         # Read by calls of the core.
         self._prepared = PreparedObstacles(given, [[entry.link, entry.name] for entry in self._attached])
 
@@ -75,6 +74,7 @@ class Scene(Sequence[Obstacle]):
             InvalidInputError: an object that the robot cannot carry, such as one on a link that it does not have; the
                 message names it.
         """
+        require("robot", robot, Robot)
         return attached_to(robot, self._attached)
 
     @classmethod
