@@ -160,6 +160,7 @@ def test_calls_that_begin_in_a_cloud_name_the_remedy(kind: str, remedy: str) -> 
         "plan, free_start": lambda: bik.plan_point_to_point(PANDA, **plan, free_start=True),
         "solve": lambda: bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=seen),
         "solve, end": lambda: bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=seen, prefer="nearest"),
+        "solve_batch": lambda: bik.solve_batch(PANDA, PANDA.fk(Q)[None], starts=Q, obstacles=seen),
         "solve_all": lambda: bik.solve_all(PANDA, PANDA.fk(Q), start=Q, obstacles=seen),
         "along a path": lambda: bik.plan_along_path(PANDA, line, start_q=Q, limits=LIMITS, obstacles=seen),
         "track": lambda: bik.track(PANDA, line, Q, dt=0.1, obstacles=seen),

@@ -9,7 +9,8 @@ use ikcore::shape::{Geometry, Shape};
 /// Arms with capsules, with solids and what they carry, on a mobile base, and far from the origin.
 fn robots() -> Vec<Robot> {
     let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
-    let carry = |robot: &Robot, shape: Shape, name: &str| robot.with_attached("flange", &shape, &[], Some(name)).unwrap();
+    let carry =
+        |robot: &Robot, shape: Shape, name: &str| robot.with_attached("flange", &shape, &[], Some(name)).unwrap();
     let part = Shape::cuboid([0.0, 0.0, 0.1], [0.05, 0.3, 0.05], None).unwrap();
     let can = Shape::cylinder([0.1, 0.0, 0.1], [1.0, 0.2, 0.0], 0.05, 0.2).unwrap();
     let egg = Shape::ellipsoid([0.0, 0.2, 0.1], [0.05, 0.1, 0.15], None).unwrap();

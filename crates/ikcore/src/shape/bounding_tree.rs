@@ -110,12 +110,7 @@ impl<L> BoundingTree<L> {
 
     /// Returns the tree of some of the pieces, in the same leaves, which takes a fraction of the time of a new tree. `numbers`
     /// has the new index of each piece, or [`NONE`]; `box_of` and `lanes_of` take new indices.
-    pub fn of_some(
-        &self,
-        numbers: &[u32],
-        box_of: impl Fn(usize) -> Aabb,
-        lanes_of: impl Fn([usize; 4]) -> L,
-    ) -> Self {
+    pub fn of_some(&self, numbers: &[u32], box_of: impl Fn(usize) -> Aabb, lanes_of: impl Fn([usize; 4]) -> L) -> Self {
         if self.root & LEAF != 0 {
             let kept = numbers.iter().filter(|number| **number != NONE).count();
             return Self::new(&(0..kept).map(box_of).collect::<Vec<_>>(), lanes_of);

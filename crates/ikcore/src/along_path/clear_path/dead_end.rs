@@ -41,12 +41,7 @@ impl Layers<'_> {
     }
 
     /// Names the obstruction at a point without a clear posture.
-    fn blocked(
-        &self,
-        passage: &Passage<'_>,
-        space: &ClearSpace<'_>,
-        layer: usize,
-    ) -> (String, Option<Measured>) {
+    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> (String, Option<Measured>) {
         let tip_path = passage.problem.tip_path;
         let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
         let said = |contact: &Contact| contact.in_words(space.margin());
@@ -60,7 +55,9 @@ impl Layers<'_> {
             Some(Blocked::Hand(contact)) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(&contact))
             }
-            Some(Blocked::Base(contact)) if own_points.is_some() => format!("{}, and no joint moves it", said(&contact)),
+            Some(Blocked::Base(contact)) if own_points.is_some() => {
+                format!("{}, and no joint moves it", said(&contact))
+            }
             Some(Blocked::Base(contact)) => {
                 format!("{}, and no joint moves it; {}", said(&contact), contact.remedy())
             }
