@@ -15,7 +15,7 @@ from .attached import Attached, carried
 from .frames import frame_of, placed_frames, rigid
 from .octomap import octomap_message
 from .rviz import is_rviz_text, rviz_obstacles
-from .solids import solid, two_sided
+from .solids import moved, solid, two_sided
 
 _PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # types of shape_msgs/SolidPrimitive
 _LISTS = (("primitives", "primitive_poses"), ("meshes", "mesh_poses"), ("planes", "plane_poses"))
@@ -128,7 +128,7 @@ def _shape(kind: str, item: Any, at: NDArray[np.float64]) -> Obstacle:
             raise InvalidInputError("a mesh without vertices; files of meshes are not read: load them by trimesh")
         vertices = np.array([_numbers(vertex, "xyz") for vertex in item["vertices"]])
         faces = [_get(face, "vertex_indices", face) for face in item["triangles"]]
-        return obstacles.Mesh(vertices @ at[:3, :3].T + at[:3, 3], faces)
+        return obstacles.Mesh(moved(vertices, at), faces)
     if kind == "planes":
         raise two_sided()
     given = item["type"]

@@ -191,7 +191,8 @@ def _grid(where: str, tree: _Tree, place: NDArray[np.float64], corners: NDArray[
     leaves = _leaves(where, tree)
     low, high = leaves[:, :3], leaves[:, :3] + leaves[:, 3:]
     if corners is not None:
-        bounds = np.clip(corners / resolution + 2 ** (_DEPTH - 1), 0, 2**_DEPTH)
+        with np.errstate(over="ignore"):
+            bounds = np.clip(corners / resolution + 2 ** (_DEPTH - 1), 0, 2**_DEPTH)
         low, high = np.maximum(low, np.floor(bounds[0])), np.minimum(high, np.ceil(bounds[1]))
     meets = (low < high).all(axis=1)
     low, high = low[meets].astype(np.int64), high[meets].astype(np.int64)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle, pose
-from .solids import READ, solid
+from .solids import READ, moved, solid
 
 _SIZES = {"box": "x y z", "sphere": "radius", "cylinder": "radius length", "cone": "radius length"}
 _MOST = 10_000_000  # vertices or triangles of a mesh
@@ -79,7 +79,7 @@ def _shape(words: "_Words", what: str, at: NDArray[np.float64]) -> Obstacle:
     words.numbers(4, f"the colour (r g b a) of {what}")
     try:
         if kind == "mesh":
-            return obstacles.Mesh(vertices.reshape(-1, 3) @ at[:3, :3].T + at[:3, 3], faces.reshape(-1, 3))
+            return obstacles.Mesh(moved(vertices.reshape(-1, 3), at), faces.reshape(-1, 3))
         return solid(kind, sizes[::-1] if kind in ("cylinder", "cone") else sizes, at)
     except BeetleIkError as error:
         raise words.error(f"{what}: {error}", line) from error

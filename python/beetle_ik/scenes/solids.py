@@ -32,12 +32,18 @@ def solid(shape: str, sizes: Sequence[float], at: NDArray[np.float64]) -> Obstac
             angle = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
             rim = radius / np.cos(np.pi / _SIDES) * np.array([np.cos(angle), np.sin(angle)]).T
             corners = np.vstack([np.c_[rim, np.full(_SIDES, -0.5 * height)], [0.0, 0.0, 0.5 * height]])
-            return obstacles.ConvexMesh(corners @ at[:3, :3].T + at[:3, 3])
+            return obstacles.ConvexMesh(moved(corners, at))
         case (("box" | "sphere" | "cylinder" | "cone"), _):
             raise InvalidInputError(f"a {shape} with {len(sizes)} dimensions")
         case ("plane", _):
             raise two_sided()
     raise InvalidInputError(f"a primitive of type {shape!r:.60}; those that can be read: {READ}")
+
+
+def moved(points: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns points (k, 3) moved by a pose (4, 4). Numbers that overflow are for the obstacle to refuse."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return points @ at[:3, :3].T + at[:3, 3]
 
 
 def two_sided() -> InvalidInputError:
