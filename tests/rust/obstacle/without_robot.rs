@@ -110,7 +110,7 @@ fn voxels_go_if_their_clearance_is_at_most_the_padding() {
         let origin: [f64; 3] = (robot.base().translation.vector.add_scalar(-0.8)).into();
         for voxel in [0.1, 0.2, 0.37] {
             let counts_along = [(1.6 / voxel) as usize; 3];
-            let total = counts_along.iter().product();
+            let total: usize = counts_along.iter().product();
             let occupied: Vec<bool> = (0..total).map(|_| rng.uniform() < 0.3).collect();
             let grid = Obstacle::from(Shape::grid(origin, voxel, counts_along, occupied.clone()).unwrap());
             let q = robot.random_configurations(1, &mut rng).unwrap();

@@ -29,9 +29,19 @@ pub struct Step {
 }
 
 impl Step {
-    /// Returns a sentence on the outcome, with advice. An arm that is in collision with what a sensor measured is probably in it
-    /// itself: `nearest` is its nearest contact.
-    pub fn message(&self, nearest: Option<&Contact>) -> Message {
+    /// Returns a sentence on the outcome, with advice.
+    pub fn message(&self) -> Message {
+        self.message_with(self.status.advice())
+    }
+
+    /// Returns [`message`](Self::message), where the nearest contact is known. An arm that is in collision with what a sensor measured
+    /// is probably in it itself.
+    pub fn message_near(&self, nearest: &Contact) -> Message {
+        let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
+        self.message_with(measured.map_or_else(|| self.status.advice(), Measured::advice))
+    }
+
+    fn message_with(&self, advice: Message) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         let how = match self.status {
@@ -42,8 +52,6 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        let measured = nearest.filter(|_| self.status == Status::InCollision).and_then(Contact::measured);
-        let advice = measured.map_or_else(|| self.status.advice(), Measured::advice);
         message![format!("{how}, {error} away{limits}: "), advice]
     }
 }
