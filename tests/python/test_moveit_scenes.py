@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -319,6 +320,9 @@ def test_the_octomap_of_a_scene_becomes_a_grid(tmp_path: Path) -> None:
     text = f"world: {{octomap: {{header: {{frame_id: world}}, origin: {at}, octomap: {octomap}}}}}\n"
     (grid,) = read(tmp_path, text, "scene.yaml")
     assert grid == bik.obstacles.Grid((1, 2, 3), 0.1, [[[True]]])
+    nodes = b"".join(struct.pack("<fB", 0.85, mask) for mask in [0x80] + [0x01] * 15 + [0])
+    whole = text.replace("binary: true", "binary: false").replace(str(data), str(list(nodes)))
+    assert list(read(tmp_path, whole, "scene.yaml")) == [grid]
     for new, problem in (
         (text.replace("OcTree", "Stamped"), "octomap: a tree of the kind 'Stamped'; those that can be read: OcTree"),
         (text.replace(f"data: {data}", f"data: {data[:-1]}"), "octomap: the nodes end early"),
