@@ -180,6 +180,6 @@ def test_a_cloud_at_the_end_alone_may_be_real() -> None:
     assert said.startswith("end: link 'link_")
     assert "without_robot" not in said
     either = bik.solve(PANDA, PANDA.fk(Q), start=away, obstacles=[bik.obstacles.PointCloud([PANDA.fk(Q)[:3, 3]], 0.05)])
-    assert f"{OWN_POINTS}; if there are none, move the target" in either.message
+    assert f"{OWN_POINTS}; if there are none, choose another target" in either.message
     boxed = bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=[bik.obstacles.Sphere(PANDA.fk(Q)[:3, 3], 0.05)])
     assert "without_robot" not in boxed.message

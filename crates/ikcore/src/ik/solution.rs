@@ -143,7 +143,10 @@ impl SolveReport {
         let nearest = self.nearest.as_ref().and_then(|nearest| nearest.clearance.nearest.as_ref());
         match (self.own_points, nearest.and_then(|nearest| nearest.contact.measured())) {
             (Some(measured), _) => measured.advice(),
-            (None, Some(measured)) => message![measured.advice(), "; if there are none, ", self.status.advice()],
+            (None, Some(measured)) => message![
+                measured.advice(),
+                "; if there are none, choose another target, clear what is in the way, or lower the margin"
+            ],
             (None, None) => self.status.advice(),
         }
     }
