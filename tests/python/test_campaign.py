@@ -149,6 +149,10 @@ SPOILED = {
         "ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]",
         "the clearance of a tick is above the true one",
     ),
+    "own_points": (
+        "kept = kept[1:]\nremoved += 1",
+        "a point is kept, or taken out, against the padding",
+    ),
     "urdf": (
         "pose = pose * nan",
         "a robot was read whose poses are not finite",

@@ -132,7 +132,9 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.with_srdf": {"path_or_xml": "<robot/>"},
     "Robot.with_tool": {"tool": np.eye(4)},
     "Scene.": {".": bik.Scene()},
+    "Scene.attach_to": {"robot": ARM},
     "Scene.from_moveit": {"file": "scene.yaml"},
+    "Scene.from_octomap": {"file": "map.bt"},
     "Scene.from_trimesh": {"geometry": SimpleNamespace(vertices=np.eye(3), faces=[[0, 1, 2]], is_watertight=False)},
     "Scene.load": {"file": "scene.json"},
     "Scene.save": {"file": "saved.json"},
@@ -165,6 +167,8 @@ NEEDED: dict[str, dict[str, Any]] = {
     "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.papers.BAS(), **QUICK},
+    "obstacles.Grid.without_robot": {".": bik.obstacles.Grid((9, 9, 9), 0.1, [[[True]]]), "robot": ARM, "q": START},
+    "obstacles.PointCloud.without_robot": {".": bik.obstacles.PointCloud([(9, 9, 9)], 0.1), "robot": ARM, "q": START},
     "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
     "obstacles.Capsule": {"a": (0, 0, 0), "b": (1, 0, 0), "radius": 0.1},
     "obstacles.ConvexMesh": {"points": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]},
@@ -290,6 +294,7 @@ def _with_one_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     MAP.to_npz("reached.npz")
     bik.Scene().save("scene.json")
     Path("scene.yaml").write_text("world: {}")
+    Path("map.bt").write_text("# Octomap OcTree binary file\nid OcTree\nsize 0\nres 0.1\ndata\n")
 
 
 def refusal(call: Callable[..., object], arguments: dict[str, Any]) -> str | None:

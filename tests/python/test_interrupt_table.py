@@ -97,6 +97,8 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "obstacles.Grid": lambda: occupied(300),
         "obstacles.Mesh": lambda: soup(1_000_000),
         "obstacles.PointCloud": lambda: cloud(3_000_000),
+        "obstacles.PointCloud.without_robot": lambda: without_robot(cloud(1_000_000)()),
+        "obstacles.Grid.without_robot": lambda: without_robot(occupied(200)()),
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
@@ -217,6 +219,10 @@ def cloud(count: int) -> Callable[[], object]:
     return lambda: bik.obstacles.PointCloud(points, 0.01)
 
 
+def without_robot(seen: object) -> Callable[[], object]:
+    return lambda: [seen.without_robot(CAPSULES, np.zeros(CAPSULES.dof), padding=1.0) for _ in range(20)]
+
+
 def posed(count: int) -> Callable[[], object]:
     time, poses = np.arange(count) * 1e-3, np.tile(np.eye(4), (count, 1, 1))
     poses[:, 0, 3] = time
@@ -283,7 +289,7 @@ SHORT: dict[str, str] = {
     **dict.fromkeys(
         [
             "Robot.from_mjcf", "Robot.from_description", "Scene", "Scene.load", "Scene.save", "Scene.from_moveit",
-            "Scene.from_trimesh",
+            "Scene.from_trimesh", "Scene.from_octomap", "Scene.attach_to",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
             "Trajectory.from_csv", "plot.animation", "plot.calibration", "plot.model_free", "plot.plan", "plot.robot",
             "plot.saturation",

@@ -71,6 +71,7 @@ mod motion {
 mod obstacle {
     mod allowed_contacts;
     mod scene;
+    mod without_robot;
 }
 mod path {
     mod curves;

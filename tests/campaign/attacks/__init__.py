@@ -10,6 +10,7 @@ from . import (
     command_line,
     kinematics,
     motion,
+    own_points,
     readers,
     round_poses,
     searching,
@@ -21,8 +22,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calibration, calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, own_points, readers),
+    *(xacro_files, calibration, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

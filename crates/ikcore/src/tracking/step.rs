@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::message::{Message, message};
+use crate::obstacle::{Contact, Measured};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -30,6 +31,17 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> Message {
+        self.message_with(self.status.advice())
+    }
+
+    /// Returns [`message`](Self::message), where the nearest contact is known. An arm that is in collision with what a sensor measured
+    /// is probably in it itself.
+    pub fn message_near(&self, nearest: &Contact) -> Message {
+        let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
+        self.message_with(measured.map_or_else(|| self.status.advice(), Measured::advice))
+    }
+
+    fn message_with(&self, advice: Message) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         let how = match self.status {
@@ -40,6 +52,6 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
+        message![format!("{how}, {error} away{limits}: "), advice]
     }
 }

@@ -148,8 +148,8 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message();
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        let message = nearest.map_or_else(|| self.core.message(), |nearest| self.core.message_near(&nearest.contact));
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;
