@@ -239,7 +239,7 @@ pub fn solve(
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;
     let surroundings = options.surroundings;
-    let around = (surroundings.is_given() && core.nearest.is_none())
+    let around = (surroundings.apply_to(&robot.core) && core.nearest.is_none())
         .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));
     Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
 }

@@ -30,6 +30,11 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> Message {
+        self.message_with(self.status.advice())
+    }
+
+    /// Returns [`message`](Self::message) with this `advice`, where one is given.
+    pub fn message_with(&self, advice: impl Into<Message>) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         let how = match self.status {
@@ -40,6 +45,6 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
+        message![format!("{how}, {error} away{limits}: "), advice]
     }
 }

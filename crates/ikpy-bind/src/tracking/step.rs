@@ -41,6 +41,8 @@ pub struct PyStep {
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
+    /// Names the joints that limits of zero lock.
+    lock: Option<Arc<Message>>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
     around: OnceLock<Option<Clearance>>,
 }
@@ -111,17 +113,25 @@ impl PyStep {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
+        let lock = self.lock.as_deref().map(said);
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None))]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None))]
+    fn _restore(
+        py: Python<'_>,
+        bytes: &[u8],
+        limits: Py<PyLimits>,
+        tips: Option<&[u8]>,
+        lock: Option<String>,
+    ) -> PyResult<Self> {
         let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
-        Ok(Self { around: OnceLock::from(around), ..step })
+        let lock = lock.map(|lock| Arc::new(lock.into()));
+        Ok(Self { around: OnceLock::from(around), lock, ..step })
     }
 }
 
@@ -129,7 +139,7 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, lock: None, around: OnceLock::new() }
     }
 
     /// Adds the errors by tip.
@@ -142,13 +152,21 @@ impl PyStep {
         Self { among: space.map(|space| (space, q)), ..self }
     }
 
+    /// Adds the joints that limits of zero lock.
+    pub fn of_locked(self, lock: Option<Arc<Message>>) -> Self {
+        Self { lock, ..self }
+    }
+
     fn around(&self) -> &Option<Clearance> {
         self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.clearance(q)))
     }
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message();
+        let message = match &self.lock {
+            Some(lock) => self.core.message_with(&**lock),
+            None => self.core.message(),
+        };
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {

@@ -177,9 +177,10 @@ impl PyTracker {
             *self.keys() = keys;
         }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
-        let (space, q) = (session.space().cloned(), session.q().to_vec());
+        let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
+        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
+        Ok(step.among(space, q).of_tips(tips).of_locked(lock))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
