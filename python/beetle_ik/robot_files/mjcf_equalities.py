@@ -53,6 +53,8 @@ class Equalities:
 
     def open_in(self, robot: Robot) -> Iterator[Open]:
         """Yields the equalities that configurations of the robot do not keep."""
+        if not self.active:
+            return
         mujoco, model, data = self.mujoco, self.model, self.mujoco.MjData(self.model)
         residuals: dict[int, float] = {}
         touched: dict[int, set[int]] = {}
@@ -74,7 +76,8 @@ class Equalities:
     def _jacobian(self, data: Any) -> Any:
         rows, dofs = data.nefc, self.model.nv
         if not self.mujoco.mj_isSparse(self.model):
-            return np.reshape(data.efc_J, (rows, dofs))
+            # MuJoCo leaves out rows of zeros, and keeps room for them.
+            return np.reshape(np.ravel(data.efc_J)[: rows * dofs], (rows, dofs))
         dense = np.zeros((rows, dofs))
         self.mujoco.mju_sparse2dense(
             dense, np.ravel(data.efc_J), data.efc_J_rownnz, data.efc_J_rowadr, np.ravel(data.efc_J_colind)

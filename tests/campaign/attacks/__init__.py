@@ -7,6 +7,7 @@ from . import (
     calls,
     clearance,
     command_line,
+    described,
     kinematics,
     motion,
     readers,
@@ -21,7 +22,7 @@ from . import (
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line),
+    *(described, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -87,3 +87,55 @@ impl Limits {
         self.field(field).map_or(value == f64::INFINITY, |profiles| profiles[j] == Profile::Constant(value))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    fn given(field: Field, values: &[f64]) -> Limits {
+        let profiles = values.iter().map(|value| Profile::Constant(*value)).collect();
+        Limits::none_for(values.len()).replace(field, profiles).unwrap()
+    }
+
+    #[test]
+    fn any_rate_sets_the_pace_of_a_joint() {
+        let free = f64::INFINITY;
+        for field in RATES {
+            assert!(given(field, &[1.0, 2.0]).require_pace().is_ok());
+            let says = "joint '1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give a velocity \
+                        limit";
+            assert_eq!(given(field, &[1.0, free]).require_pace().unwrap_err().to_string(), says);
+        }
+    }
+
+    #[test]
+    fn infinite_velocities_are_a_consent_only_if_given() {
+        let arm = Robot::planar(&[1.0, 1.0]).unwrap();
+        let own = Limits::of(&arm);
+        let says = "joints 'joint_1', 'joint_2' have neither a velocity nor an acceleration limit, so that nothing sets their pace: \
+                    give a velocity limit, infinite where a joint may jump to any position in one tick";
+        assert_eq!(own.require_pace_or_consent().unwrap_err().to_string(), says);
+        let narrower = own.clone().replace(Field::Lower, vec![Profile::Constant(-1.0)]).unwrap();
+        assert_eq!(narrower.require_pace_or_consent().unwrap_err().to_string(), says);
+        let consented = own.replace(Field::Velocity, vec![Profile::Constant(f64::INFINITY)]).unwrap();
+        assert!(consented.require_pace_or_consent().is_ok());
+        assert!(consented.require_pace().is_err());
+    }
+
+    #[test]
+    fn a_lock_names_its_joints_field_and_source() {
+        assert_eq!(given(Field::Jerk, &[1.0, 2.0]).lock(), None);
+        let lock = given(Field::Acceleration, &[0.0, 2.0, -0.0]).lock().unwrap();
+        assert_eq!(
+            lock,
+            "joints '0', '2' cannot move, since the acceleration limit as given is 0: give an acceleration limit"
+        );
+        let cad = Robot::planar(&[1.0]).unwrap().with_limits(|_, joint| joint.velocity = 0.0).unwrap();
+        let lock = Limits::of(&cad).lock().unwrap();
+        assert_eq!(
+            lock,
+            "joint 'joint_1' cannot move, since the velocity limit in the robot's description is 0: give a velocity limit"
+        );
+    }
+}

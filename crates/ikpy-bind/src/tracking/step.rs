@@ -94,13 +94,13 @@ impl PyStep {
     }
 
     /// Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
-    /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    /// NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
         self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
-    /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    /// The nearest two bodies at `q`, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
         self.around().as_ref()?.nearest.clone().map(PyNearest::from)

@@ -37,7 +37,8 @@ use crate::traversal::traversed;
 ///     dt: time step (s).
 ///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
-///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
 ///     goals: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.

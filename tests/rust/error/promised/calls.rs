@@ -30,7 +30,7 @@ pub fn calls() -> Vec<Row> {
         MapGrid::new(robot, &MapLayout { voxel, region, directions: 20, rolls: 4 }, &MapOptions::default())
     };
     let model_free = ModelFreeOptions { controller: Controller::Znnbas(Znnbas::default()), ..Default::default() };
-    let options = TrackOptions::default();
+    let options = TrackOptions { limits: jumping(&two()), ..TrackOptions::default() };
     promises! {
         "solve_batch" InRow: batch(&[[1.0, 0.5, 0.0], [NAN; 3]]), "row 1: target must be finite, but coordinate x is NaN";
         "solve_all" Contradiction: solve_all(&two(), &position, &turns, &mut Unattended), "taking all whole turns makes 202566 configurations; at most 10000 are allowed: narrow the limits";

@@ -45,7 +45,8 @@ pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
     }
 }
 
-/// Checks that a revolute or prismatic joint that moves has an element `limit`, as URDF requires.
+/// Checks that an independent revolute or prismatic joint has an element `limit`, as URDF requires. Followers have the limits of their
+/// masters.
 ///
 /// # Errors
 /// [`Error::Urdf`](crate::Error::Urdf) with the line of the joint.
