@@ -201,8 +201,8 @@ def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve:
 def test_an_arm_without_speeds_is_told_the_option() -> None:
     joints = ", ".join(f"'joint_{i}'" for i in range(1, 6))
     assert refused(*TRACK) == (
-        f"Error: joints {joints} have neither a velocity nor an acceleration limit, so that nothing sets their pace: give "
-        "--velocity-limit, infinite where a joint may jump to any position in one tick"
+        f"Error: joints {joints} have neither a velocity nor an acceleration limit, so that nothing sets their pace: "
+        "give --velocity-limit, infinite where a joint may jump to any position in one tick"
     )
 
 

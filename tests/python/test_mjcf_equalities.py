@@ -18,8 +18,8 @@ def arm(equality: str = "", *, head: str = "", scene: str = "", tendon: str = ""
     """Returns an arm of five joints with a gripper of two fingers, which meet at their reference positions."""
     axes = {"a": "0 0 1", "b": "0 1 0", "c": "0 1 0", "d": "1 0 0", "e": "1 1 0"}
     bodies = "".join(
-        f"<body name='body_{name}' pos='0 0.02 0.3'><joint name='{name}' axis='{axis}' range='-2 2' ref='{RESTS[name]}'/>"
-        "<geom size='.02'/>"
+        f"<body name='body_{name}' pos='0 0.02 0.3'>"
+        f"<joint name='{name}' axis='{axis}' range='-2 2' ref='{RESTS[name]}'/><geom size='.02'/>"
         for name, axis in axes.items()
     )
     fingers = (
@@ -29,9 +29,9 @@ def arm(equality: str = "", *, head: str = "", scene: str = "", tendon: str = ""
         "<site name='right_end' pos='0 .1 .1'/><site name='apart' pos='0 0 .1'/></body>"
     )
     return (
-        f"<mujoco model='arm'><compiler angle='radian' autolimits='true'/>{head}<worldbody><site name='anchor' pos='1 0 0'/>"
-        f"{bodies}<site name='tool' pos='0 0 .1'/>{fingers}{'</body>' * len(axes)}{scene}</worldbody>{tendon}"
-        f"<equality>{equality}</equality></mujoco>"
+        f"<mujoco model='arm'><compiler angle='radian' autolimits='true'/>{head}<worldbody>"
+        f"<site name='anchor' pos='1 0 0'/>{bodies}<site name='tool' pos='0 0 .1'/>{fingers}"
+        f"{'</body>' * len(axes)}{scene}</worldbody>{tendon}<equality>{equality}</equality></mujoco>"
     )
 
 
@@ -49,21 +49,21 @@ TENDONS = (
 FREE_BODY = "<body name='part' pos='1 0 0'><freejoint/><geom size='.01'/></body>"
 HAND_TARGET = "<body name='hand_target' mocap='true' pos='1 0 0'/>"
 
-# What is followed: the model, the joints that stay independent, and the positions of others (a formula of q by name).
+# What is followed: the model, the joints that stay independent, and the positions of others (a number, or a formula of q).
 FOLLOWED: dict[str, tuple[str, str, dict[str, Any]]] = {
-    "a lock": (arm(joint("b", "0.25 0 0 0 0")), "acde", {"b": lambda q: 0.3 + 0.25}),
-    "a lock by a factor of zero": (arm(joint("b", "0.25 0 0 0 0", "c")), "acde", {"b": lambda q: 0.55}),
-    "a weld of one joint": (arm("<weld body1='body_d' body2='body_c'/>"), "abce", {"d": lambda q: -0.2}),
+    "a lock": (arm(joint("b", "0.25 0 0 0 0")), "acde", {"b": 0.3 + 0.25}),
+    "a lock by a factor of zero": (arm(joint("b", "0.25 0 0 0 0", "c")), "acde", {"b": 0.55}),
+    "a weld of one joint": (arm("<weld body1='body_d' body2='body_c'/>"), "abce", {"d": -0.2}),
     "a line": (arm(joint("d", "0.1 0.5 0 0 0", "b")), "abce", {"d": lambda q: -0.2 + 0.1 + 0.5 * (q["b"] - 0.3)}),
     "a follower of a locked joint": (
         arm(joint("d", "0 2 0 0 0", "b") + joint("b", "0.25 0 0 0 0")),
         "ace",
-        {"b": lambda q: 0.55, "d": lambda q: -0.2 + 2 * 0.25},
+        {"b": 0.55, "d": -0.2 + 2 * 0.25},
     ),
     "a bend of a locked joint": (
         arm(joint("d", "0 0 1 0 0", "b") + joint("b", "0 0 0 0 0") + joint("d", "0 0 0 0 0")),
         "ace",
-        {"b": lambda q: 0.3, "d": lambda q: -0.2},
+        {"b": 0.3, "d": -0.2},
     ),
     "one joint followed by two": (
         arm(joint("d", "0 1 0 0 0", "b") + joint("d", "0 2 0 0 0", "c")),
@@ -88,7 +88,7 @@ FOLLOWED: dict[str, tuple[str, str, dict[str, Any]]] = {
     "a tendon of three joints, one locked": (
         arm("<tendon tendon1='two' tendon2='one'/>" + joint("b", "0 0 0 0 0"), tendon=TENDONS),
         "ace",
-        {"b": lambda q: 0.3, "d": lambda q: -0.2 - 0.5 * q["c"]},
+        {"b": 0.3, "d": lambda q: -0.2 - 0.5 * q["c"]},
     ),
     "an inactive one": (arm(joint("d", "0 .5 .2 0 0", "c", "active='false'")), "abcde", {}),
     "all switched off": (
@@ -124,7 +124,7 @@ def test_followed_equalities_put_the_tip_where_mujoco_does(name: str) -> None:
         for joint_name, value in known.items():
             data.joint(joint_name).qpos = value
         for joint_name, formula in others.items():
-            data.joint(joint_name).qpos = formula(known)
+            data.joint(joint_name).qpos = formula(known) if callable(formula) else formula
         mujoco.mj_kinematics(model, data)
         np.testing.assert_allclose(robot.fk(q)[:3, 3], data.site("tool").xpos, rtol=0, atol=1e-12)
         for body in ("left", "right"):
@@ -132,8 +132,8 @@ def test_followed_equalities_put_the_tip_where_mujoco_does(name: str) -> None:
 
 
 SIDE = (
-    "which is not followed (linear couplings and locks are, where they agree): choose base and tip on one side of it, or set "
-    "active='false' if the motion of the tip does not depend on it"
+    "which is not followed (linear couplings and locks are, where they agree): choose base and tip on one side of it, "
+    "or set active='false' if the motion of the tip does not depend on it"
 )
 REFUSED = {
     "two locks": (
@@ -193,8 +193,8 @@ def test_a_loop_is_refused_only_if_the_chain_takes_part() -> None:
 def test_a_gripper_held_open_beside_a_loop_is_warned_about() -> None:
     loop = arm("<connect name='ring' body1='left' body2='right' anchor='0 0 .1'/>")
     told = (
-        r"MuJoCo model: the connect equality 'ring' of 'left' and 'right' is open by 0.0\d+ \(m or rad\) where joints beside "
-        r"the chain are held: bodies there may stand elsewhere in MuJoCo; hold=\.\.\. closes it"
+        r"MuJoCo model: the connect equality 'ring' of 'left' and 'right' is open by 0.0\d+ \(m or rad\) where joints "
+        r"beside the chain are held: bodies there may stand elsewhere in MuJoCo; hold=\.\.\. closes it"
     )
     with pytest.warns(UserWarning, match=told) as caught:
         robot = bik.Robot.from_mjcf(loop, tip="tool", hold={"f": 0.5})
@@ -206,7 +206,8 @@ def test_a_parallelogram_whose_joints_are_coupled_is_followed() -> None:
     sides = """<mujoco><compiler angle='radian' autolimits='true'/><worldbody><body name='crank'>
       <joint name='crank' axis='0 1 0' range='-1 1'/><geom size='.01'/><body name='coupler' pos='0 0 .3'>
       <joint name='level' axis='0 1 0'/><geom size='.01'/><site name='tool' pos='.5 0 0'/></body></body>
-      <body name='rocker' pos='.2 0 0'><joint name='rocker' axis='0 1 0'/><geom size='.01'/></body></worldbody><equality>
+      <body name='rocker' pos='.2 0 0'><joint name='rocker' axis='0 1 0'/><geom size='.01'/></body>
+      </worldbody><equality>
       <joint joint1='level' joint2='crank' polycoef='0 -1 0 0 0'/><joint joint1='rocker' joint2='crank'/>
       <connect body1='coupler' body2='rocker' anchor='.2 0 0'/></equality></mujoco>"""
     robot = bik.Robot.from_mjcf(sides, tip="tool")

@@ -12,8 +12,8 @@ PANDA = bik.Robot.named("panda").with_capsules(radius=0.05)
 LINKS = sorted({link for link, *_ in PANDA.capsules})
 READY = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
 ALL_TOUCH = (
-    "obstacle 0 (Sphere) may be touched by every link with a body, so that nothing would be tested against it: leave out the links "
-    "of its touch that must stay clear, or the obstacle"
+    "obstacle 0 (Sphere) may be touched by every link with a body, so that nothing would be tested against it: leave "
+    "out the links of its touch that must stay clear, or the obstacle"
 )
 
 
@@ -69,7 +69,9 @@ def test_an_open_surface_is_not_called_everything() -> None:
         bik.plan_point_to_point(PANDA, start_q=READY, end_q=READY + 0.1, obstacles=[sheet]),
     ):
         assert "everything" not in result.message
-        assert re.search(r"m clear of all surfaces; the mesh of obstacle 0 is open, so that its inside is unknown", result.message)
+        assert re.search(
+            r"m clear of all surfaces; the mesh of obstacle 0 is open, so that its inside is unknown", result.message
+        )
 
 
 PAIR = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
@@ -95,7 +97,9 @@ def test_two_arms_stay_apart_without_being_asked() -> None:
         assert np.isnan(bik.solve(PAIR, targets, self_collision=False).clearance)
 
 
-@pytest.mark.parametrize("limits", [bik.Limits(), bik.Limits(acceleration=5.0), bik.Limits(acceleration=5.0, jerk=80.0)])
+@pytest.mark.parametrize(
+    "limits", [bik.Limits(), bik.Limits(acceleration=5.0), bik.Limits(acceleration=5.0, jerk=80.0)]
+)
 def test_a_tracker_keeps_two_arms_apart_without_being_asked(limits: bik.Limits) -> None:
     start = next(q for q in PAIR.random_configurations(50, seed=9) if bik.obstacles.clearance(PAIR, q, []) > 0.05)
     least = {}

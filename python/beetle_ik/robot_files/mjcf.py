@@ -86,16 +86,19 @@ class _Reader:
             raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
 
     def rests(self, robot: Robot, hold: Mapping[str, float]) -> dict[str, float]:
-        """Returns the reference positions of held joints, at which MuJoCo closes loops; those in `hold` keep their value."""
+        """Returns the reference positions of held joints not in `hold`: there, MuJoCo closes loops."""
         rests = {}
         for joint, name in enumerate(self.joints):
             if name in robot.held_joints and name not in hold:
-                rest, (lower, upper) = float(self.model.qpos0[self.model.jnt_qposadr[joint]]), self.model.jnt_range[joint]
+                rest, (lower, upper) = (
+                    float(self.model.qpos0[self.model.jnt_qposadr[joint]]),
+                    self.model.jnt_range[joint],
+                )
                 rests[name] = float(np.clip(rest, lower, upper)) if self.model.jnt_limited[joint] else rest
         return rests
 
     def require_kept(self, robot: Robot) -> None:
-        """Raises `InvalidInputError` for an equality that couples moving joints and is not followed; warns for the others."""
+        """Raises `InvalidInputError` for an equality that joints of the chain do not keep; warns for the others."""
         chain = {joint for joint in range(len(self.joints)) if self.equalities.leader(joint) in robot.joint_names}
         for tip in robot.tips:
             chain |= self.equalities.between((self._carrier(robot.link_names[0]), self._carrier(tip)))
@@ -103,13 +106,13 @@ class _Reader:
             if chain & found.joints:
                 coupled = listed([self.joints[joint] for joint in sorted(found.joints)])
                 raise InvalidInputError(
-                    f"MuJoCo model: {found.described} couples the joints {coupled}, which is not followed (linear couplings "
-                    "and locks are, where they agree): choose base and tip on one side of it, or set active='false' if the "
-                    "motion of the tip does not depend on it"
+                    f"MuJoCo model: {found.described} couples the joints {coupled}, which is not followed (linear "
+                    "couplings and locks are, where they agree): choose base and tip on one side of it, or set "
+                    "active='false' if the motion of the tip does not depend on it"
                 )
             warnings.warn(
-                f"MuJoCo model: {found.described} is open by {found.residual:.3g} (m or rad) where joints beside the chain "
-                "are held: bodies there may stand elsewhere in MuJoCo; hold=... closes it",
+                f"MuJoCo model: {found.described} is open by {found.residual:.3g} (m or rad) where joints beside the "
+                "chain are held: bodies there may stand elsewhere in MuJoCo; hold=... closes it",
                 stacklevel=3,
             )
 

@@ -1,4 +1,4 @@
-"""Equality constraints of a MuJoCo model: linear ones are followed, and MuJoCo itself says which of the others are not kept."""
+"""Equality constraints of a MuJoCo model: linear ones are followed, and MuJoCo says which of the others are kept."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._core import Robot
-from ..calls.text import listed
 
 _CLOSED = 1e-4
 """Residual (m, rad) up to which an equality counts as kept: the rounding of numbers in files."""
@@ -35,6 +34,7 @@ class Equalities:
     """The active equality constraints of a model, and the joints that linear ones drive."""
 
     def __init__(self, mujoco: Any, model: Any, joints: Sequence[str]) -> None:
+        """Solves the linear equalities; `joints` are the names of all joints."""
         self.mujoco, self.model, self.joints = mujoco, model, joints
         off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         self.active = [] if model.opt.disableflags & off else [int(i) for i in np.flatnonzero(model.eq_active0)]
@@ -88,7 +88,7 @@ class Equalities:
         """Returns the positions of all joints of the model; those without an axis stay where the model has them."""
         known = dict(zip(robot.joint_names, q, strict=True)) | robot.held_joints
         positions = np.array(self.model.qpos0)
-        for joint, name in enumerate(self.joints):
+        for joint in range(len(self.joints)):
             master, scale, offset = self.drives.get(joint, Drive(joint, 1.0, 0.0))
             if master is None:
                 positions[self.model.jnt_qposadr[joint]] = offset
@@ -104,7 +104,8 @@ class Equalities:
         return any(self.model.body_mocapid[self.model.body_rootid[body]] >= 0 for body in self._bodies(equality))
 
     def _kind(self, equality: int) -> str:
-        return self.mujoco.mjtEq(self.model.eq_type[equality]).name.removeprefix("mjEQ_").lower()
+        name: str = self.mujoco.mjtEq(self.model.eq_type[equality]).name
+        return name.removeprefix("mjEQ_").lower()
 
     def _ends(self, equality: int) -> list[int]:
         """Returns the indices of the one or two objects that an equality couples."""
@@ -146,10 +147,10 @@ class Equalities:
         return f"the {kind} equality" + (f" '{name}'" if name else "") + of
 
     def _linear(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
-        """Yields the equation of a linear equality: factors by joint, the follower first, and the sum of the products."""
+        """Yields the equation of a linear equality: factors by joint, the follower first, and their weighted sum."""
         model, kind, ends = self.model, self._kind(equality), self._ends(equality)
         if kind == "weld" and len(locked := self.between(self._bodies(equality))) == 1:
-            yield {joint: 1.0 for joint in locked}, float(model.qpos0[model.jnt_qposadr[min(locked)]])
+            yield dict.fromkeys(locked, 1.0), float(model.qpos0[model.jnt_qposadr[min(locked)]])
             return
         constant, scale, *bends = (float(factor) for factor in model.eq_data[equality][:5])
         if kind not in ("joint", "tendon") or (len(ends) == 2 and any(bends)):
@@ -170,7 +171,7 @@ class Equalities:
         yield factors, total
 
     def _tendon(self, tendon: int) -> dict[int, float] | None:
-        """Returns the coefficient of each joint in the length of a fixed tendon, later joints first; None for others."""
+        """Returns the coefficients of joints in the length of a fixed tendon, later joints first; None for others."""
         model = self.model
         factors: dict[int, float] = {}
         first, count = model.tendon_adr[tendon], model.tendon_num[tendon]
@@ -206,7 +207,7 @@ class Equalities:
         return {joint: factor for joint, factor in reduced.items() if abs(factor) > 1e-12}, total
 
     def _drive(self, factors: dict[int, float], total: float) -> None:
-        """Lets the first joint of an equation follow the second, or locks it without one, and so those that follow it."""
+        """Lets the first joint of an equation, and its followers, follow the second; locks it without one."""
         (follower, own), *others = factors.items()
         master, factor = others[0] if others else (None, 0.0)
         self.drives[follower] = Drive(follower, 1.0, 0.0)

@@ -32,7 +32,11 @@ class Equalities(Attack):
 
         loops = [(str(random.choice(["connect", "weld"])), *self._bodies(random)) for _ in range(int(hard))]
         joints = [
-            (str(random.choice(["hinge", "hinge", "slide"])), tuple(int(i) for i in random.permutation([0, 0, 1])), number())
+            (
+                str(random.choice(["hinge", "hinge", "slide"])),
+                tuple(int(i) for i in random.permutation([0, 0, 1])),
+                number(),
+            )
             for _ in JOINTS
         ]
         return {
@@ -65,7 +69,10 @@ class Equalities(Attack):
             if not others:
                 open_by = np.abs(error(np.zeros(0))).max()
             else:
-                starts = [oracle.linear_start(known, others), *np.random.default_rng(0).uniform(-1, 1, (6, len(others)))]
+                starts = [
+                    oracle.linear_start(known, others),
+                    *np.random.default_rng(0).uniform(-1, 1, (6, len(others))),
+                ]
                 open_by = min(np.abs(least_squares(error, start).fun).max() for start in starts)
             if open_by > OPEN and oracle.on_chain:
                 raise BrokenError("an equality of the chain is open", open_by)
@@ -83,7 +90,9 @@ class Equalities(Attack):
             if master >= 0:
                 rows[i, master] -= scale
         # In offsets from the reference positions.
-        agree = np.linalg.matrix_rank(np.column_stack([rows, totals])) == np.linalg.matrix_rank(rows) if linear else True
+        agree = (
+            np.linalg.matrix_rank(np.column_stack([rows, totals])) == np.linalg.matrix_rank(rows) if linear else True
+        )
         if agree and "is not followed" in str(error):
             raise BrokenError("linear couplings that agree are refused", error)
 
@@ -136,7 +145,7 @@ class Oracle:
         return found + np.array([rest[name] for name in others])
 
     def _relative(self, data: Any, one: str, other: str) -> tuple[Any, Any]:
-        """The origin of the first body as the second sees it, where `connect` has its anchor, and the rotation between them."""
+        """The origin of the first body, where `connect` has its anchor, and its rotation, as the second sees it."""
         first, second = data.body(one), data.body(other)
         turn = second.xmat.reshape(3, 3).T
         return turn @ (first.xpos - second.xpos), turn @ first.xmat.reshape(3, 3)
@@ -178,7 +187,11 @@ class Speeds(Attack):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         speeds = [str(random.choice(["", "0", "0.0", "1", "0.5"] if hard else ["", "1"])) for _ in range(5)]
         given = ["", "velocity=inf", "velocity=0.7", "acceleration=5.0", "lower=-1.9", "velocity=0.0", "jerk=9.0"]
-        return {"speeds": tuple(speeds), "given": str(random.choice(given)), "goal": tuple(random.uniform(-1, 1, 5).tolist())}
+        return {
+            "speeds": tuple(speeds),
+            "given": str(random.choice(given)),
+            "goal": tuple(random.uniform(-1, 1, 5).tolist()),
+        }
 
     def program(self, case: Case) -> str:
         limits = f"limits = bik.Limits({case['given']})" if case["given"] else "limits = None"
@@ -189,7 +202,8 @@ class Speeds(Attack):
             "    tracker = bik.Tracker(robot, start, dt=0.01, limits=limits)\n"
             "    return [tracker.step(robot.fk(goal)) for _ in range(30)]\n"
             "def told(call):\n"
-            "    try:\n        return call(), ''\n    except bik.BeetleIkError as error:\n        return None, str(error)\n"
+            "    try:\n        return call(), ''\n"
+            "    except bik.BeetleIkError as error:\n        return None, str(error)\n"
             "plan, refusal = told(lambda: bik.plan_point_to_point(robot, start_q=start, end_q=goal, limits=limits))\n"
             "steps, tick_refusal = told(tracked)"
         )

@@ -30,7 +30,8 @@ impl Surroundings {
     /// Whether there is anything that `robot` keeps clear of. Arms on one torso reach each other in most of their postures, so that
     /// their links are checked unless the caller declines.
     pub fn apply_to(&self, robot: &Robot) -> bool {
-        let arms_meet = || robot.tip_count() > 1 && !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+        let arms_meet =
+            || robot.tip_count() > 1 && !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
         self.obstacles.is_some() || self.self_collision.unwrap_or_else(arms_meet)
     }
 

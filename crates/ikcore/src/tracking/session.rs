@@ -325,7 +325,8 @@ impl Session {
         let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let space = if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
+        let space =
+            if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
         if space.is_some() || !self.arm.has_one_tip() {
             let safety = match self.safety.take() {
                 Some(safety) => self.safety.insert(safety),

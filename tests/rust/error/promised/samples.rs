@@ -253,7 +253,13 @@ pub fn posed() -> ControlSession {
 
 pub fn turning() -> Session {
     let task = Task::new(TaskKind::Orientation, None, None, None).unwrap();
-    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { task: Some(task), limits: jumping(&two()), ..TrackOptions::default() }).unwrap()
+    Session::new(
+        &two(),
+        &[0.5, 0.5],
+        0.1,
+        &TrackOptions { task: Some(task), limits: jumping(&two()), ..TrackOptions::default() },
+    )
+    .unwrap()
 }
 
 pub fn stamped(stamp: f64) -> Arrival {

@@ -38,7 +38,8 @@ pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
     let joint = &document.joints[index];
     let kind = kind(document, index)?;
     let [rated_acceleration, rated_jerk] = joint.rated;
-    let described = Joint { rated_acceleration, rated_jerk, ..Joint::new(&joint.name, kind).with_velocity(joint.velocity) };
+    let described =
+        Joint { rated_acceleration, rated_jerk, ..Joint::new(&joint.name, kind).with_velocity(joint.velocity) };
     match kind {
         JointKind::Continuous => Ok(described),
         _ => Ok(described.with_range(joint.range.0, joint.range.1)),
