@@ -49,7 +49,7 @@ TENDONS = (
 FREE_BODY = "<body name='part' pos='1 0 0'><freejoint/><geom size='.01'/></body>"
 HAND_TARGET = "<body name='hand_target' mocap='true' pos='1 0 0'/>"
 
-# What is followed: the model, the joints that stay independent, and the positions of others (a number, or a formula of q).
+# What is followed: the model, the independent joints, and the positions of others (a number, or a formula of q).
 FOLLOWED: dict[str, tuple[str, str, dict[str, Any]]] = {
     "a lock": (arm(joint("b", "0.25 0 0 0 0")), "acde", {"b": 0.3 + 0.25}),
     "a lock by a factor of zero": (arm(joint("b", "0.25 0 0 0 0", "c")), "acde", {"b": 0.55}),
