@@ -108,6 +108,8 @@ FOLLOWED: dict[str, tuple[str, str, dict[str, Any]]] = {
     "a rope of the gripper": (arm("<tendon tendon1='fingers'/>", tendon=TENDONS), "abcde", {}),
     "a bend of the gripper": (arm(joint("f", "0 1 1 0 0", "g")), "abcde", {}),
     "a part in the hand": (arm("<weld body1='body_e' body2='part'/>", scene=FREE_BODY), "abcde", {}),
+    "a part welded to the world": (arm("<weld body1='part'/>", scene=FREE_BODY), "abcde", {}),
+    "a base led by a mocap body": (arm("<weld body1='body_a' body2='hand_target'/>", scene=HAND_TARGET), "abcde", {}),
     "a hand led by a mocap body": (arm("<weld body1='body_e' body2='hand_target'/>", scene=HAND_TARGET), "abcde", {}),
 }
 

@@ -98,10 +98,13 @@ class Equalities:
 
     def _is_free(self, equality: int, joints: set[int]) -> bool:
         """Whether a free body follows: one that is moved by hand (mocap), or one with a free joint."""
-        kinds = (self.mujoco.mjtJoint(self.model.jnt_type[joint]).name for joint in joints)
-        if "mjJNT_FREE" in kinds:
+        if any(self._joint_kind(joint) == "mjJNT_FREE" for joint in joints):
             return True
         return any(self.model.body_mocapid[self.model.body_rootid[body]] >= 0 for body in self._bodies(equality))
+
+    def _joint_kind(self, joint: int) -> str:
+        name: str = self.mujoco.mjtJoint(self.model.jnt_type[joint]).name
+        return name
 
     def _kind(self, equality: int) -> str:
         name: str = self.mujoco.mjtEq(self.model.eq_type[equality]).name
@@ -149,9 +152,8 @@ class Equalities:
     def _linear(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
         """Yields the equation of a linear equality: factors by joint, the follower first, and their weighted sum."""
         model, kind, ends = self.model, self._kind(equality), self._ends(equality)
-        if kind == "weld" and len(locked := self.between(self._bodies(equality))) == 1:
-            yield dict.fromkeys(locked, 1.0), float(model.qpos0[model.jnt_qposadr[min(locked)]])
-            return
+        if kind == "weld":
+            yield from self._weld(equality)
         constant, scale, *bends = (float(factor) for factor in model.eq_data[equality][:5])
         if kind not in ("joint", "tendon") or (len(ends) == 2 and any(bends)):
             return
@@ -169,6 +171,14 @@ class Equalities:
             for joint, factor in side.items():
                 factors[joint] = factors.get(joint, 0.0) + sign * factor
         yield factors, total
+
+    def _weld(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
+        """Yields the lock of a weld across one hinge or slide."""
+        joints = self.between(self._bodies(equality))
+        if len(joints) == 1 and not self._is_free(equality, joints):
+            (joint,) = joints
+            if self._joint_kind(joint) in ("mjJNT_HINGE", "mjJNT_SLIDE"):
+                yield {joint: 1.0}, float(self.model.qpos0[self.model.jnt_qposadr[joint]])
 
     def _tendon(self, tendon: int) -> dict[int, float] | None:
         """Returns the coefficients of joints in the length of a fixed tendon, later joints first; None for others."""
