@@ -150,7 +150,7 @@ def test_given_limits_of_zero_are_named_as_given() -> None:
     for field in ("velocity", "acceleration", "jerk"):
         told = steps(robot, limits=bik.Limits(**{field: 0.0}))[-1].message
         assert (
-            f"joints {NAMED} cannot move, since the {field} limit as given is 0: give limits=Limits({field}=...)"
+            f"joints {NAMED} cannot move, since the {field} limit is 0: give limits=Limits({field}=...)"
             in told
         )
 

@@ -36,7 +36,7 @@ impl Limits {
     /// [`Error::NoPace`] names the joints.
     pub(crate) fn require_pace_or_consent(&self) -> Result<()> {
         match &self.unpaced()[..] {
-            joints if self.gives_velocity || joints.is_empty() => Ok(()),
+            joints if !self.own_velocity || joints.is_empty() => Ok(()),
             joints => Err(Error::no_pace(joints, ", infinite where a joint may jump to any position in one tick")),
         }
     }
@@ -64,8 +64,8 @@ impl Limits {
     /// Names the joints that cannot move because of a limit of zero, with the remedy.
     pub(crate) fn lock(&self) -> Option<Message> {
         let Locked { field, joints, own } = self.locked()?;
-        let source = if own { "in the robot's description" } else { "as given" };
-        let problem = format!("{} cannot move, since the {field} limit {source} is 0: give ", named_joints(&joints));
+        let source = if own { " in the robot's description" } else { "" };
+        let problem = format!("{} cannot move, since the {field} limit{source} is 0: give ", named_joints(&joints));
         Some(message![problem, Setting::Limit(field.name())])
     }
 
@@ -74,11 +74,7 @@ impl Limits {
         RATES.into_iter().find_map(|field| {
             let zero = |j: &usize| self.of_joint(field, *j, 0.0);
             let joints: Vec<&str> = (0..self.dof()).filter(zero).map(|j| self.joint_name(j)).collect();
-            (!joints.is_empty()).then_some(Locked {
-                field,
-                joints,
-                own: field == Field::Velocity && !self.gives_velocity,
-            })
+            (!joints.is_empty()).then_some(Locked { field, joints, own: field == Field::Velocity && self.own_velocity })
         })
     }
 
@@ -127,10 +123,7 @@ mod tests {
     fn a_lock_names_its_joints_field_and_source() {
         assert_eq!(given(Field::Jerk, &[1.0, 2.0]).lock(), None);
         let lock = given(Field::Acceleration, &[0.0, 2.0, -0.0]).lock().unwrap();
-        assert_eq!(
-            lock,
-            "joints '0', '2' cannot move, since the acceleration limit as given is 0: give an acceleration limit"
-        );
+        assert_eq!(lock, "joints '0', '2' cannot move, since the acceleration limit is 0: give an acceleration limit");
         let cad = Robot::planar(&[1.0]).unwrap().with_limits(|_, joint| joint.velocity = 0.0).unwrap();
         let lock = Limits::of(&cad).lock().unwrap();
         assert_eq!(

@@ -10,6 +10,7 @@ use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
+use crate::wording::named_joints;
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,11 +117,13 @@ impl ConstantLimits {
                     return Err(Error::Infeasible { problem: problem.into() });
                 }
             }
-            if let Some((field, _)) = self.rates().into_iter().find(|(_, limits)| limits[j] == 0.0)
-                && highest > lowest
-            {
-                let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
-                return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0").into() });
+        }
+        for (field, limits) in self.rates() {
+            let is_stuck = |j: &usize| limits[*j] == 0.0 && path.range(*j)[1] > path.range(*j)[0];
+            let stuck: Vec<&str> = (0..joints.len()).filter(is_stuck).map(|j| joints[j].as_str()).collect();
+            if !stuck.is_empty() {
+                let moves = format!("the path moves {}, where the {field} limit is 0: give ", named_joints(&stuck));
+                return Err(Error::Infeasible { problem: message![moves, Setting::Limit(field)] });
             }
         }
         Ok(())
