@@ -174,8 +174,8 @@ impl PyStep {
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
         let message = match &self.lock {
-            Some(lock) => self.core.message_with(&**lock),
-            None => self.core.message(),
+            Some(lock) if self.core.status == Status::Capped => self.core.message_with(&**lock),
+            _ => self.core.message(),
         };
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
