@@ -18,7 +18,7 @@ from campaign import attack, ledger, shrinking, soak, watch
 from campaign.attacks import ATTACKS
 from rough_attack import Rough
 
-ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra"}
+ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra", "equalities": "mujoco"}
 CASES = {
     "clear_ticks": 1,
     "clear_plans": 2,
@@ -156,6 +156,14 @@ SPOILED = {
     "urdf": (
         "pose = pose * nan",
         "a robot was read whose poses are not finite",
+    ),
+    "equalities": (
+        "tips = tips + 0.01",
+        "an equality of the chain is open",
+    ),
+    "file_speeds": (
+        "tick_refusal = ''",
+        "a tracker does not name a joint that nothing slows down",
     ),
     "scene_json": (
         "again = bik.Scene()",

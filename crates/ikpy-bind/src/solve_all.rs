@@ -201,7 +201,8 @@ impl Unreached {
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///

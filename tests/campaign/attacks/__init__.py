@@ -8,6 +8,7 @@ from . import (
     calls,
     clearance,
     command_line,
+    described,
     kinematics,
     motion,
     own_points,
@@ -23,7 +24,7 @@ from . import (
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, own_points, readers),
-    *(xacro_files, calibration, calls, command_line),
+    *(xacro_files, described, calibration, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -12,7 +12,7 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use crate::common::arms::two_arms;
-use crate::common::robot;
+use crate::common::{jumping, robot};
 use crate::interface::{interface, type_of};
 use crate::layers::imports::{Sources, rust_files};
 use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, solve_batch};

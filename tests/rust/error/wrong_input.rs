@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{message, robot};
+use crate::common::{jumping, message, robot};
 use ikcore::Error;
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
@@ -33,11 +33,13 @@ fn reference() -> Reference {
 /// Message of `track` for these options and this start on the planar arm.
 #[track_caller]
 fn track_says(start: &[f64], options: TrackOptions) -> String {
-    message(track(&robot("planar5"), &reference(), Some(start), &options, &mut Unattended))
+    let planar = robot("planar5");
+    let options = TrackOptions { limits: options.limits.or_else(|| jumping(&planar)), ..options };
+    message(track(&planar, &reference(), Some(start), &options, &mut Unattended))
 }
 
 fn planar_limits(field: Field, profile: Profile) -> ikcore::Result<Limits> {
-    Limits::of(&robot("planar5")).replace(field, vec![profile])
+    jumping(&robot("planar5")).unwrap().replace(field, vec![profile])
 }
 
 fn within(field: Field, profile: Profile) -> TrackOptions {

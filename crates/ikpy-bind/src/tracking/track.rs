@@ -34,7 +34,7 @@ pub struct PyTrackResult {
     columns: Columns,
     /// Errors by tip.
     tips: TipErrors,
-    /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
+    /// Smallest distances from obstacles and between links (k,) (m); NaN where nothing is checked.
     #[pyo3(get)]
     clearance: Py<PyArray1<f64>>,
     /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
@@ -200,7 +200,8 @@ impl PyTrackResult {
 ///     task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
-///     limits: limits on the joint motion; None: the robot's.
+///     limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
 ///     position_tolerance: error band of positions (m); for several tips also a dict.
@@ -209,7 +210,8 @@ impl PyTrackResult {
 ///         robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
 ///         or stops. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
@@ -221,7 +223,7 @@ impl PyTrackResult {
 ///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
 ///     LimitError: a start outside its limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
 ///         region; position, acceleration or jerk limits that vary in time, among obstacles.

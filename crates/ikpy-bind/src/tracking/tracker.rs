@@ -37,7 +37,8 @@ use crate::traversal::traversed;
 ///     dt: time step (s).
 ///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
-///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
 ///     goals: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
@@ -177,9 +178,10 @@ impl PyTracker {
             *self.keys() = keys;
         }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
-        let (space, q) = (session.space().cloned(), session.q().to_vec());
+        let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
+        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
+        Ok(step.among(space, q).of_tips(tips).of_locked(lock))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

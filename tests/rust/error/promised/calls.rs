@@ -30,7 +30,7 @@ pub fn calls() -> Vec<Row> {
         MapGrid::new(robot, &MapLayout { voxel, region, directions: 20, rolls: 4 }, &MapOptions::default())
     };
     let model_free = ModelFreeOptions { controller: Controller::Znnbas(Znnbas::default()), ..Default::default() };
-    let options = TrackOptions::default();
+    let options = TrackOptions { limits: jumping(&two()), ..TrackOptions::default() };
     let still = [0.1, 0.2].repeat(9);
     let calibrated = |robot: &Robot, qs: &[f64], positions: &[[f64; 3]], options: &CalibrationOptions| {
         calibrate(robot, qs, &Measured::Positions(positions.to_vec()), options)
