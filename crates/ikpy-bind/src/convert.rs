@@ -322,6 +322,14 @@ pub fn matrix4_array<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> PyResult<Bo
     Ok(read_only(PyArray1::from_slice(py, matrix.transpose().as_slice()).reshape([4, 4])?))
 }
 
+/// Makes the array that a method returns writable: it is a copy of the caller's own. Arrays of attributes stay read-only, since
+/// writing into them would change a record, or nothing.
+pub fn own<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+    // SAFETY: the array was made for this call and has no other owner yet.
+    unsafe { (*array.as_array_ptr()).fields.flags |= NPY_ARRAY_WRITEABLE };
+    array
+}
+
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
     // SAFETY: the array was made here and has no other owner yet.
     unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };

@@ -12,7 +12,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
+use crate::convert::{array, copied, point, rigid_rows, shape_text};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
@@ -24,6 +24,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
+use crate::units::{self, configuration};
 
 /// The best configuration found, and the outcome of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -219,7 +220,7 @@ pub fn solve(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
-    let asked = Asked::read("target", robot, target, read_target)?;
+    let asked = read_targets("target", robot, target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let arguments = SolveArguments {
         task,
@@ -234,7 +235,7 @@ pub fn solve(
         stop,
         seed,
     };
-    let start = start.map(|start| vector("start", start)).transpose()?;
+    let start = start.map(|start| configuration("start", &robot.core, start)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;
@@ -242,6 +243,15 @@ pub fn solve(
     let around = (surroundings.is_given() && core.nearest.is_none())
         .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));
     Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
+}
+
+/// Reads the target of the only tip, or a dict of targets.
+pub fn read_targets(what: &str, robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Asked<Target>> {
+    let asked = Asked::read(what, robot, value, read_target)?;
+    for (subject, target) in asked.iter() {
+        units::doubt(units::of_target(&robot.core, what, subject, target))?;
+    }
+    Ok(asked)
 }
 
 /// Reads a pose (4, 4) or a position (3,).

@@ -34,6 +34,7 @@ mod tips;
 mod tracking;
 mod trajectory;
 mod traversal;
+mod units;
 mod wording;
 
 use pyo3::prelude::*;

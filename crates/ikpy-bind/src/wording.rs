@@ -38,6 +38,8 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::CapsulesAlone => "robot.with_capsules(robot.capsules)",
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
+        Setting::RadiansFromDegrees => "np.radians converts degrees",
+        Setting::AnglesInDegrees => "degrees=True takes degrees",
         _ => return setting.to_string(),
     };
     words.into()

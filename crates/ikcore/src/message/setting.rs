@@ -59,6 +59,10 @@ pub enum Setting {
     MoreCapsules,
     /// Capsules of one radius along the links.
     CapsulesAlongLinks,
+    /// Angles that are converted from degrees before a call.
+    RadiansFromDegrees,
+    /// Angles that a call takes in degrees.
+    AnglesInDegrees,
 }
 
 impl fmt::Display for Setting {
@@ -93,6 +97,7 @@ impl fmt::Display for Setting {
             Self::CapsulesAlone => "giving it the capsules that it has",
             Self::MoreCapsules => "giving it more of them",
             Self::CapsulesAlongLinks => "with_capsules_along_links",
+            Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }
 }

@@ -6,11 +6,12 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use super::GivenObstacles;
-use crate::convert::{copied, vector};
+use crate::convert::copied;
 use crate::error::raise;
 use crate::hash::content_hash;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
+use crate::units::configuration;
 
 /// The nearest two bodies at a configuration, from `obstacles.nearest`.
 #[pyclass(name = "Nearest", module = "beetle_ik.obstacles", frozen, eq)]
@@ -110,8 +111,8 @@ pub fn nearest(
     q: &Bound<'_, PyAny>,
     obstacles: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Option<PyNearest>> {
-    let obstacles = GivenObstacles::read(py, obstacles)?.core;
+    let obstacles = GivenObstacles::read_for(py, robot, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    let found = scene.nearest_contact(&vector("joint angles", q)?).map_err(raise)?;
+    let found = scene.nearest_contact(&configuration("joint angles", &robot.core, q)?).map_err(raise)?;
     Ok(found.map(PyNearest::from))
 }

@@ -1,12 +1,15 @@
 //! `Tracker`.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use ikcore::obstacle::Surroundings;
+use ikcore::robot::Robot;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
 use ikcore::task::TargetRow;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
+use ikcore::units::UnitDoubt;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -24,6 +27,7 @@ use crate::robot::PyRobot;
 use crate::tip_keys::TipKeys;
 use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
+use crate::units::{self, configuration};
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -63,6 +67,8 @@ pub struct PyTracker {
     settings: TipSettings,
     /// Keys of the last targets.
     keys: Mutex<TipKeys>,
+    /// Whether a doubt about a unit was raised in a tick; there would be one in each.
+    doubted: AtomicBool,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
     /// The robot.
@@ -117,12 +123,14 @@ impl PyTracker {
         let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &configuration("start", arm, start)?, dt, &options).map_err(raise)?;
+        units::doubt(options.surroundings.obstacles.as_ref().and_then(|all| units::of_obstacles(arm, all)))?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
         }
         let (session, keys) = (Mutex::new(session), Mutex::new(robot.get().tips.clone()));
-        Ok(Self { session, settings, keys, runs_solver, robot: robot.clone().unbind(), limits: in_force })
+        let doubted = AtomicBool::new(false);
+        Ok(Self { session, settings, keys, doubted, runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
@@ -153,6 +161,9 @@ impl PyTracker {
         stamp: Option<f64>,
     ) -> PyResult<PyStep> {
         let target = target.map(|target| Asked::read("target", self.robot.get(), target, read_target)).transpose()?;
+        self.doubt_once(|robot| {
+            target.as_ref()?.iter().find_map(|(subject, target)| units::of_target(robot, "target", subject, target))
+        })?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         if target.is_none() && (velocity.is_some() || stamp.is_some()) {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
@@ -206,7 +217,8 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
+        let q = configuration("q", &self.robot.get().core, q)?;
+        let (qd, qdd) = (read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
 
@@ -223,6 +235,7 @@ impl PyTracker {
     #[setter]
     fn set_obstacles(&self, obstacles: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let given = obstacles.map(MovingObstacles::read).transpose()?;
+        self.doubt_once(|robot| units::of_obstacles(robot, &given.as_ref()?.shapes))?;
         let (shapes, velocities) = given.map_or((None, vec![]), |given| (Some(given.shapes), given.velocities));
         self.session().set_obstacles(shapes, velocities).map_err(raise)
     }
@@ -234,6 +247,16 @@ impl PyTracker {
 }
 
 impl PyTracker {
+    /// Warns of the first doubt of all ticks.
+    fn doubt_once(&self, find: impl FnOnce(&Robot) -> Option<UnitDoubt>) -> PyResult<()> {
+        if self.doubted.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let found = find(&self.robot.get().core);
+        self.doubted.store(found.is_some(), Ordering::Relaxed);
+        units::doubt(found)
+    }
+
     /// Locks the keys of the last targets.
     fn keys(&self) -> std::sync::MutexGuard<'_, TipKeys> {
         self.keys.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
