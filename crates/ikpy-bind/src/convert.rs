@@ -5,6 +5,7 @@
 use std::ops::Deref;
 use std::path::PathBuf;
 
+use ikcore::math::pose::Drift;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
 use numpy::npyffi::{NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE};
@@ -271,6 +272,11 @@ pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
 /// Makes a rigid transform from 16 numbers, row by row.
 pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
     pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
+}
+
+/// Makes a rigid transform of 16 numbers, row by row, whose rotation may have drifted; also returns the drift.
+pub fn drifted_rows(what: &str, rows: &[f64]) -> PyResult<(Pose, Option<Drift>)> {
+    pose::from_drifted(what, &Matrix4::from_row_slice(rows)).map_err(raise)
 }
 
 /// Makes rigid transforms from stacked 4x4 matrices.

@@ -131,17 +131,16 @@ pub fn raise(error: Error) -> PyErr {
     })
 }
 
+/// Advice for an angle that is inside its limits if it is in degrees.
+const IN_RADIANS: &str = ": angles are in radians; np.radians converts degrees";
+
 /// Returns advice for Python callers, which is appended to the message of an error.
 fn remedy(error: &Error) -> &'static str {
     match error {
         Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),
         Error::OutsideLimits { value, lower, upper, .. } => {
             let in_degrees = value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians());
-            if in_degrees {
-                ": angles are in radians; np.radians converts degrees"
-            } else {
-                ": move it inside, such as by np.clip"
-            }
+            if in_degrees { IN_RADIANS } else { ": move it inside, such as by np.clip" }
         }
         _ => "",
     }
@@ -160,6 +159,16 @@ pub fn misfit(message: String) -> PyErr {
 /// Makes a `LimitError`, for limits checked in the binding.
 pub fn limit_error(message: String) -> PyErr {
     made(|classes| &classes.limit, message)
+}
+
+/// Adds a reason to the message of an error of this library, unless it speaks of units already.
+pub fn with_reason(py: Python<'_>, error: PyErr, reason: &str) -> PyErr {
+    let message = error.value(py).to_string();
+    let is_ours = classes(py).is_ok_and(|classes| error.is_instance(py, classes.base.bind(py)));
+    if !is_ours || message.contains(IN_RADIANS) {
+        return error;
+    }
+    PyErr::from_type(error.get_type(py), format!("{message}; {reason}"))
 }
 
 fn made(class: impl Fn(&Classes) -> &Py<PyType>, message: String) -> PyErr {

@@ -78,9 +78,13 @@ unsafe extern "C" fn gate<const I: usize>(
     with_doubts(made)
 }
 
-/// Ends a call with this result, null after an error. A warning that is an error of its own takes the place of the result.
+/// Ends a call with this result, null after an error. A warning that is made an error takes the place of the result.
 fn with_doubts(made: *mut PyObject) -> *mut PyObject {
-    let Err(error) = units::end_call(!made.is_null()) else { return made };
+    if made.is_null() {
+        units::end_call_with_error();
+        return made;
+    }
+    let Err(error) = units::end_call() else { return made };
     Python::attach(|py| {
         // SAFETY: a result of this call, to which nothing else refers.
         drop(unsafe { Bound::from_owned_ptr_or_opt(py, made) });

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use ikcore::ik::{self, SolveOptions};
-use ikcore::math::Frame;
+use ikcore::math::{Frame, Pose};
 use ikcore::obstacle::Surroundings;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
@@ -256,14 +256,24 @@ pub fn read_targets(what: &str, robot: &PyRobot, value: &Bound<'_, PyAny>) -> Py
 
 /// Reads a pose (4, 4) or a position (3,).
 pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
+    read_target_by(what, value, |rows| rigid_rows(what, rows))
+}
+
+/// Reads a pose (4, 4) by `rigid`, or a position (3,).
+pub fn read_target_by(
+    what: &str,
+    value: &Bound<'_, PyAny>,
+    rigid: impl FnOnce(&[f64]) -> PyResult<Pose>,
+) -> PyResult<Target> {
     let numbers = array(what, value)?;
     match numbers.shape() {
         [3] => Ok(Target::Position(point(what, value)?)),
-        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows(what, numbers.as_slice()?)?))),
+        [4, 4] => Ok(Target::Pose(Frame::from(&rigid(numbers.as_slice()?)?))),
         shape => {
             let got = shape_text(shape);
             let remedy = match shape {
                 [6] => "; bik.pose(t[:3], rpy=t[3:]) makes a pose of a position and angles",
+                [16] => "; .reshape(4, 4) makes a matrix of 16 numbers, row by row",
                 [7] => "; bik.pose(t[:3], xyzw=t[3:]) makes a pose of a position and a quaternion, or wxyz=",
                 _ => "",
             };

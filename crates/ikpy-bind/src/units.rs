@@ -1,7 +1,7 @@
 //! `UnitsWarning`: doubts of the core about the units of arguments, raised once per call.
 //!
-//! Doubts found while a call reads its arguments are kept until the outermost call returns. A call that raises an error warns of
-//! nothing: its message says more.
+//! Doubts found while a call reads its arguments are kept until the outermost call returns. If it raises an error, they become the
+//! end of its message instead.
 
 use std::cell::{Cell, RefCell};
 
@@ -12,6 +12,7 @@ use ikcore::units::{self, UnitDoubt};
 use pyo3::prelude::*;
 
 use crate::convert::{Numbers, Rows, rows, vector};
+use crate::error::with_reason;
 use crate::python_calls;
 use crate::wording::said;
 
@@ -30,18 +31,36 @@ pub fn begin_call() {
     CALLS.set(CALLS.get() + 1);
 }
 
-/// Counts a call that ends, and warns of its doubts if it is the outermost one and has a result.
+/// Counts a call that ends with a result, and warns of its doubts if it is the outermost one.
 #[inline]
-pub fn end_call(has_result: bool) -> PyResult<()> {
+pub fn end_call() -> PyResult<()> {
     CALLS.set(CALLS.get().saturating_sub(1));
-    if CALLS.get() > 0 || !DOUBTED.get() { Ok(()) } else { warn_of_doubts(has_result) }
+    if CALLS.get() > 0 || !DOUBTED.get() { Ok(()) } else { warn_of_doubts() }
+}
+
+/// Counts a call that ends with a pending exception, and adds the doubts to the message of an error of this library: they are
+/// probably its reason.
+pub fn end_call_with_error() {
+    CALLS.set(CALLS.get().saturating_sub(1));
+    if CALLS.get() == 0 && DOUBTED.get() {
+        let doubts = taken();
+        Python::attach(|py| {
+            if let Some(error) = PyErr::take(py) {
+                with_reason(py, error, &doubts).restore(py);
+            }
+        });
+    }
+}
+
+fn taken() -> String {
+    DOUBTED.set(false);
+    DOUBTS.take().join("; ")
 }
 
 #[cold]
-fn warn_of_doubts(has_result: bool) -> PyResult<()> {
-    DOUBTED.set(false);
-    let doubts = DOUBTS.take();
-    if has_result { Python::attach(|py| python_calls::warn_of_units(py, &doubts.join("; "))) } else { Ok(()) }
+fn warn_of_doubts() -> PyResult<()> {
+    let doubts = taken();
+    Python::attach(|py| python_calls::warn_of_units(py, &doubts))
 }
 
 /// Keeps doubts for the end of the call; outside calls, as where an attribute is set, warns at once.
@@ -60,7 +79,7 @@ pub fn doubt(found: impl IntoIterator<Item = UnitDoubt>) -> PyResult<()> {
         return Ok(());
     }
     DOUBTED.set(true);
-    if CALLS.get() == 0 { warn_of_doubts(true) } else { Ok(()) }
+    if CALLS.get() == 0 { warn_of_doubts() } else { Ok(()) }
 }
 
 /// Reads joint positions (n,); the core checks their number. `what` names the argument.

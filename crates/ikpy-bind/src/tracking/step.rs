@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -41,6 +42,8 @@ pub struct PyStep {
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
+    /// Sentence about a target whose rotation had drifted.
+    drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
     around: OnceLock<Option<Clearance>>,
 }
@@ -111,17 +114,23 @@ impl PyStep {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, &self.drift))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None))]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, limits, tips=None, drift=None))]
+    fn _restore(
+        py: Python<'_>,
+        bytes: &[u8],
+        limits: Py<PyLimits>,
+        tips: Option<&[u8]>,
+        drift: Option<String>,
+    ) -> PyResult<Self> {
         let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
-        Ok(Self { around: OnceLock::from(around), ..step })
+        Ok(Self { around: OnceLock::from(around), drift, ..step })
     }
 }
 
@@ -129,12 +138,27 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self {
+            core,
+            q,
+            qd,
+            limits,
+            elapsed,
+            tips: TipErrors::unnamed(),
+            among: None,
+            drift: None,
+            around: OnceLock::new(),
+        }
     }
 
     /// Adds the errors by tip.
     pub fn of_tips(self, tips: TipErrors) -> Self {
         Self { tips, ..self }
+    }
+
+    /// Adds the drift of the target's rotation to the message.
+    pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
+        Self { drift: drift.map(|drift| drift.to_string()), ..self }
     }
 
     /// Adds the clear space of an arm, and its configuration `q`.
@@ -148,7 +172,10 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message();
+        let message = match &self.drift {
+            Some(drift) => format!("{}; {drift}", said(&self.core.message())).into(),
+            None => self.core.message(),
+        };
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {

@@ -1,5 +1,6 @@
 //! `Tracker`.
 
+use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -17,9 +18,9 @@ use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
 use super::session::in_progress;
 use super::step::PyStep;
-use crate::convert::{point, vector};
+use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
-use crate::ik::read_target;
+use crate::ik::read_target_by;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
@@ -67,6 +68,8 @@ pub struct PyTracker {
     settings: TipSettings,
     /// Keys of the last targets.
     keys: Mutex<TipKeys>,
+    /// Whether a step has said that the rotation of a target had drifted.
+    drifted: AtomicBool,
     /// Whether a doubt about a unit was raised in a tick; there would be one in each.
     doubted: AtomicBool,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
@@ -129,8 +132,17 @@ impl PyTracker {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
         }
         let (session, keys) = (Mutex::new(session), Mutex::new(robot.get().tips.clone()));
-        let doubted = AtomicBool::new(false);
-        Ok(Self { session, settings, keys, doubted, runs_solver, robot: robot.clone().unbind(), limits: in_force })
+        let [drifted, doubted] = [(); 2].map(|()| AtomicBool::new(false));
+        Ok(Self {
+            session,
+            settings,
+            keys,
+            drifted,
+            doubted,
+            runs_solver,
+            robot: robot.clone().unbind(),
+            limits: in_force,
+        })
     }
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
@@ -142,7 +154,9 @@ impl PyTracker {
     /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
     /// most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
     /// target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
-    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
+    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged. A rotation that
+    /// has drifted, R'R by up to 0.25 from the identity, is taken as the nearest rotation, and the message of the first such
+    /// step says so.
     ///
     /// Args:
     ///     target: target of the tip, or of several tips, at the end of the tick; None: no new target.
@@ -160,7 +174,15 @@ impl PyTracker {
         velocity: Option<&Bound<'_, PyAny>>,
         stamp: Option<f64>,
     ) -> PyResult<PyStep> {
-        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read_target)).transpose()?;
+        let drift = Cell::new(None);
+        let read = |what: &str, value: &Bound<'_, PyAny>| {
+            read_target_by(what, value, |rows| {
+                let (pose, found) = drifted_rows(what, rows)?;
+                drift.set(found.or(drift.get()));
+                Ok(pose)
+            })
+        };
+        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read)).transpose()?;
         self.doubt_once(|robot| {
             target.as_ref()?.iter().find_map(|(subject, target)| units::of_target(robot, "target", subject, target))
         })?;
@@ -190,7 +212,9 @@ impl PyTracker {
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
+        let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
+        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
+        Ok(step.among(space, q).of_tips(tips).of_drifted_target(drift))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
