@@ -18,6 +18,7 @@ use crate::convert::{Numbers, Rows, array, count, optional_count, row, shape_tex
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_rows;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
@@ -27,7 +28,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
-use crate::units::{self, configurations};
+use crate::units;
 use crate::wording::said;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
@@ -266,7 +267,7 @@ pub fn solve_batch(
     for ((subject, _), targets) in asked.iter().zip(&each) {
         units::doubt((0..targets.len()).find_map(|row| doubt_about(arm, subject, targets, row)))?;
     }
-    let starts = starts.map(|starts| configurations("starts", arm, starts)).transpose()?;
+    let starts = starts.map(|starts| joint_rows(arm, "starts", starts)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),

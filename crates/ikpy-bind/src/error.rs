@@ -131,9 +131,6 @@ pub fn raise(error: Error) -> PyErr {
     })
 }
 
-/// Advice for an angle that is inside its limits if it is in degrees.
-const IN_RADIANS: &str = ": angles are in radians; np.radians converts degrees";
-
 /// Returns advice for Python callers, which is appended to the message of an error.
 fn remedy(error: &Error) -> &'static str {
     match error {
@@ -165,7 +162,7 @@ pub fn limit_error(message: String) -> PyErr {
 pub fn with_reason(py: Python<'_>, error: PyErr, reason: &str) -> PyErr {
     let message = error.value(py).to_string();
     let is_ours = classes(py).is_ok_and(|classes| error.is_instance(py, classes.base.bind(py)));
-    if !is_ours || message.contains(IN_RADIANS) {
+    if !is_ours || message.contains("np.radians") {
         return error;
     }
     PyErr::from_type(error.get_type(py), format!("{message}; {reason}"))

@@ -14,6 +14,7 @@ use pyo3::types::PyDict;
 
 use crate::convert::{array, copied, point, rigid_rows, shape_text};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::PyNearest;
@@ -24,7 +25,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
-use crate::units::{self, configuration};
+use crate::units;
 
 /// The best configuration found, and the outcome of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -235,7 +236,7 @@ pub fn solve(
         stop,
         seed,
     };
-    let start = start.map(|start| configuration("start", &robot.core, start)).transpose()?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;

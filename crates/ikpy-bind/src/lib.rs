@@ -8,6 +8,7 @@ mod goal;
 mod hash;
 mod ik;
 mod indexing;
+mod joint_order;
 mod limits;
 mod minimize;
 mod monitor;

@@ -14,6 +14,7 @@ use crate::convert::{count, table};
 use crate::error::raise;
 use crate::ik::{PySolution, read_targets};
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
@@ -23,7 +24,6 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::{Traversed, traversed};
-use crate::units::configuration;
 
 /// The distinct solutions for one target, a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
@@ -266,7 +266,7 @@ pub fn solve_all(
     let each = arguments.read(
         robot,
         &asked,
-        start.map(|start| configuration("start", &robot.core, start)).transpose()?,
+        start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?,
         resolved,
     )?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;

@@ -11,7 +11,6 @@ use ikcore::task::{Subject, Target};
 use ikcore::units::{self, UnitDoubt};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Rows, rows, vector};
 use crate::error::with_reason;
 use crate::python_calls;
 use crate::wording::said;
@@ -80,26 +79,6 @@ pub fn doubt(found: impl IntoIterator<Item = UnitDoubt>) -> PyResult<()> {
     }
     DOUBTED.set(true);
     if CALLS.get() == 0 { warn_of_doubts() } else { Ok(()) }
-}
-
-/// Reads joint positions (n,); the core checks their number. `what` names the argument.
-pub fn configuration(what: &str, robot: &Robot, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let q = vector(what, value)?;
-    doubt(units::of_configurations(robot, what, &q))?;
-    Ok(q)
-}
-
-/// Reads joint positions (n,) or (m, n).
-pub fn configurations<'py>(what: &str, robot: &Robot, value: &Bound<'py, PyAny>) -> PyResult<Rows<'py>> {
-    let read = rows(what, robot.name(), robot.dof(), value)?;
-    let (Rows::One(qs) | Rows::Many(qs, _)) = &read;
-    doubt_configurations(what, robot, qs)?;
-    Ok(read)
-}
-
-/// Doubts joint positions, one configuration after another.
-pub fn doubt_configurations(what: &str, robot: &Robot, qs: &Numbers<'_>) -> PyResult<()> {
-    doubt(units::of_configurations(robot, what, qs.as_slice()?))
 }
 
 /// Doubts a target.

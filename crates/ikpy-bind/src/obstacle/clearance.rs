@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 use super::GivenObstacles;
 use crate::convert::{Rows, own, row};
 use crate::error::raise;
+use crate::joint_order::joint_rows;
 use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
-use crate::units::configurations;
 
 /// Rows between two checks for Ctrl-C; among many obstacles a row takes a millisecond.
 const ROWS: usize = 128;
@@ -44,7 +44,7 @@ pub fn clearance<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let obstacles = GivenObstacles::read_for(py, robot, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    match configurations("joint angles", &robot.core, q)? {
+    match joint_rows(&robot.core, "joint angles", q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
             let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), ROWS, |q| scene.clearances(q))?;

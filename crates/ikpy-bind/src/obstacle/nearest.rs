@@ -9,9 +9,9 @@ use super::GivenObstacles;
 use crate::convert::copied;
 use crate::error::raise;
 use crate::hash::content_hash;
+use crate::joint_order::joint_vector;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
-use crate::units::configuration;
 
 /// The nearest two bodies at a configuration, from `obstacles.nearest`.
 #[pyclass(name = "Nearest", module = "beetle_ik.obstacles", frozen, eq)]
@@ -113,6 +113,6 @@ pub fn nearest(
 ) -> PyResult<Option<PyNearest>> {
     let obstacles = GivenObstacles::read_for(py, robot, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    let found = scene.nearest_contact(&configuration("joint angles", &robot.core, q)?).map_err(raise)?;
+    let found = scene.nearest_contact(&joint_vector(&robot.core, "joint angles", q)?).map_err(raise)?;
     Ok(found.map(PyNearest::from))
 }

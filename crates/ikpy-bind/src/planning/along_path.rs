@@ -10,6 +10,7 @@ use super::plan::PyPlan;
 use super::tpbso::read_method;
 use crate::convert::{array, count, rigid_matrices, shape_text};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::GivenObstacles;
@@ -18,7 +19,7 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::task::read_task;
-use crate::units::{self, configuration};
+use crate::units;
 use crate::wording::said;
 
 /// Plans a motion that moves the tip along a path.
@@ -101,7 +102,7 @@ pub fn plan_along_path(
     let options = AlongPathOptions {
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
-        start: start_q.map(|q| configuration("start_q", &arm, q)).transpose()?,
+        start: start_q.map(|q| joint_vector(&arm, "start_q", q)).transpose()?,
         task: read_task(task)?,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,

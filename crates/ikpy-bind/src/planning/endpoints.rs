@@ -9,9 +9,10 @@ use pyo3::types::{PyDict, PyList};
 use crate::convert::{Numbers, array, rigid_rows, shape_text};
 use crate::error::invalid;
 use crate::ik::{read_target, read_targets};
+use crate::joint_order::{joint_array, joint_vector};
 use crate::robot::PyRobot;
 use crate::tips::{TaskArguments, ToleranceArgument, read_only};
-use crate::units::{self, configuration, doubt_configurations};
+use crate::units;
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
@@ -29,7 +30,7 @@ pub fn read_start(
             refuse_angles("start", &array("start", &target)?)?;
             doubted("start", robot, read_target("start", &target)?).map(Endpoint::from)
         }
-        Given::Configuration(q) => configuration("start_q", &robot.core, q).map(Endpoint::Configuration),
+        Given::Configuration(q) => joint_vector(&robot.core, "start_q", q).map(Endpoint::Configuration),
     }
 }
 
@@ -100,8 +101,7 @@ fn doubted(what: &str, robot: &PyRobot, target: Target) -> PyResult<Target> {
 
 /// Reads one or several configurations; the core checks the number of joints.
 fn read_configurations(robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
-    let numbers = array("end_q", value)?;
-    doubt_configurations("end_q", &robot.core, &numbers)?;
+    let numbers = joint_array(&robot.core, "end_q", value)?;
     let rows = numbers.as_slice()?;
     match numbers.shape() {
         [_] => Ok(vec![Endpoint::Configuration(rows.to_vec())]),

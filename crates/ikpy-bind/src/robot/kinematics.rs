@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{Rows, count, own, pose_array, table};
 use crate::error::raise;
+use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
-use crate::units::{configuration, configurations};
 
 #[pymethods]
 impl PyRobot {
@@ -31,7 +31,7 @@ impl PyRobot {
         if robot.tip_count() > 1 && link.is_none() {
             return self.of_all_tips(py, q, &[4, 4], Robot::tips_fk_all).map(Bound::into_any);
         }
-        match configurations("joint angles", robot, q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 let q = q.as_slice()?;
                 let pose = link.map_or_else(|| robot.fk(q), |link| robot.link_fk(link, q)).map_err(raise)?;
@@ -50,7 +50,7 @@ impl PyRobot {
     /// Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n).
     fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.core.dof();
-        match configurations("joint angles", &self.core, q)? {
+        match joint_rows(&self.core, "joint angles", q)? {
             Rows::One(q) => {
                 self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
                 table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n]).map(own)
@@ -64,14 +64,14 @@ impl PyRobot {
 
     /// Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let poses = self.core.link_poses(&configuration("joint angles", &self.core, q)?).map_err(raise)?;
+        let poses = self.core.link_poses(&joint_vector(&self.core, "joint angles", q)?).map_err(raise)?;
         let count = poses.len();
         table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4]).map(own)
     }
 
     /// Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4).
     fn all_link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let poses = self.core.all_link_poses(&configuration("joint angles", &self.core, q)?).map_err(raise)?;
+        let poses = self.core.all_link_poses(&joint_vector(&self.core, "joint angles", q)?).map_err(raise)?;
         let count = poses.len();
         table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4]).map(own)
     }
@@ -98,7 +98,7 @@ impl PyRobot {
             None => robot.jacobian_all(q),
             Some(link) => robot.link_jacobian_all(link, q),
         };
-        match configurations("joint angles", robot, q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 robot.check("joint angles", q.as_slice()?).map_err(raise)?;
                 table(py, jacobians(q.as_slice()?).map_err(raise)?, &[6, n]).map(own)
@@ -132,7 +132,7 @@ impl PyRobot {
         each: impl Fn(&Robot, &[f64]) -> ikcore::Result<Vec<f64>> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (robot, n, tips) = (&*self.core, self.core.dof(), self.core.tip_count());
-        match configurations("joint angles", robot, q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 robot.check("joint angles", q.as_slice()?).map_err(raise)?;
                 table(py, each(robot, q.as_slice()?).map_err(raise)?, &[tips, shape[0], shape[1]]).map(own)

@@ -9,9 +9,9 @@ use super::PyRobot;
 use crate::convert::{Rows, own, row, table};
 use crate::error::raise;
 use crate::hash::content_hash;
+use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces};
 use crate::pickling::{self, Reduced};
-use crate::units::{configuration, configurations};
 
 /// The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
 /// tip can move, longest first.
@@ -82,7 +82,7 @@ impl PyRobot {
     #[pyo3(signature = (q, *, motion="pose"))]
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyAny>> {
         let motion: Motion = motion.parse().map_err(raise)?;
-        match configurations("joint angles", &self.core, q)? {
+        match joint_rows(&self.core, "joint angles", q)? {
             Rows::One(q) => {
                 let value = manipulability(&self.core, motion, q.as_slice()?).map_err(raise)?;
                 Ok(value.into_pyobject(py)?.into_any())
@@ -127,7 +127,7 @@ impl PyRobot {
     /// Reads the arguments of the manipulability methods.
     fn measure_at(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<(Manipulability, Vec<f64>)> {
         let motion: Motion = motion.parse().map_err(raise)?;
-        let q = configuration("joint angles", &self.core, q)?;
+        let q = joint_vector(&self.core, "joint angles", q)?;
         self.core.check("joint angles", &q).map_err(raise)?;
         Ok((Manipulability::of(&self.core, motion), q))
     }

@@ -12,10 +12,10 @@ use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 use crate::convert::{array, count, own, pose_array, rigid_rows, shape_text, summary};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
+use crate::joint_order::joint_vector;
 use crate::options::NewArguments;
 use crate::robot::PyRobot;
 use crate::traversal::traversed;
-use crate::units::configuration;
 
 /// A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
 /// an arm whose model is wrong, pass a modified robot, for example `robot.with_errors(...)`.
@@ -76,7 +76,7 @@ impl PyKinematicPlant {
     /// pose (4, 4).
     #[pyo3(name = "move")]
     fn move_to<'py>(&self, py: Python<'py>, q: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let q = configuration("q", self.core.robot(), q)?;
+        let q = joint_vector(self.core.robot(), "q", q)?;
         self.core.robot().check("q", &q).map_err(raise)?;
         let mut plant = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
         let tip = plant.measure(&q).map_err(|Fault(reason)| invalid(format!("the plant {reason}")))?;

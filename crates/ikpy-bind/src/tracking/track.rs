@@ -14,6 +14,7 @@ use super::record::{Columns, counts, record};
 use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -25,7 +26,7 @@ use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
-use crate::units::{self, configuration};
+use crate::units;
 use crate::wording::said;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
@@ -272,7 +273,7 @@ pub fn track(
     }
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
-    let start = start.map(|start| configuration("start", &arm, start)).transpose()?;
+    let start = start.map(|start| joint_vector(&arm, "start", start)).transpose()?;
     let surroundings = read_surroundings(robot.get(), obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;

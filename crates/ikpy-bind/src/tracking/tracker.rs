@@ -21,6 +21,7 @@ use super::step::PyStep;
 use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target_by;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
@@ -28,7 +29,7 @@ use crate::robot::PyRobot;
 use crate::tip_keys::TipKeys;
 use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
-use crate::units::{self, configuration};
+use crate::units;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -126,7 +127,7 @@ impl PyTracker {
         let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let mut session = Session::new(arm, &configuration("start", arm, start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
         units::doubt(options.surroundings.obstacles.as_ref().and_then(|all| units::of_obstacles(arm, all)))?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
@@ -241,7 +242,7 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let q = configuration("q", &self.robot.get().core, q)?;
+        let q = joint_vector(&self.robot.get().core, "q", q)?;
         let (qd, qdd) = (read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
