@@ -16,12 +16,13 @@ from . import (
     solving,
     streams,
     tracking,
+    units,
     xacro_files,
 )
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line),
+    *(calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
