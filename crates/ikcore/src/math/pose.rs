@@ -129,7 +129,7 @@ impl fmt::Display for Drift {
 /// turns multiplied in single precision for long. Returns the pose with the nearest rotation, and the drift.
 ///
 /// # Errors
-/// As [`from_matrix`].
+/// [`Error::NotFinite`] and [`Error::NotRigid`], as [`from_matrix`].
 pub fn from_drifted(what: &str, matrix: &Matrix4<f64>) -> Result<(Pose, Option<Drift>)> {
     check_to(what, matrix, DRIFT_TOLERANCE)?;
     let deviation = deviation(matrix);
