@@ -48,6 +48,7 @@ def robot(
             problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
             raise InvalidInputError(problem) from None
     reader.require_uncoupled(made.joint_names)
+    made._doubt_degrees()
     return made
 
 

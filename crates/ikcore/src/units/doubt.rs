@@ -13,6 +13,8 @@ pub enum Unit {
     Degrees,
     /// Degrees per second for radians per second.
     DegreesPerSecond,
+    /// Radians that were converted from degrees.
+    RadiansAsDegrees,
     /// Millimetres for metres.
     Millimetres,
 }
@@ -64,6 +66,9 @@ impl UnitDoubt {
             Unit::Degrees => ("rad", "degrees", "degrees", format!("{} rad", number(value.to_radians()))),
             Unit::DegreesPerSecond => {
                 ("rad/s", "degrees per second", "degrees/s", format!("{} rad/s", number(value.to_radians())))
+            }
+            Unit::RadiansAsDegrees => {
+                ("rad", "radians read as degrees", "rad", format!("{} degrees", number(value.to_degrees())))
             }
             Unit::Millimetres => ("m", "millimetres", "mm", format!("{} m", number(1e-3 * value))),
         };

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::angles::{MOST_DEGREES, are_degrees};
-use super::doubt::UnitDoubt;
+use super::doubt::{Unit, UnitDoubt};
 use super::lengths::reach_of_links;
 use crate::limits::{Field, Limits};
 use crate::message::{Setting, message};
@@ -17,6 +17,9 @@ const FAST: f64 = 60.0;
 
 /// Slide (m) that looks like millimetres, with the multiple of the reach of the links.
 const LONG_SLIDE: [f64; 2] = [150.0, 30.0];
+
+/// Largest limit of all joints (rad) that looks like radians converted from degrees: 1 and 2 pi degrees.
+const CONVERTED: [f64; 2] = [PI / 180.0, PI * PI / 90.0];
 
 /// Round numbers that stand for "no limit".
 const UNLIMITED: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];
@@ -36,6 +39,18 @@ pub fn of_limits_of_call(robot: &Robot, limits: &Limits) -> Vec<UnitDoubt> {
     let joints: Vec<Joint> = robot.joints().iter().enumerate().map(joint).collect();
     let known = of_limits(robot);
     of_joints(robot, &joints).into_iter().filter(|doubt| !known.contains(doubt)).collect()
+}
+
+/// Doubts the limits of a model whose angles were converted from degrees: all are as small as radians would become.
+pub fn of_converted_limits(robot: &Robot) -> Option<UnitDoubt> {
+    let bounded = || robot.joints().iter().filter(|joint| joint.kind.turns() && is_bounded(joint));
+    let most = bounded().map(|joint| farther(joint).abs()).fold(0.0, f64::max);
+    if bounded().count() < 2 || !(CONVERTED[0]..=CONVERTED[1]).contains(&most) {
+        return None;
+    }
+    let doubt = doubted(bounded(), |thing, joint| UnitDoubt::joint_degrees(thing, farther(joint)))?;
+    let remedy = "angles of the model are in degrees unless its compiler says radian".into();
+    Some(UnitDoubt { unit: Unit::RadiansAsDegrees, remedy, ..doubt })
 }
 
 fn of_joints(robot: &Robot, joints: &[Joint]) -> Vec<UnitDoubt> {
@@ -198,6 +213,24 @@ mod tests {
         {
             assert!(!of(honest), "{honest:?}");
         }
+    }
+
+    #[test]
+    fn radians_read_as_degrees_are_doubted() {
+        let table = |limit: f64| {
+            let mut table =
+                crate::load::DhTable::new(crate::load::Dh::Modified, vec![0.3; 3], vec![0.0; 3], vec![0.0; 3]);
+            (table.lower, table.upper) = (vec![-limit; 3], vec![limit; 3]);
+            Robot::from_dh("arm", &table).unwrap()
+        };
+        let doubt = of_converted_limits(&table(3.14_f64.to_radians())).unwrap();
+        assert_eq!(
+            doubt.message(),
+            "upper limit of joint 'joint_1' (and those of 2 other joints) is 0.05480 rad (0.008722 turns), which looks like \
+             radians read as degrees: 0.05480 rad are 3.140 degrees; angles of the model are in degrees unless its compiler says radian"
+        );
+        assert_eq!(of_converted_limits(&table(3.14)), None);
+        assert_eq!(of_converted_limits(&table(0.3)), None);
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! | roll, pitch and yaw | roll or pitch beyond [`MANY_TURNS`], or typed in degrees |
 //! | rotation vector | longer than eight turns, or typed in degrees |
 //! | position limits of revolute joints | all beyond 15 rad and one beyond 30, or typed in degrees; not multiples of pi, and not +-50, 100, 200, 500 or 1000 |
+//! | position limits of a MuJoCo model | those of two or more joints are all within 2 pi degrees: radians read as degrees |
 //! | velocity limits of revolute joints | all of two or more beyond 60 rad/s; not one round number for all |
 //! | twists and offsets of a Denavit-Hartenberg table | beyond two turns |
 //! | position of a joint that slides | 22 m and 20 ranges outside its range, and inside it as millimetres |
@@ -27,4 +28,4 @@ pub use angles::{MANY_TURNS, of_dh_angles, of_rotation_vector, of_rpy, of_rpy_in
 pub use doubt::{Unit, UnitDoubt};
 pub use joints::of_configurations;
 pub use lengths::{of_obstacles, of_position, of_sizes, of_tool};
-pub use limits::{of_limits, of_limits_of_call};
+pub use limits::{of_converted_limits, of_limits, of_limits_of_call};

@@ -122,6 +122,11 @@ impl PyRobot {
         python_calls::robot(model.py(), "mjcf", (model, base, tip, hold, collision, trusted))
     }
 
+    /// Doubts limits that a MuJoCo model gives in degrees by default.
+    fn _doubt_degrees(&self) -> PyResult<()> {
+        doubt(units::of_converted_limits(&self.core))
+    }
+
     /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
     /// example "panda_description" or "panda_mj_description", which downloads it at first use. Needs the extra
     /// "robots".
