@@ -422,6 +422,8 @@ class Robot:
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
         model is wrong.
         """
+    def _doubt_degrees(self) -> None:
+        """Doubts limits that a MuJoCo model gives in degrees by default."""
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
         """Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`."""

@@ -1,4 +1,4 @@
-"""Poses as they are written: rounded, drifted, transposed and mirrored matrices, and arrays that a caller may write to."""
+"""Poses as they are written: rounded, drifted, transposed and mirrored matrices; arrays that may be written to."""
 
 import pickle
 
@@ -19,8 +19,8 @@ def nearest(rotation: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("decimals", [3, 4, 5, 6])
 def test_rounded_matrices_become_the_nearest_rotation(decimals: int) -> None:
-    for T in PANDA.fk(PANDA.random_configurations(50, seed=decimals)):
-        rounded = T.round(decimals)
+    for pose in PANDA.fk(PANDA.random_configurations(50, seed=decimals)):
+        rounded = pose.round(decimals)
         for made in (bik.pose(matrix=rounded), bik.pose(rounded[:3, 3], matrix=rounded[:3, :3])):
             np.testing.assert_allclose(made[:3, :3], nearest(rounded[:3, :3]), rtol=0, atol=1e-14)
             np.testing.assert_array_equal(made[:3, 3], rounded[:3, 3])
@@ -28,21 +28,25 @@ def test_rounded_matrices_become_the_nearest_rotation(decimals: int) -> None:
 
 
 def test_a_pose_needs_no_position() -> None:
-    T = PANDA.fk(READY)
-    np.testing.assert_allclose(bik.pose(matrix=T), T, rtol=0, atol=1e-15)
+    pose = PANDA.fk(READY)
+    np.testing.assert_allclose(bik.pose(matrix=pose), pose, rtol=0, atol=1e-15)
     np.testing.assert_array_equal(bik.pose(rpy=[0, 0, 1.0]), bik.pose([0, 0, 0], rpy=[0, 0, 1.0]))
 
 
+MIRRORED = "its rotation is a reflection (determinant -1): turn one of its axes round"
+TRANSPOSED = (
+    "its last row is (0.3, 0.1, 0.5, 1), not (0, 0, 0, 1): transpose it, so that the position is its last column"
+)
 R_OFF = "; the nearest rotation is U V' of its singular value decomposition U S V'"
 
 
 @pytest.mark.parametrize(
     ("change", "problem"),
     [
-        (lambda T: T * np.diag([1.2, 1, 1, 1]), "R'R differs from the identity by 4.400e-1" + R_OFF),
-        (lambda T: T @ np.diag([1, 1, -1, 1]), "its rotation is a reflection (determinant -1): turn one of its axes round"),
-        (lambda T: T.T, "its last row is (0.3, 0.1, 0.5, 1), not (0, 0, 0, 1): transpose it, so that the position is its last column"),
-        (lambda T: T + np.diag([0, 0, 0, 1.0]), "its last row is (0, 0, 0, 2), not (0, 0, 0, 1)"),
+        (lambda pose: pose * np.diag([1.2, 1, 1, 1]), "R'R differs from the identity by 4.400e-1" + R_OFF),
+        (lambda pose: pose @ np.diag([1, 1, -1, 1]), MIRRORED),
+        (lambda pose: pose.T, TRANSPOSED),
+        (lambda pose: pose + np.diag([0, 0, 0, 1.0]), "its last row is (0, 0, 0, 2), not (0, 0, 0, 1)"),
     ],
     ids=["scaled", "mirrored", "transposed", "last row"],
 )
@@ -64,20 +68,21 @@ def test_sixteen_numbers_are_told_their_shape() -> None:
     with pytest.raises(bik.InvalidInputError) as told:
         bik.solve(PANDA, np.eye(4).ravel())
     assert str(told.value) == (
-        "target: expected a pose (4, 4) or a position (3,), got shape (16,); .reshape(4, 4) makes a matrix of 16 numbers, row by row"
+        "target: expected a pose (4, 4) or a position (3,), got shape (16,); "
+        ".reshape(4, 4) makes a matrix of 16 numbers, row by row"
     )
 
 
 @pytest.mark.parametrize("limits", [None, LIMITS], ids=["velocity", "jerk"])
 def test_a_tracker_takes_turns_accumulated_in_float32(limits: bik.Limits | None) -> None:
     """Half an hour at 1 kHz in a few hundred steps: the drift of products in single precision, made faster."""
-    T = PANDA.fk(READY)
+    pose = PANDA.fk(READY)
     tracker = bik.Tracker(PANDA, READY, dt=0.01, limits=limits)
     turn = bik.pose(rotvec=[0, 0, 0.002])[:3, :3].astype(np.float32) * np.float32(1.0 + 1e-4)
-    rotation, messages, drifted = T[:3, :3].astype(np.float32), [], []
+    rotation, messages, drifted = pose[:3, :3].astype(np.float32), [], []
     for _ in range(600):
         rotation = turn @ rotation
-        target = bik.pose(T[:3, 3]).astype(np.float32)
+        target = bik.pose(pose[:3, 3]).astype(np.float32)
         target[:3, :3] = rotation
         step = tracker.step(target)
         messages.append(step.message)
@@ -93,9 +98,9 @@ def test_a_tracker_takes_turns_accumulated_in_float32(limits: bik.Limits | None)
 
 
 def test_a_step_with_a_drifted_target_is_pickled_with_its_message() -> None:
-    T = PANDA.fk(READY)
-    T[:3, :3] *= 1.01
-    step = bik.Tracker(PANDA, READY, dt=0.01).step(T)
+    pose = PANDA.fk(READY)
+    pose[:3, :3] *= 1.01
+    step = bik.Tracker(PANDA, READY, dt=0.01).step(pose)
     assert step.success
     assert "drifted" in step.message
     assert pickle.loads(pickle.dumps(step)).message == step.message

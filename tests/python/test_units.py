@@ -14,11 +14,16 @@ DEGREES = [0.0, -45.0, 0.0, -135.0, 0.0, 90.0, 45.0]
 READY = np.radians(DEGREES)
 PANDA = bik.Robot.named("panda").with_capsules(radius=0.05)
 BALL = bik.obstacles.Sphere((400, 0, 300), 50)
-JOINT2 = "joint 'panda_joint2' is -45 rad (7.162 turns), which looks like degrees: -45 degrees are -0.7854 rad; np.radians converts degrees"
-TARGET = "y is 400 m (the arm reaches 0.9881 m), which looks like millimetres: 400 mm are 0.4000 m; lengths are in metres"
+JOINT2 = (
+    "joint 'panda_joint2' is -45 rad (7.162 turns), which looks like degrees: -45 degrees are -0.7854 rad; "
+    "np.radians converts degrees"
+)
+TARGET = (
+    "y is 400 m (the arm reaches 0.9881 m), which looks like millimetres: 400 mm are 0.4000 m; lengths are in metres"
+)
 SPHERE = (
-    "distance of obstacle 0 (Sphere) is 345.0 m (the arm reaches 0.9881 m), which looks like millimetres: 345.0 mm are 0.3450 m; "
-    "lengths are in metres"
+    "distance of obstacle 0 (Sphere) is 345.0 m (the arm reaches 0.9881 m), which looks like millimetres: "
+    "345.0 mm are 0.3450 m; lengths are in metres"
 )
 
 
@@ -33,7 +38,8 @@ def said(call: Callable[[], object]) -> list[str]:
 
 def urdf(lower: float, upper: float, velocity: float, rpy: str = "0 0 0") -> str:
     joint = (
-        "<joint name='{0}' type='revolute'><parent link='{1}'/><child link='{2}'/><origin xyz='0 0 0.3' rpy='{3}'/><axis xyz='0 1 0'/>"
+        "<joint name='{0}' type='revolute'><parent link='{1}'/><child link='{2}'/>"
+        "<origin xyz='0 0 0.3' rpy='{3}'/><axis xyz='0 1 0'/>"
         f"<limit lower='{lower}' upper='{upper}' velocity='{velocity}' effort='1'/></joint>"
     )
     return (
@@ -115,12 +121,13 @@ def test_angles_of_a_pose_in_degrees_warn_and_degrees_takes_them() -> None:
 
 def test_limits_in_degrees_warn_wherever_they_are_given() -> None:
     upper = (
-        "upper limit of joint '{0}' (and {1}) is 170 rad (27.06 turns), which looks like degrees: 170 degrees are 2.967 rad; "
-        "limits are in radians: np.radians converts degrees"
+        "upper limit of joint '{0}' (and {1}) is 170 rad (27.06 turns), which looks like degrees: "
+        "170 degrees are 2.967 rad; limits are in radians: np.radians converts degrees"
     )
     velocity = (
-        "velocity limit of joint '{0}' (and {1}) is 180 rad/s (28.65 turns per second), which looks like degrees per second: "
-        "180 degrees/s are 3.142 rad/s; limits are in radians per second: np.radians converts degrees"
+        "velocity limit of joint '{0}' (and {1}) is 180 rad/s (28.65 turns per second), "
+        "which looks like degrees per second: 180 degrees/s are 3.142 rad/s; "
+        "limits are in radians per second: np.radians converts degrees"
     )
     both = f"{upper}; {velocity}"
     assert said(lambda: bik.Robot.from_urdf(urdf(-170, 170, 180))) == [both.format("one", "that of another joint")]
@@ -157,7 +164,8 @@ def test_lengths_of_a_robot_in_millimetres_warn() -> None:
     ]
     hand = [("panda_link7", (0, 0, 0), (0, 0, 0.1), 60.0)]
     assert said(lambda: PANDA.with_capsules(hand)) == [
-        "radius of a body of link 'panda_link7' (given) is 60.05 m (the arm reaches 0.9881 m), " + metres.format("60.05", "0.06005")
+        "radius of a body of link 'panda_link7' (given) is 60.05 m (the arm reaches 0.9881 m), "
+        + metres.format("60.05", "0.06005")
     ]
 
 
@@ -167,7 +175,9 @@ def test_an_error_that_a_unit_caused_says_so_itself() -> None:
     assert str(told.value).endswith(f"; end: {TARGET}")
     with pytest.raises(bik.LimitError) as told:
         bik.Tracker(PANDA, DEGREES, dt=0.01)
-    assert str(told.value).endswith("is outside its limits [-1.7628, 1.7628]: angles are in radians; np.radians converts degrees")
+    assert str(told.value).endswith(
+        "is outside its limits [-1.7628, 1.7628]: angles are in radians; np.radians converts degrees"
+    )
     assert said(lambda: PANDA.fk(READY)) == []  # nothing is left over from the errors
 
 
@@ -199,7 +209,9 @@ HONEST = np.random.default_rng(5)
         lambda: bik.solve(PANDA.with_base(bik.pose([4e5, 5e6, 120.0])), [4e5, 5e6, 120.5]),
         lambda: bik.Robot.planar([10.0, 12.0, 8.0]),
         lambda: bik.solve(bik.Robot.planar([10.0, 12.0]), bik.pose([300.0, 0, 0])[:3, 3]),
-        lambda: bik.solve(PANDA, [0.4, 0.1, 0.4], obstacles=[bik.obstacles.Box(size=(100, 100, 0.2), center=(0, 0, -0.1))]),
+        lambda: bik.solve(
+            PANDA, [0.4, 0.1, 0.4], obstacles=[bik.obstacles.Box(size=(100, 100, 0.2), center=(0, 0, -0.1))]
+        ),
         lambda: bik.solve(PANDA, [0.4, 0.1, 0.4], obstacles=[bik.obstacles.HalfSpace(normal=(0, 0, 1), offset=-700.0)]),
         lambda: bik.solve(PANDA, [0.4, 0.1, 0.4], obstacles=[bik.obstacles.Sphere((25.0, 0, 0), 2.0)]),
         lambda: bik.pose([0, 0, 0], rpy=[0.1, 0.2, 85.3]),
@@ -229,3 +241,17 @@ def test_a_warning_names_the_line_of_the_program_that_caused_it() -> None:
     program = "import beetle_ik as bik\nrobot = bik.Robot.named('ur5e')\nrobot.fk([0, -90, 90, 0, 0, 0])\n"
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert ran.stderr.startswith("<string>:3: UnitsWarning: joint angles: joint ")
+
+
+def test_the_command_line_takes_degrees_and_warns_in_its_own_words() -> None:
+    def ran(*arguments: str) -> "subprocess.CompletedProcess[str]":
+        command = [sys.executable, "-m", "beetle_ik", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=True)
+
+    pytest.importorskip("typer")
+    degrees = ran("fk", "ur5e", "--q", "0,-90deg,90deg,0,45deg,0")
+    radians = ran("fk", "ur5e", "--q", ",".join(map(str, np.radians([0, -90, 90, 0, 45, 0]))))
+    assert (degrees.stdout, degrees.stderr) == (radians.stdout, "")
+    warned = ran("fk", "ur5e", "--q", "0,-90,90,0,45,0").stderr
+    assert warned.startswith("Warning: joint angles: joint '")
+    assert warned.endswith("-90 degrees are -1.571 rad; 90deg is 90 degrees\n")

@@ -3,10 +3,11 @@
 import os
 import sys
 import warnings
+from pathlib import Path
 
 from .._core import UnitsWarning
 
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
+_PACKAGE = f"{Path(__file__).parent.parent}{os.sep}"
 
 
 def warn(message: str) -> None:

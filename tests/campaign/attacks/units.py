@@ -53,9 +53,7 @@ class Units(Attack):
         return 1
 
 
-def _call(
-    random: np.random.Generator, robot: bik.Robot, q: np.ndarray, kind: str, wrong: bool, hard: bool
-) -> str:
+def _call(random: np.random.Generator, robot: bik.Robot, q: np.ndarray, kind: str, wrong: bool, hard: bool) -> str:
     """Returns a call with a value of this kind, in the wrong unit or not."""
     place = robot.fk(q)[:3, 3]
     reach = float(np.linalg.norm(robot.fk(np.zeros(len(q)))[:3, 3])) + 0.5
@@ -71,14 +69,16 @@ def _call(
             turns = TURN * random.integers(-2, 3, len(q)) if hard else 0.0
             return f"robot.fk({(q + turns).tolist()})"
         case "target":
-            target = 1e3 * (place + [0.0, 0.0, 0.3]) if wrong else place + random.uniform(0, 3.0) * away * (reach if hard else 1)
+            beyond = random.uniform(0, 3.0) * (reach if hard else 1.0)
+            target = 1e3 * np.add(place, (0.0, 0.0, 0.3)) if wrong else place + beyond * away
             if wrong and np.linalg.norm(target) < 200.0 * max(reach, 1.0):
-                target = np.array([0.0, 1e3 * 0.5 * max(reach, 1.0), 0.0])
+                target = np.array([0.0, 500.0 * max(reach, 1.0), 0.0])
             return f"bik.solve(robot, {target.tolist()}, stop=bik.Stop(max_evaluations=50))"
         case "obstacle":
-            center = 1e3 * np.array([0.0, 0.8 * max(reach, 1.0), 0.0]) if wrong else place + (reach + random.uniform(0, 10)) * away
-            size = 50.0 if wrong else 0.05
-            return f"bik.obstacles.clearance(robot, {q.tolist()}, [bik.obstacles.Sphere({tuple(center.tolist())}, {size})])"
+            near = place + (reach + random.uniform(0, 10)) * away
+            center = np.array([0.0, 800.0 * max(reach, 1.0), 0.0]) if wrong else near
+            sphere = f"bik.obstacles.Sphere({tuple(center.tolist())}, {50.0 if wrong else 0.05})"
+            return f"bik.obstacles.clearance(robot, {q.tolist()}, [{sphere}])"
         case _:
             if wrong:
                 angles = random.choice(RIGHT_ANGLES, 3)
