@@ -137,7 +137,11 @@ fn remedy(error: &Error) -> &'static str {
         Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),
         Error::OutsideLimits { value, lower, upper, .. } => {
             let in_degrees = value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians());
-            if in_degrees { IN_RADIANS } else { ": move it inside, such as by np.clip" }
+            if in_degrees {
+                ": angles are in radians; np.radians converts degrees"
+            } else {
+                ": move it inside, such as by np.clip"
+            }
         }
         _ => "",
     }

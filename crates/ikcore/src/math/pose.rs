@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drifted_rotation_is_taken_as_the_nearest_where_drift_is_expected() {
+    fn a_drifted_rotation_is_taken_as_the_nearest_one() {
         let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
         let exact = Rotation3::from_axis_angle(&axis, 1.2).into_inner();
         let strain = Matrix3::new(0.03, 0.01, -0.02, 0.0, -0.05, 0.04, 0.01, 0.0, 0.06);
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transposed_pose_is_named_and_rounding_of_the_last_row_is_taken() {
+    fn a_transposed_pose_is_named_and_a_rounded_last_row_taken() {
         let mut matrix = translation(0.4, 0.0, 0.3).to_homogeneous();
         matrix[(3, 3)] = 1.0 - 1e-7;
         assert_eq!(from_matrix("T", &matrix).unwrap(), translation(0.4, 0.0, 0.3));

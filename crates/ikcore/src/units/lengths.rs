@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn targets_in_millimetres_are_doubted_and_those_out_of_reach_are_not() {
+    fn targets_in_millimetres_are_doubted_those_out_of_reach_not() {
         let robot = panda();
         let doubt = of_position(&robot, "target", &[0], &[412.0, -80.0, 300.0]).unwrap();
         assert_eq!((doubt.thing.as_str(), doubt.value), ("target: x", 412.0));

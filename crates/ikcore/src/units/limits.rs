@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn velocities_in_degrees_are_doubted_and_those_of_motors_are_not() {
+    fn velocities_in_degrees_are_doubted_those_of_motors_are_not() {
         let of = |velocities: &[f64]| {
             let joints = turning(&vec![(-3.0, 3.0); velocities.len()]);
             let joints = joints.into_iter().zip(velocities).map(|(joint, velocity)| joint.with_velocity(*velocity));
