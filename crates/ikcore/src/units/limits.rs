@@ -32,9 +32,13 @@ pub fn of_limits(robot: &Robot) -> Vec<UnitDoubt> {
 /// Doubts the limits of a call as far as they differ from those of the robot; limits that vary count as at the start.
 pub fn of_limits_of_call(robot: &Robot, limits: &Limits) -> Vec<UnitDoubt> {
     let value = |field: Field, j: usize| limits.field(field).map_or(f64::INFINITY, |profiles| profiles[j].at(0.0));
+    let range = |j: usize| [value(Field::Lower, j), value(Field::Upper, j)];
+    if !(0..robot.dof()).any(|j| is_large(range(j), value(Field::Velocity, j))) {
+        return vec![];
+    }
     let joint = |(j, own): (usize, &Joint)| {
-        let range = own.clone().with_range(value(Field::Lower, j), value(Field::Upper, j));
-        range.with_velocity(value(Field::Velocity, j))
+        let [lower, upper] = range(j);
+        own.clone().with_range(lower, upper).with_velocity(value(Field::Velocity, j))
     };
     let joints: Vec<Joint> = robot.joints().iter().enumerate().map(joint).collect();
     let known = of_limits(robot);
@@ -54,12 +58,17 @@ pub fn of_converted_limits(robot: &Robot) -> Option<UnitDoubt> {
 }
 
 fn of_joints(robot: &Robot, joints: &[Joint]) -> Vec<UnitDoubt> {
-    let angles = joints.iter().any(|joint| farther(joint).abs() >= WIDE[1] || joint.velocity >= FAST);
-    if !angles {
+    if !joints.iter().any(|joint| is_large([joint.lower, joint.upper], joint.velocity)) {
         return vec![];
     }
     let reach = reach_of_links(robot);
     of_position_limits(joints, reach).into_iter().chain(of_velocity_limits(joints)).collect()
+}
+
+/// Whether one of these limits of a joint is large enough for a doubt; most joints have none.
+fn is_large(range: [f64; 2], velocity: f64) -> bool {
+    let beyond = |limit: f64, least: f64| limit.abs() >= least && limit.is_finite();
+    range.iter().any(|limit| beyond(*limit, WIDE[1])) || beyond(velocity, FAST)
 }
 
 /// Doubts position limits (rad, m); `reach` is that of the links (m).
