@@ -2,7 +2,7 @@
 # core, then build and run `python tools/stub_docstrings.py`.
 #
 # Letters in the shape comments: n = degrees of freedom, m = items of a batch, k = samples in time.
-# SI units and radians throughout; results are read-only.
+# SI units and radians throughout; attributes of results are read-only.
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -76,6 +76,9 @@ class CallError(InvalidInputError, TypeError):
     """A call that does not fit its signature: an argument of the wrong type, one that is missing or unknown. Also a
     `TypeError`, which Python raises there.
     """
+
+class UnitsWarning(UserWarning):
+    """A value that looks like degrees where radians are due, or millimetres for metres. The call has used it as given."""
 
 # --- robots -------------------------------------------------------------------------------------
 
@@ -419,6 +422,8 @@ class Robot:
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
         model is wrong.
         """
+    def _doubt_degrees(self) -> None:
+        """Doubts limits that a MuJoCo model gives in degrees by default."""
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
         """Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`."""
@@ -503,13 +508,14 @@ class VelocityEllipsoid:
         """
 
 def pose(
-    position: ArrayLike,
+    position: ArrayLike | None = None,
     *,
     xyzw: ArrayLike | None = None,
     wxyz: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
     matrix: _Pose | None = None,
+    degrees: bool = False,
 ) -> _Array:
     """Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 

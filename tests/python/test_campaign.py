@@ -169,6 +169,10 @@ SPOILED = {
         "again = bik.Scene()",
         "a saved scene is loaded differently",
     ),
+    "units": (
+        "said = ['one', 'too', 'many']",
+        "a value in another unit does not warn once",
+    ),
     "csv": (
         "again = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]])",
         "a motion is written and read differently",

@@ -9,6 +9,7 @@ mod goal;
 mod hash;
 mod ik;
 mod indexing;
+mod joint_order;
 mod limits;
 mod minimize;
 mod monitor;
@@ -35,6 +36,7 @@ mod tips;
 mod tracking;
 mod trajectory;
 mod traversal;
+mod units;
 mod wording;
 
 use pyo3::prelude::*;

@@ -164,7 +164,8 @@ fn matrices_that_are_no_poses_are_refused() {
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 1.0, 1.0, 2.0].into())), last_row);
     let scaled = "target is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 2.0, 1.0, 1.0].into())), scaled);
-    let mirrored = "target is not a rigid transform: its rotation is a reflection (determinant -1)";
+    let mirrored =
+        "target is not a rigid transform: its rotation is a reflection (determinant -1): turn one of its axes round";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, -1.0, 1.0, 1.0].into())), mirrored);
     let nowhere = pose::translation(0.0, INFINITE, 0.0);
     let says = "tool must be finite, but entry (1, 3) is inf";

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -43,6 +44,8 @@ pub struct PyStep {
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Names the joints that limits of zero lock.
     lock: Option<Arc<Message>>,
+    /// Sentence about a target whose rotation had drifted.
+    drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
     around: OnceLock<Option<Clearance>>,
 }
@@ -114,24 +117,25 @@ impl PyStep {
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock))
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None, lock=None))]
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None))]
     fn _restore(
         py: Python<'_>,
         bytes: &[u8],
         limits: Py<PyLimits>,
         tips: Option<&[u8]>,
         lock: Option<String>,
+        drift: Option<String>,
     ) -> PyResult<Self> {
         let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
         let lock = lock.map(|lock| Arc::new(lock.into()));
-        Ok(Self { around: OnceLock::from(around), lock, ..step })
+        Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
 }
 
@@ -148,6 +152,7 @@ impl PyStep {
             tips: TipErrors::unnamed(),
             among: None,
             lock: None,
+            drift: None,
             around: OnceLock::new(),
         }
     }
@@ -155,6 +160,11 @@ impl PyStep {
     /// Adds the errors by tip.
     pub fn of_tips(self, tips: TipErrors) -> Self {
         Self { tips, ..self }
+    }
+
+    /// Adds the drift of the target's rotation to the message.
+    pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
+        Self { drift: drift.map(|drift| drift.to_string()), ..self }
     }
 
     /// Adds the clear space of an arm, and its configuration `q`.
@@ -178,6 +188,10 @@ impl PyStep {
             (Some(lock), _) if self.core.status == Status::Capped => self.core.message_with(&**lock),
             (_, Some(nearest)) => self.core.message_near(&nearest.contact),
             _ => self.core.message(),
+        };
+        let message = match &self.drift {
+            Some(drift) => format!("{}; {drift}", said(&message)).into(),
+            None => message,
         };
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {

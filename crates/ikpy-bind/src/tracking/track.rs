@@ -11,9 +11,10 @@ use pyo3::types::PyDict;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
-use crate::convert::{row, table, vector};
+use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -25,6 +26,7 @@ use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
+use crate::units;
 use crate::wording::said;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
@@ -267,10 +269,14 @@ pub fn track(
     let rule = tick_rule(solver)?;
     let asked = Asked::read("path", robot.get(), path, read_path)?;
     let references = sampled(py, &asked, dt, rule.uses_velocities())?;
+    for ((subject, _), reference) in asked.iter().zip(&references) {
+        let rows = [0, reference.len() / 2, reference.len() - 1].into_iter();
+        units::doubt(rows.filter_map(|row| units::of_point(&arm, "path", subject, &reference.position(row))).next())?;
+    }
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
-    let start = start.map(|start| vector("start", start)).transpose()?;
-    let surroundings = read_surroundings(obstacles, margin, self_collision)?;
+    let start = start.map(|start| joint_vector(&arm, "start", start)).transpose()?;
+    let surroundings = read_surroundings(robot.get(), obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());

@@ -84,6 +84,8 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "from_quaternion" OutOfRange: pose::from_quaternion([0.0; 4], [0.0; 3]), "length of the quaternion must be positive and finite, got 0";
         "finite" NotFinite: pose::finite("point", [0.0, NAN, 0.0]), "point must be finite, but entry 1 is NaN";
         "from_matrix" NotFinite: pose::from_matrix("target", &(Matrix4::identity() * NAN)), "target must be finite, but entry (0, 0) is NaN";
+        "from_drifted" NotFinite: pose::from_drifted("target", &(Matrix4::identity() * NAN)), "target must be finite, but entry (0, 0) is NaN";
+        "from_drifted" NotRigid: pose::from_drifted("target", &(Matrix4::identity() * 2.0)), "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)";
         "from_matrix" NotRigid: pose::from_matrix("target", &(Matrix4::identity() * 2.0)), "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)";
         "state_to_state" WrongLength: state_to_state(&state(&[0.0; 2]), &state(&[1.0]), &rated()), "q1: expected 2 joints, got 1";
         "state_to_state" NotFinite: state_to_state(&state(&[0.0, NAN]), &state(&[1.0; 2]), &rated()), "q0 must be finite, but joint '1' is NaN";
