@@ -11,8 +11,9 @@ use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator};
 
-use crate::convert::{Numbers, Rows, array, count, optional_count, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, count, optional_count, row, shape_text, table};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_rows;
 use crate::ik::PySolution;
 use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -259,7 +260,7 @@ pub fn solve_batch(
         (Asked::One(_), [only]) => *only,
         _ => Targets::Tips(&each),
     };
-    let starts = starts.map(|starts| rows("starts", arm.name(), arm.dof(), starts)).transpose()?;
+    let starts = starts.map(|starts| joint_rows(&arm, "starts", starts)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),

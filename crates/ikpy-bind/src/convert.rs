@@ -329,26 +329,10 @@ fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<
 }
 
 /// The rows (m, n) of a batch, or a single row (n,): the numbers and, for a batch, m. The core checks n of a single row;
-/// [`rows`] checks it for a batch.
+/// [`joint_rows`](crate::joint_order::joint_rows) checks it for a batch.
 pub enum Rows<'py> {
     /// One row.
     One(Numbers<'py>),
     /// m rows.
     Many(Numbers<'py>, usize),
-}
-
-/// Reads (n,) or (m, n); `owner` names the robot in errors.
-pub fn rows<'py>(what: &str, owner: &str, n: usize, value: &Bound<'py, PyAny>) -> PyResult<Rows<'py>> {
-    let array = array(what, value)?;
-    match array.shape() {
-        [_] => Ok(Rows::One(array)),
-        [m, columns] if *columns == n => {
-            let m = *m;
-            Ok(Rows::Many(array, m))
-        }
-        shape => Err(invalid(format!(
-            "{what} of robot '{owner}': expected shape ({n},) or (m, {n}), got {}",
-            shape_text(shape)
-        ))),
-    }
 }

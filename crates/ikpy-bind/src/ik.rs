@@ -12,8 +12,9 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
+use crate::convert::{array, copied, point, rigid_rows, shape_text};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::PyNearest;
@@ -234,7 +235,7 @@ pub fn solve(
         stop,
         seed,
     };
-    let start = start.map(|start| vector("start", start)).transpose()?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;

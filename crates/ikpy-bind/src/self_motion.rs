@@ -5,8 +5,9 @@ use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use crate::convert::{count, counted, table, vector};
+use crate::convert::{count, counted, table};
 use crate::error::raise;
+use crate::joint_order::joint_vector;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
@@ -132,7 +133,7 @@ pub fn self_motion(
     robot.core.require_one_tip("self_motion").map_err(raise)?;
     let target = read_only("target", robot, target, read_target)?;
     let (_, limits) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let start = start.map(|start| vector("start", start)).transpose()?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
     let options = SelfMotionOptions { start, spacing, limits, seed: count("seed", seed)? };
     let curves = watched(py, None, |watcher| ik::self_motion(&robot.core, &target, &options, watcher))?;
     let names: Vec<String> = robot.core.joints().iter().map(|joint| joint.name.clone()).collect();

@@ -10,8 +10,9 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyIterator, PyList};
 use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{count, table, vector};
+use crate::convert::{count, table};
 use crate::error::raise;
+use crate::joint_order::joint_vector;
 use crate::ik::{PySolution, read_target};
 use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -262,7 +263,8 @@ pub fn solve_all(
         stop,
         seed,
     };
-    let each = arguments.read(robot, &asked, start.map(|start| vector("start", start)).transpose()?, resolved)?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
+    let each = arguments.read(robot, &asked, start, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;
     let options = AllOptions { each, limit, separation, redundancy, turns };

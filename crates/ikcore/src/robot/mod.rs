@@ -19,6 +19,8 @@
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
 //! | `serialization` | robots as bytes |
+//! | `named_values` | joint values by name |
+//! | `wrapped` | the same posture at other whole turns |
 
 mod arms;
 mod attached;
@@ -34,6 +36,7 @@ mod links;
 mod manufacturing_errors;
 mod mobile_base;
 mod model;
+mod named_values;
 mod off_chain;
 mod pair_rule;
 mod pair_sampling;
@@ -45,6 +48,7 @@ mod tip_chain;
 mod tips;
 mod upright_axis;
 mod visual;
+mod wrapped;
 
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
@@ -52,6 +56,7 @@ pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
+pub(crate) use joint::{limit_rounding, outside_limits, position_unit};
 pub use joint::{Joint, JointKind};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub use mobile_base::{BaseLimits, MobileBase};

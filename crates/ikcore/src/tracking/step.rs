@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::JointOutside;
 use crate::message::{Message, message};
 use crate::solver::Status;
 use crate::task::TipError;
@@ -30,8 +31,17 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> Message {
+        self.message_from(&[])
+    }
+
+    /// The [`message`](Self::message) of a step of an arm that began with these joints outside their limits.
+    pub fn message_from(&self, outside: &[JointOutside]) -> Message {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
+        let limits = match (outside, self.inside_limits) {
+            ([], true) => String::new(),
+            ([], false) => "; a joint is outside its limits and returns".into(),
+            _ => JointOutside::in_words(outside, "began"),
+        };
         let how = match self.status {
             Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),

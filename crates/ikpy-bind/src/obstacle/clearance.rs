@@ -4,8 +4,9 @@ use ikcore::obstacle::Scene;
 use pyo3::prelude::*;
 
 use super::GivenObstacles;
-use crate::convert::{Rows, row, rows};
+use crate::convert::{Rows, row};
 use crate::error::raise;
+use crate::joint_order::joint_rows;
 use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
 
@@ -43,7 +44,7 @@ pub fn clearance<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let obstacles = GivenObstacles::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
+    match joint_rows(&robot.core, "joint angles", q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
             let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), ROWS, |q| scene.clearances(q))?;

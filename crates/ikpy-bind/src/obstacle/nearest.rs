@@ -6,8 +6,9 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use super::GivenObstacles;
-use crate::convert::{copied, vector};
+use crate::convert::copied;
 use crate::error::raise;
+use crate::joint_order::joint_vector;
 use crate::hash::content_hash;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
@@ -112,6 +113,6 @@ pub fn nearest(
 ) -> PyResult<Option<PyNearest>> {
     let obstacles = GivenObstacles::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    let found = scene.nearest_contact(&vector("joint angles", q)?).map_err(raise)?;
+    let found = scene.nearest_contact(&joint_vector(&robot.core, "joint angles", q)?).map_err(raise)?;
     Ok(found.map(PyNearest::from))
 }

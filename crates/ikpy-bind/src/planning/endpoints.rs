@@ -6,9 +6,10 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::convert::{Numbers, array, rigid_rows, shape_text, vector};
+use crate::convert::{Numbers, array, rigid_rows, shape_text};
 use crate::error::invalid;
 use crate::ik::read_target;
+use crate::joint_order::{joint_array, joint_vector};
 use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, ToleranceArgument, read_only};
 
@@ -28,7 +29,7 @@ pub fn read_start(
             refuse_angles("start", &array("start", &target)?)?;
             read_target("start", &target).map(Endpoint::from)
         }
-        Given::Configuration(q) => vector("start_q", q).map(Endpoint::Configuration),
+        Given::Configuration(q) => joint_vector(&robot.core, "start_q", q).map(Endpoint::Configuration),
     }
 }
 
@@ -46,7 +47,7 @@ pub fn read_ends(
             ends.map(|(i, end)| read_tips(&format!("end[{i}]"), robot, &end?, task)).collect()
         }
         Given::Target(targets) => Ok(vec![read_tips("end", robot, targets, task)?]),
-        Given::Configuration(q) => read_configurations(q),
+        Given::Configuration(q) => read_configurations(robot, q),
     }
 }
 
@@ -86,8 +87,8 @@ fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
 }
 
 /// Reads one or several configurations; the core checks the number of joints.
-fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
-    let numbers = array("end_q", value)?;
+fn read_configurations(robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
+    let numbers = joint_array(&robot.core, "end_q", value)?;
     let rows = numbers.as_slice()?;
     match numbers.shape() {
         [_] => Ok(vec![Endpoint::Configuration(rows.to_vec())]),

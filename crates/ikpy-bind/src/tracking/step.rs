@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::limits::JointOutside;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -37,6 +38,8 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// Joints that began outside their limits, if any still was.
+    outside: Vec<JointOutside>,
     /// Errors by tip.
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
@@ -109,7 +112,7 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.outside);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
     }
@@ -118,9 +121,10 @@ impl PyStep {
     #[staticmethod]
     #[pyo3(signature = (bytes, limits, tips=None))]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
+        let (core, q, qd, elapsed, around, outside): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
             from_bytes("step", bytes).map_err(raise)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
+        let tips = TipErrors::restored(tips)?;
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside);
         Ok(Self { around: OnceLock::from(around), ..step })
     }
 }
@@ -129,7 +133,12 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self { core, q, qd, limits, elapsed, outside: vec![], tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+    }
+
+    /// Adds the joints that began outside their limits.
+    pub fn led_from(self, outside: Vec<JointOutside>) -> Self {
+        Self { outside, ..self }
     }
 
     /// Adds the errors by tip.
@@ -148,7 +157,7 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message();
+        let message = self.core.message_from(&self.outside);
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
