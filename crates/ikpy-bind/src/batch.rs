@@ -215,7 +215,7 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
-///     LimitError: a start outside the limits (names the row).
+///     LimitError: limits that contradict each other.
 ///
 /// For example:
 ///

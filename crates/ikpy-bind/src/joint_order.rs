@@ -3,9 +3,8 @@
 use ikcore::robot::Robot;
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
 
-use crate::convert::{Numbers, Rows, array, shape_text, table, vector};
+use crate::convert::{Numbers, Rows, array, is_list, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::python_calls;
 
@@ -44,8 +43,7 @@ pub fn joint_rows<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> 
 
 /// Returns the configurations of values with names, in the order of q; None for other values.
 fn in_order<'py>(robot: &Robot, value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let is_plain = value.is_exact_instance_of::<PyList>()
-        || value.is_exact_instance_of::<PyTuple>()
+    let is_plain = is_list(value)
         || (value.is_exact_instance_of::<PyUntypedArray>() && value.cast::<PyArrayDyn<f64>>().is_ok());
     if is_plain {
         return Ok(None);

@@ -39,7 +39,7 @@ use crate::trajectory::{PyTrajectory, names};
 /// Raises:
 ///     TypeError: limits that are no `Limits`.
 ///     InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
-///     LimitError: a position outside its limits.
+///     LimitError: q0 farther outside its limits than start_slack, or q1 outside them.
 ///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
 ///         limits.
 ///     UnsupportedLimit: limits that vary in time.

@@ -14,13 +14,14 @@ from . import (
     searching,
     several,
     solving,
+    starts,
     streams,
     tracking,
     xacro_files,
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, readers, xacro_files),
     *(calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}

@@ -10,7 +10,7 @@ use super::joint_limits::Limits;
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
-use crate::robot::{JointKind, Robot, limit_rounding, outside_limits, position_unit};
+use crate::robot::{JointKind, Robot, limit_rounding, outside_limits, position_unit, way_inside};
 use crate::wording::number;
 
 /// Slack of joints that turn: 5 degrees, the calibration of a hobby servo (rad).
@@ -38,7 +38,7 @@ impl StartSlack {
         }
         match slack.iter().find(|slack| !(**slack >= 0.0)) {
             None => Ok(Self(Some(slack))),
-            Some(wrong) => Err(Error::out_of_range(Setting::StartSlack, "not negative", *wrong)),
+            Some(wrong) => Err(Error::out_of_range(Setting::StartSlack, "zero or more", *wrong)),
         }
     }
 
@@ -184,10 +184,14 @@ impl Limits {
 
 /// Advice for a joint outside its limits: whole turns where they help, else the nearest limit and, for a start, more slack.
 fn remedy(robot: Option<&Robot>, j: usize, value: f64, limits: [f64; 2], is_start: bool) -> Message {
-    let turns = robot.is_some_and(|robot| robot.turned_inside(j, value, None, limits).is_some());
-    match (turns, is_start) {
-        (true, _) => Setting::Wrap.into(),
-        (false, true) => message![Setting::Clip, "; ", Setting::StartSlack, " takes a start farther out"],
-        (false, false) => Setting::Clip.into(),
+    if robot.is_some_and(|robot| robot.turned_inside(j, value, None, limits).is_some()) {
+        return Setting::Wrap.into();
+    }
+    let kind = robot.map(|robot| robot.joints()[j].kind);
+    match way_inside(kind, (limits[0] - value).max(value - limits[1])) {
+        near if is_start && near == message![Setting::Clip] => {
+            message![near, "; ", Setting::StartSlack, " takes a start farther out"]
+        }
+        way => way,
     }
 }

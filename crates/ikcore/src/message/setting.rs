@@ -92,7 +92,7 @@ impl fmt::Display for Setting {
             Self::IgnoreExtra => "ignoring extra names",
             Self::StartSlack => "start slack",
             Self::Wrap => "whole turns taken off bring it inside",
-            Self::Clip => "moved to its limit it changes the pose",
+            Self::Clip => "moving it to the limit changes the pose",
             Self::Retime => "a new timing of the plan",
             Self::Margin => "a margin",
             Self::Surroundings => "obstacles (perhaps none) or self-collision",

@@ -54,11 +54,13 @@ fn plan_from(
     let AdmittedStart { q, outside } = start;
     let options = AlongPathOptions { start: Some(q.clone()), ..options.clone() };
     let mut planned = plan_admitted(robot, tip_path, &options, monitor);
+    let begins_there = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.trajectory.start() == q);
     let succeeded = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.violations.is_empty());
-    if !outside.is_empty() && !succeeded(&planned) {
+    if !outside.is_empty() && !(begins_there(&planned) && succeeded(&planned)) {
         let widened = limits.widened_to(robot, options.limits.as_ref(), &q)?;
         let again = plan_admitted(robot, tip_path, &AlongPathOptions { limits: Some(widened), ..options }, monitor);
-        if succeeded(&again) && again.as_ref().is_ok_and(|plan| limits.contain(&plan.trajectory.end())) {
+        let ends_inside = again.as_ref().is_ok_and(|plan| limits.contain(&plan.trajectory.end()));
+        if !begins_there(&planned) || (succeeded(&again) && ends_inside) {
             planned = again;
         }
     }

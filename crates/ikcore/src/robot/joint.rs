@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
-use crate::message::{Message, message};
+use crate::message::{Message, Setting, message};
 use crate::wording::{number, words};
 
 /// Kind of motion of a joint.
@@ -55,6 +55,16 @@ const LEAST_ROUNDING: f64 = 1e-9;
 pub(crate) fn limit_rounding(lower: f64, upper: f64) -> f64 {
     let range = if (upper - lower).is_finite() { upper - lower } else { 1.0 };
     (ROUNDING_OF_RANGE * range).max(LEAST_ROUNDING)
+}
+
+/// Distance beyond a limit (rad, m) from which on no one moves a joint to the limit without a thought.
+const NEAR: [f64; 2] = [50.0 * std::f64::consts::PI / 180.0, 0.05];
+
+/// Advice for a joint of this kind `beyond` its limit (rad, m).
+pub(crate) fn way_inside(kind: Option<JointKind>, beyond: f64) -> Message {
+    let [turning, sliding] = NEAR;
+    let near = if kind.is_none_or(JointKind::turns) { turning } else { sliding };
+    if beyond <= near { Setting::Clip.into() } else { "move it inside".into() }
 }
 
 /// The error for a joint of this kind (known where a robot is) outside its limits; `what` names the configuration.

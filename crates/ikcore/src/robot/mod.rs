@@ -56,7 +56,7 @@ pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
-pub(crate) use joint::{limit_rounding, outside_limits, position_unit};
+pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use joint::{Joint, JointKind};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub use mobile_base::{BaseLimits, MobileBase};

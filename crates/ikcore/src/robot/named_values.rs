@@ -55,7 +55,8 @@ impl Robot {
         match &missing[..] {
             [] => Ok(order),
             [first, ..] => {
-                let near = suggestion(first, names.iter().map(String::as_str));
+                let others = names.iter().map(String::as_str).filter(|name| !joints().any(|joint| joint == *name));
+                let near = suggestion(first, others);
                 let (quoted, given) = (quoted(&missing), listed(names.iter().map(String::as_str)));
                 let plural = if missing.len() == 1 { "" } else { "s" };
                 let problem = format!("names: joint{plural} {quoted} of robot '{}' missing{near}; given: {given}", self.name());

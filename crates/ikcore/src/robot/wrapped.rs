@@ -1,10 +1,10 @@
 //! Whole turns of joints: the same posture inside the limits, or near another one.
 
-use super::joint::{limit_rounding, outside_limits, position_unit};
+use super::joint::{limit_rounding, outside_limits, position_unit, way_inside};
 use super::model::Robot;
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
-use crate::message::{Setting, message};
+use crate::message::message;
 use crate::wording::number;
 
 impl Robot {
@@ -91,7 +91,7 @@ impl Robot {
             None => "whole turns do not apply to it; ".into(),
         };
         let named = (joint.name.as_str(), Some(joint.kind));
-        outside_limits("q", named, value, [lower, upper], message![why, Setting::Clip])
+        outside_limits("q", named, value, [lower, upper], message![why, way_inside(Some(joint.kind), beyond)])
     }
 }
 

@@ -232,7 +232,7 @@ impl PyTrackResult {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
-///     LimitError: a start outside its limits, or a negative limit.
+///     LimitError: a start farther outside its limits than start_slack, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
 ///         region; position, acceleration or jerk limits that vary in time, among obstacles.
 ///
