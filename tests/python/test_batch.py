@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from interrupts import interrupted, interrupted_by_another_thread
-from mistakes import Case, Invalid, Limit, assert_told, told
+from mistakes import Case, Invalid, assert_told, told
 
 import beetle_ik as bik
 

@@ -5,7 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
-from mistakes import Invalid, Limit, assert_told, told, with_entry
+from mistakes import Invalid, assert_told, told, with_entry
 
 import beetle_ik as bik
 from beetle_ik import goals, tasks

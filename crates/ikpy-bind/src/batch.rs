@@ -13,9 +13,9 @@ use pyo3::types::{PyDict, PyIterator};
 
 use crate::convert::{Numbers, Rows, array, count, optional_count, row, shape_text, table};
 use crate::error::{invalid, raise};
-use crate::joint_order::joint_rows;
 use crate::ik::PySolution;
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_rows;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};

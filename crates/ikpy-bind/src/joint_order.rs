@@ -43,8 +43,8 @@ pub fn joint_rows<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> 
 
 /// Returns the configurations of values with names, in the order of q; None for other values.
 fn in_order<'py>(robot: &Robot, value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let is_plain = is_list(value)
-        || (value.is_exact_instance_of::<PyUntypedArray>() && value.cast::<PyArrayDyn<f64>>().is_ok());
+    let is_plain =
+        is_list(value) || (value.is_exact_instance_of::<PyUntypedArray>() && value.cast::<PyArrayDyn<f64>>().is_ok());
     if is_plain {
         return Ok(None);
     }

@@ -74,7 +74,9 @@ pub fn state_to_state(
     let end_turns: EndTurns = end_turns.parse().map_err(raise)?;
     let limits = match robot {
         None => given.for_joints(py, &names(joint_names, from.q.len())?)?,
-        Some(_) if joint_names.is_some() => return Err(invalid("robot has joint_names of its own: leave one out".into())),
+        Some(_) if joint_names.is_some() => {
+            return Err(invalid("robot has joint_names of its own: leave one out".into()));
+        }
         Some(robot) => {
             robot.core.check("q0", &from.q).and_then(|()| robot.core.check("q1", &to.q)).map_err(raise)?;
             let (_, resolved) = limits_of_call(py, Some(given), robot, &Sampling::once())?;

@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 use crate::convert::{count, counted, table};
 use crate::error::raise;
-use crate::joint_order::joint_vector;
 use crate::ik::read_target;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};

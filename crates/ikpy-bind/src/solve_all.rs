@@ -12,9 +12,9 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use crate::convert::{count, table};
 use crate::error::raise;
-use crate::joint_order::joint_vector;
 use crate::ik::{PySolution, read_target};
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;

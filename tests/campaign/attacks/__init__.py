@@ -21,8 +21,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, readers),
+    *(xacro_files, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

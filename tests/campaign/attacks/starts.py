@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-import beetle_ik as bik
-
 from .. import arms, typed
 from ..attack import Attack, BrokenError, Case
 
@@ -38,11 +36,13 @@ named = robot.q_from([robot.joint_names[i] for i in order], np.take(start, order
 
 class StartsAsRead(Attack):
     name = "starts_as_read"
-    promise = "A start a little outside its limits is led inside without a jump; farther out it is refused; turns come off"
+    promise = (
+        "A start a little outside its limits is led inside without a jump; farther out it is refused; turns come off"
+    )
     page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """Hard starts have several joints outside, by round numbers, at the bounds of what is taken, or a bit beside."""
+        """Hard starts have several joints outside, by round numbers, at the bound of what is taken, or beside it."""
         joints = arms.easy_arm(random, int(random.integers(1, 7)))
         arms.put(joints, random, hard)
         for joint in joints:
@@ -105,7 +105,9 @@ class StartsAsRead(Attack):
             if not left["plan"].success:
                 raise BrokenError("a plan from a start outside breaks limits", left["plan"].message)
             motion = left["plan"].trajectory
-            self.judge_motion(motion.at(np.linspace(0, motion.duration, 200))[0], (lower, upper, rounding), start, "plan")
+            self.judge_motion(
+                motion.at(np.linspace(0, motion.duration, 200))[0], (lower, upper, rounding), start, "plan"
+            )
         self.judge_turns(left, (lower, upper))
         if not np.array_equal(left["named"], start):
             raise BrokenError("values with names come in another order", left["named"].tolist())
@@ -134,7 +136,7 @@ class StartsAsRead(Attack):
         if np.any(np.abs(away - np.round(away)) > SEEN):
             raise BrokenError("a wrapped posture is another one", away.tolist())
 
-    def judge_refusal(self, case: Case, error: Exception) -> None:  # noqa: ARG002
+    def judge_refusal(self, case: Case, error: Exception) -> None:
         if "same configuration" in str(error):  # start and end are one
             return
         raise BrokenError("a right call is refused", str(error)) from error

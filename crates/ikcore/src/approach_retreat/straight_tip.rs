@@ -80,7 +80,8 @@ impl<'a> StraightTip<'a> {
             let motion = scaled(&self.timed(&rows)?, self.limits)?;
             let violations = self.limits.violations(&motion);
             if let Some(violation) = violations.first() {
-                let (excess, hindrance) = (self.excess(q, &motion), beyond.get_or_insert_with(|| violation.to_string()));
+                let (excess, hindrance) =
+                    (self.excess(q, &motion), beyond.get_or_insert_with(|| violation.to_string()));
                 inset = (OVERSHOOT * excess).max(GROWTH * inset);
                 if excess <= 0.0 || inset > LARGEST_INSET {
                     return Ok(Err(hindrance.clone()));

@@ -57,19 +57,12 @@ impl StartSlack {
     }
 
     /// Limits of joint `j`, widened to `start` if it is outside within the slack (rad, m).
-    pub(crate) fn reach(
-        &self,
-        j: usize,
-        kind: Option<JointKind>,
-        start: f64,
-        [lower, upper]: [f64; 2],
-    ) -> (f64, f64) {
+    pub(crate) fn reach(&self, j: usize, kind: Option<JointKind>, start: f64, [lower, upper]: [f64; 2]) -> (f64, f64) {
         let slack = self.of(j, kind);
-        (if lower - start <= slack { lower.min(start) } else { lower }, if start - upper <= slack {
-            upper.max(start)
-        } else {
-            upper
-        })
+        (
+            if lower - start <= slack { lower.min(start) } else { lower },
+            if start - upper <= slack { upper.max(start) } else { upper },
+        )
     }
 
     fn require_for(&self, joints: usize) -> Result<()> {

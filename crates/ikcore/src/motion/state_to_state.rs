@@ -30,12 +30,7 @@ pub fn state_to_state(from: &ArmState, to: &ArmState, limits: &Limits) -> Result
 ///
 /// # Errors
 /// As [`state_to_state`].
-pub fn state_to_state_from(
-    from: &ArmState,
-    to: &ArmState,
-    limits: &Limits,
-    slack: &StartSlack,
-) -> Result<Trajectory> {
+pub fn state_to_state_from(from: &ArmState, to: &ArmState, limits: &Limits, slack: &StartSlack) -> Result<Trajectory> {
     let joints = limits.joint_names();
     from.check(0, joints)?;
     to.check(1, joints)?;

@@ -96,7 +96,8 @@ impl<'a> EndSearch<'a> {
             Endpoint::Configuration(q) => return Ok(vec![q.clone()]),
             Endpoint::Targets { tips, targets } => (tips, targets),
         };
-        let first = self.solve(SolveOptions { start: Some(start.to_vec()), ..self.options_of(tips) }, targets, monitor)?;
+        let first =
+            self.solve(SolveOptions { start: Some(start.to_vec()), ..self.options_of(tips) }, targets, monitor)?;
         reached(name, &first)?;
         let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
         let others = solve_all_tips(self.robot, targets, &all, monitor)?;

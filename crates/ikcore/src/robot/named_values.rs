@@ -47,7 +47,9 @@ impl Robot {
             match (places.next(), places.next()) {
                 (Some(place), None) => order.push(place),
                 (Some(_), Some(_)) => {
-                    return Err(Error::Contradiction { problem: format!("names: joint '{joint}' is there twice").into() });
+                    return Err(Error::Contradiction {
+                        problem: format!("names: joint '{joint}' is there twice").into(),
+                    });
                 }
                 (None, _) => missing.push(joint),
             }
@@ -59,7 +61,8 @@ impl Robot {
                 let near = suggestion(first, others);
                 let (quoted, given) = (quoted(&missing), listed(names.iter().map(String::as_str)));
                 let plural = if missing.len() == 1 { "" } else { "s" };
-                let problem = format!("names: joint{plural} {quoted} of robot '{}' missing{near}; given: {given}", self.name());
+                let problem =
+                    format!("names: joint{plural} {quoted} of robot '{}' missing{near}; given: {given}", self.name());
                 Err(Error::Contradiction { problem: problem.into() })
             }
         }

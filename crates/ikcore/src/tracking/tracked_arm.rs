@@ -173,8 +173,7 @@ impl TrackedArm {
     /// As for the start of [`new`](Self::new), and for an arm that could not stop inside its limits; the arm is then as before.
     pub fn reset(&mut self, q: &[f64], [qd, qdd]: [Option<&[f64]>; 2]) -> Result<()> {
         self.robot.check("q", q)?;
-        let AdmittedStart { q, outside } =
-            self.limits.admit_start(Some(&self.robot), "q", q, &self.start_slack)?;
+        let AdmittedStart { q, outside } = self.limits.admit_start(Some(&self.robot), "q", q, &self.start_slack)?;
         let q = &q[..];
         self.require_in_region("q", q)?;
         let zero = Point::from_elem(0.0, q.len());

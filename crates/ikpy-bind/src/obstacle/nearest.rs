@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use super::GivenObstacles;
 use crate::convert::copied;
 use crate::error::raise;
-use crate::joint_order::joint_vector;
 use crate::hash::content_hash;
+use crate::joint_order::joint_vector;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 

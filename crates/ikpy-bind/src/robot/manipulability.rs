@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{Rows, row, table};
 use crate::error::raise;
-use crate::joint_order::{joint_rows, joint_vector};
 use crate::hash::content_hash;
+use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces};
 use crate::pickling::{self, Reduced};
 

@@ -133,7 +133,17 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, outside: vec![], tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self {
+            core,
+            q,
+            qd,
+            limits,
+            elapsed,
+            outside: vec![],
+            tips: TipErrors::unnamed(),
+            among: None,
+            around: OnceLock::new(),
+        }
     }
 
     /// Adds the joints that began outside their limits.

@@ -187,7 +187,10 @@ impl PyTracker {
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips).led_from(outside))
+        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed())
+            .among(space, q)
+            .of_tips(tips)
+            .led_from(outside))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

@@ -247,7 +247,8 @@ impl ControlSession {
             let too_far = (sent - q).abs() - velocity[j] * self.dt;
             // A joint that began outside is led inside.
             let led = if self.start_outside.is_empty() { None } else { Some(*q) };
-            let (floor, ceiling) = (led.map_or(floor[j], |q| floor[j].min(q)), led.map_or(ceiling[j], |q| ceiling[j].max(q)));
+            let (floor, ceiling) =
+                (led.map_or(floor[j], |q| floor[j].min(q)), led.map_or(ceiling[j], |q| ceiling[j].max(q)));
             (too_far.max(floor - sent).max(sent - ceiling), j, *sent)
         });
         excesses.max_by(|a, b| a.0.total_cmp(&b.0))
