@@ -314,8 +314,8 @@ REFUSED = f"joint 'panda_joint2' at -1.9627999999999999 is outside its limits [-
         (
             lambda: bik.Tracker(PANDA, below(1e-3), dt=DT, start_slack=0.0),
             Limit,
-            "start: joint 'panda_joint2' at -1.7637999999999998 is outside its limits [-1.7628, 1.7628] by 1.000e-3 rad: "
-            + SLACK,
+            "start: joint 'panda_joint2' at -1.7637999999999998 is outside its limits [-1.7628, 1.7628] by "
+            f"1.000e-3 rad: {SLACK}",
         ),
         (
             lambda: bik.Tracker(PANDA, np.radians([350.0, 0, 0, -90, 0, 90, 45]), dt=DT),

@@ -86,7 +86,7 @@ class StartsAsRead(Attack):
         most = np.where([joint["kind"] == "prismatic" for joint in joints], SLIDING, TURNING)
         if np.any((left["solution"].q < lower) | (left["solution"].q > upper)):
             raise BrokenError("a solution is outside the limits", left["solution"].q.tolist())
-        is_taken, is_edge = np.all(beyond <= most), np.any(np.abs(beyond - most) < SEEN)
+        is_taken, is_edge = np.all(beyond <= most), np.any(np.abs(beyond - most) <= rounding + SEEN)
         for call in ("refusal", "no_plan"):
             if not is_edge and (left[call] is None) != is_taken:
                 raise BrokenError("a start is taken or refused against what the page says", left[call])

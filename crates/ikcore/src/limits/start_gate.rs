@@ -142,9 +142,10 @@ impl Limits {
             let beyond = (*value - limit).abs();
             let kind = robot.map(|robot| robot.joints()[j].kind);
             let joint = self.joint_name(j);
-            if beyond <= limit_rounding(lower, upper) {
+            let rounding = limit_rounding(lower, upper);
+            if beyond <= rounding {
                 *value = limit;
-            } else if beyond <= slack.of(j, kind) {
+            } else if beyond <= slack.of(j, kind) + rounding {
                 let (joint, value, unit) = (joint.to_owned(), *value, position_unit(kind).to_owned());
                 admitted.outside.push(JointOutside { joint, value, limit, unit });
             } else {
