@@ -30,7 +30,9 @@ pub use crate::plan::{
     LineFrame, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod, PointToPointOptions,
     StraightLine, Tpbso,
 };
-pub use crate::timing::{ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal};
+pub use crate::timing::{
+    ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,
+};
 pub use along_path::plan_along_path;
 pub(crate) use point_to_point::check_point_to_point;
 pub use point_to_point::plan_point_to_point;
