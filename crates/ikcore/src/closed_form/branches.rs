@@ -133,14 +133,14 @@ pub(crate) struct BranchError {
     pub rotation: f64,
 }
 
-/// Branches found for one pose, each verified by forward kinematics.
+/// Branches found for one pose, each verified by forward kinematics, and configurations that miss it by little.
 #[derive(Debug, Clone, Copy)]
 pub struct Branches<const N: usize> {
+    /// Branches from the front, near misses from the back.
     sets: [[f64; N]; MOST],
     errors: [BranchError; MOST],
     count: usize,
-    /// True if a rejected candidate was near the pose: a caller's tolerances may be wide enough for it.
-    pub near_miss: bool,
+    misses: usize,
     /// Number of forward kinematics evaluations used by verification.
     pub evaluations: usize,
     /// Doubt about further branches.
@@ -157,7 +157,7 @@ impl<const N: usize> Branches<N> {
             sets: [[0.0; N]; MOST],
             errors: [BranchError::default(); MOST],
             count: 0,
-            near_miss: false,
+            misses: 0,
             evaluations: 0,
             doubt: Doubt::Anywhere,
             singular: false,
@@ -171,7 +171,24 @@ impl<const N: usize> Branches<N> {
             self.sets[self.count] = set;
             self.errors[self.count] = error;
             self.count += 1;
+            self.misses = self.misses.min(MOST - self.count);
         }
+    }
+
+    /// Adds a configuration that misses the pose by so little that a caller's tolerances may admit it or one beside it;
+    /// ignored when full.
+    #[cold]
+    pub(crate) fn push_near_miss(&mut self, set: [f64; N]) {
+        if self.count + self.misses < MOST {
+            self.misses += 1;
+            self.sets[MOST - self.misses] = set;
+        }
+    }
+
+    /// Returns the configurations that miss the pose by little.
+    #[inline(always)]
+    pub(crate) fn near_misses(&self) -> &[[f64; N]] {
+        &self.sets[MOST - self.misses..]
     }
 
     /// Returns the pose error of each branch.

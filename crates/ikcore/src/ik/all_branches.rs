@@ -185,10 +185,14 @@ impl BranchCollector<'_, '_, '_> {
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
-        self.may_reach_by_tolerance |= branches.near_miss;
+        for q in branches.near_misses() {
+            self.may_reach_by_tolerance = true;
+            self.take_by_descent(q);
+        }
         if self.found.solutions.is_empty() && self.may_reach_by_tolerance {
             self.take_within_tolerance();
         }
+        self.found.complete &= !self.may_reach_by_tolerance;
         if branches.doubt == Doubt::Anywhere && !self.found.singular {
             self.take_scattered();
         }
@@ -241,8 +245,8 @@ impl BranchCollector<'_, '_, '_> {
         let Tolerance { position, rotation } = criterion.tolerance;
         let tolerance = Tolerance { position: position.max(LEAST_TOLERANCE), rotation: rotation.max(LEAST_TOLERANCE) };
         let weak = WeakDirection::at(self.attempt.context.robot(), q, &tolerance);
-        if weak.change < ALMOST_FREE {
-            self.found.singular = true;
+        self.found.singular |= weak.change < ALMOST_FREE;
+        if weak.change < ALMOST_FREE || outside <= AT_LIMIT && weak.change < FAR_FROM_FREE {
             self.found.complete = false;
         }
         if outside > AT_LIMIT && outside * weak.change < FIRMLY_OUTSIDE {
@@ -286,7 +290,6 @@ impl BranchCollector<'_, '_, '_> {
     /// reach, or just outside the poses that an arm with few joints can reach.
     #[cold]
     fn take_within_tolerance(&mut self) {
-        self.found.complete = false;
         let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
             return;

@@ -20,8 +20,8 @@ pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 /// larger errors in the angles.
 const GOOD: f64 = 1e-12;
 
-/// Residual of a rejected candidate (m, rad) below which a pose within a caller's tolerances may have a solution.
-const NEARLY: f64 = 1e-5;
+/// Residual of a rejected candidate (m, rad) below which it is a near miss: twice the tolerances that count as narrow.
+const NEARLY: f64 = 2e-5;
 
 /// Largest joint difference (rad, m) between branches that count as one: a double root.
 const SAME: f64 = 1e-6;
@@ -108,7 +108,8 @@ impl<const N: usize> Verifier<N> {
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
         match polish::polished(&self.chain, target, set, &mut found.evaluations) {
             Ok((set, error)) => push_new(set, error, &self.slides, found),
-            Err(residual) => found.near_miss |= residual < NEARLY,
+            Err((residual, set)) if residual < NEARLY => found.push_near_miss(set),
+            Err(_) => {}
         }
     }
 }

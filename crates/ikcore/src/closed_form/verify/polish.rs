@@ -13,7 +13,8 @@ pub const TOLERANCE: f64 = 1e-10;
 
 const ITERATIONS: usize = 24;
 
-/// Refines `q` by Newton's method until the tip is at `target`, or returns the smallest residual (m, rad) on failure.
+/// Refines `q` by Newton's method until the tip is at `target`; on failure returns the smallest residual (m, rad) and where it
+/// was.
 ///
 /// Each step adds one to `evaluations`. Damping by the squared error keeps steps short near a double root, where the Jacobian
 /// is singular.
@@ -22,7 +23,7 @@ pub fn polished<const N: usize>(
     target: &Frame,
     mut q: [f64; N],
     evaluations: &mut usize,
-) -> Result<([f64; N], BranchError), f64> {
+) -> Result<([f64; N], BranchError), (f64, [f64; N])> {
     let mut last = f64::INFINITY;
     let mut best = (f64::INFINITY, q, BranchError::default());
     for _ in 0..ITERATIONS {
@@ -44,10 +45,8 @@ pub fn polished<const N: usize>(
     }
     let (residual, q, error) = best;
     let turns = |k: usize| chain.joints[k].motion == AxisKind::Turns;
-    if residual > TOLERANCE {
-        return Err(residual);
-    }
-    Ok((std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
+    let q = std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] });
+    if residual <= TOLERANCE { Ok((q, error)) } else { Err((residual, q)) }
 }
 
 /// Wraps the angle to (-pi, pi].
