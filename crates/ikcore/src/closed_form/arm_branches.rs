@@ -1,6 +1,6 @@
 //! All solution branches of an arm for one pose.
 
-use crate::closed_form::branches::{BranchError, Branches, Doubt, MOST, MOST_JOINTS};
+use crate::closed_form::branches::{BranchFit, Branches, Doubt, MOST, MOST_JOINTS};
 use crate::closed_form::configurations::{ArmConfigurations, Drives};
 
 /// Configurations of an arm for one pose, verified by forward kinematics; each is listed at one of its whole turns. Also those
@@ -12,7 +12,7 @@ pub(crate) struct ArmBranches {
     count: usize,
     misses: usize,
     joints: usize,
-    errors: [BranchError; MOST],
+    errors: [BranchFit; MOST],
     /// Doubt about missing branches; for a redundant arm, about further ones at this value of the parameter.
     pub doubt: Doubt,
     /// True if at least one configuration represents a family with a free joint.
@@ -31,7 +31,7 @@ impl ArmBranches {
             set[..N].copy_from_slice(values);
             drives.joints_of(set);
         }
-        let mut errors = [BranchError::default(); MOST];
+        let mut errors = [BranchFit::default(); MOST];
         errors[..count].copy_from_slice(branches.errors());
         let Branches { doubt, singular, evaluations, .. } = *branches;
         Self { sets, count, misses, joints, errors, doubt, singular, evaluations }
@@ -43,7 +43,7 @@ impl ArmBranches {
     }
 
     /// Iterates over the configurations (n,) (rad, m) and their pose errors.
-    pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchError)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchFit)> {
         self.sets[..self.count].iter().map(|set| &set[..self.joints]).zip(self.errors)
     }
 

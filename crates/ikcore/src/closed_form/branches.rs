@@ -124,13 +124,15 @@ impl Default for Candidates {
     }
 }
 
-/// Pose error of a configuration, by forward kinematics.
+/// How well a configuration has a pose, by forward kinematics, and how firmly the pose holds it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct BranchError {
+pub(crate) struct BranchFit {
     /// Position error (m).
     pub position: f64,
     /// Rotation error (rad).
     pub rotation: f64,
+    /// Lower bound on the change of the pose (m, rad) per unit of motion of the axes; 0 for redundant arms.
+    pub stiffness: f64,
 }
 
 /// Branches found for one pose, each verified by forward kinematics, and configurations that miss it by little.
@@ -138,7 +140,7 @@ pub(crate) struct BranchError {
 pub struct Branches<const N: usize> {
     /// Branches from the front, near misses from the back.
     sets: [[f64; N]; MOST],
-    errors: [BranchError; MOST],
+    errors: [BranchFit; MOST],
     count: usize,
     misses: usize,
     /// Number of forward kinematics evaluations used by verification.
@@ -155,7 +157,7 @@ impl<const N: usize> Branches<N> {
     pub fn none() -> Self {
         Self {
             sets: [[0.0; N]; MOST],
-            errors: [BranchError::default(); MOST],
+            errors: [BranchFit::default(); MOST],
             count: 0,
             misses: 0,
             evaluations: 0,
@@ -166,7 +168,7 @@ impl<const N: usize> Branches<N> {
 
     /// Adds a branch; ignored when full.
     #[inline(always)]
-    pub(crate) fn push(&mut self, set: [f64; N], error: BranchError) {
+    pub(crate) fn push(&mut self, set: [f64; N], error: BranchFit) {
         if self.count < MOST {
             self.sets[self.count] = set;
             self.errors[self.count] = error;
@@ -193,7 +195,7 @@ impl<const N: usize> Branches<N> {
 
     /// Returns the pose error of each branch.
     #[inline(always)]
-    pub(crate) fn errors(&self) -> &[BranchError] {
+    pub(crate) fn errors(&self) -> &[BranchFit] {
         &self.errors[..self.count]
     }
 }
