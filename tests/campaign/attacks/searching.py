@@ -27,7 +27,7 @@ class CompleteSets(Attack):
         joints = arms.easy_arm(random, {"planar": 3, "five": 5, "nearly five": 5}.get(kind, 6))
         for joint in joints:
             joint.update(kind="revolute", lower=-float(random.uniform(1, 6)), upper=float(random.uniform(1, 6)))
-        if kind == "nearly five":  # in a plane that the first joint turns: half a turn of it nearly gives further solutions
+        if kind == "nearly five":  # flat beyond the first joint: half a turn of it nearly gives further solutions
             for joint, axis in zip(joints, ("z", "y", "y", "y", "x"), strict=True):
                 x, _, z = joint["xyz"]
                 joint.update(rpy=(0.0, 0.0, 0.0), xyz=(x, 0.0, z), axis=tuple(float(name == axis) for name in "xyz"))
