@@ -9,6 +9,7 @@ _OPTIONS = {
     "margin=": "--margin",
     "obstacles= (a list, which may be empty) or self_collision=True": "--scene",
     "one of them as tip=": "one of them as --tip",
+    'task=tasks.Pose(first="position")': "--first position",
     "plan.retime(limits)": "`beetle-ik plan retime`",
     "with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])": "by --link-radius",
 }
