@@ -91,6 +91,10 @@ SPOILED = {
         "solution = Changed(solution, q=solution.q * nan)",
         "q is not finite",
     ),
+    "place_first": (
+        "solution = Changed(solution, q=solution.q + 1e-4)",
+        "position_error is not the error",
+    ),
     "complete_sets": (
         "found = Changed(found, q=found.q[1:])",
         "a complete set lacks a solution",

@@ -44,7 +44,7 @@ use ikcore::solver::{
     RestartRule, Schedule, StepSize, Stop, Unattended,
 };
 use ikcore::stored;
-use ikcore::task::{Components, Criterion, Goal, NamedTask, Region, Subject, Target, Task, TaskKind, Tolerance};
+use ikcore::task::{Components, Criterion, First, Goal, NamedTask, Region, Subject, Target, Task, TaskKind, Tolerance};
 use ikcore::tracking::{
     Antenna, Arrival, ControlSession, Controller, Fault, KinematicPlant, LowPass, ModelFreeOptions, Plant, Session,
     TargetFilter, TickRule, TipPaths, TipPose, TrackOptions, Znnbas, track, track_model_free, track_tips,

@@ -14,6 +14,8 @@ pub enum Setting {
     Method(&'static str),
     /// Planner that has a solver of its own.
     MethodWithSolver,
+    /// Part of a pose that comes first: "position" or "orientation".
+    First(&'static str),
     /// Tip of a robot that has several.
     Tip,
     /// Common task of all tips.
@@ -85,6 +87,7 @@ impl fmt::Display for Setting {
                 return write!(f, "{article} {kind} limit");
             }
             Self::Method(name) => return write!(f, "the method '{name}'"),
+            Self::First(part) => return write!(f, "a task with the {part} first"),
             Self::Prefer(which) => return write!(f, "the preference '{which}'"),
             Self::Budget => "budget",
             Self::MethodWithSolver => "the method 'tpbso'",

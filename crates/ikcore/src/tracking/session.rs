@@ -282,6 +282,7 @@ impl Session {
             _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             _ if held || self.goal_is_held() => Status::HeldByObstacle,
+            _ if let Some(status) = self.arm.given_up(&found.assessment.error) => status,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         }

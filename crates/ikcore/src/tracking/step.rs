@@ -13,7 +13,8 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// holds the arm back, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
+    /// is met, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -53,6 +54,8 @@ impl Step {
         let how = match self.status {
             Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
+            Status::RotationGivenUp => "position met and rotation given up",
+            Status::PositionGivenUp => "rotation met and position given up",
             Status::HeldInRegion => "as near as its region allows",
             Status::InCollision => "nearer than the margin to an obstacle or another link",
             Status::HeldByObstacle => "held back by an obstacle or another link",
