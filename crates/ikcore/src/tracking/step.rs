@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::away::{Away, Way};
 use crate::message::{Message, message};
 use crate::solver::Status;
 use crate::task::TipError;
@@ -11,7 +12,7 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// holds the arm back, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -23,23 +24,32 @@ pub struct Step {
     pub iterations: usize,
     /// Whether this tick can bring every joint back within its position limits and slow it down to its velocity limit.
     pub inside_limits: bool,
+    /// What keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
+    pub away: Option<Away>,
     /// Whether the monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
 }
 
 impl Step {
-    /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> Message {
+    /// Returns a sentence on the outcome, with advice; `joint` names a joint.
+    pub fn message(&self, joint: impl Fn(usize) -> String) -> Message {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
+        let outside = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
+        if let (Status::Improved | Status::Capped, Some(away)) = (self.status, self.away) {
+            return away.message(error, outside, joint);
+        }
         let how = match self.status {
-            Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
-            Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
+            Status::Solved => return format!("within the tolerances, {error} away{outside}").into(),
+            Status::Improved => return format!("nearer than in the tick before, {error} away{outside}").into(),
             Status::HeldInRegion => "as near as its region allows",
             Status::InCollision => "nearer than the margin to an obstacle or another link",
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
+        let known = match self.away {
+            Some(Away { way: Way::Blocked, .. }) => format!("; {}", Away::NO_WAY),
+            _ => String::new(),
+        };
+        message![format!("{how}, {error} away{outside}{known}: "), self.status.advice()]
     }
 }

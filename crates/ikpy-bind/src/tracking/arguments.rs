@@ -19,6 +19,7 @@ pub struct TrackArguments<'a, 'py> {
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub surroundings: Surroundings,
+    pub recover: bool,
     pub seed: i128,
     pub limit_at: &'a str,
 }
@@ -34,7 +35,7 @@ impl TrackArguments<'_, '_> {
             tolerance,
             limits,
             surroundings: self.surroundings,
-            ease: false,
+            recover: self.recover,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
             ..TrackOptions::default()

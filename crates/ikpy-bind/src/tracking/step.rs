@@ -39,6 +39,8 @@ pub struct PyStep {
     elapsed: Duration,
     /// Errors by tip.
     tips: TipErrors,
+    /// Names of the joints, if the message may name some.
+    joints: Vec<String>,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
@@ -109,7 +111,7 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.joints);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
     }
@@ -118,10 +120,10 @@ impl PyStep {
     #[staticmethod]
     #[pyo3(signature = (bytes, limits, tips=None))]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
+        let (core, q, qd, elapsed, around, joints): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
-        Ok(Self { around: OnceLock::from(around), ..step })
+        Ok(Self { around: OnceLock::from(around), joints, ..step })
     }
 }
 
@@ -129,12 +131,17 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), joints: vec![], among: None, around: OnceLock::new() }
     }
 
     /// Adds the errors by tip.
     pub fn of_tips(self, tips: TipErrors) -> Self {
         Self { tips, ..self }
+    }
+
+    /// Adds the names of the joints.
+    pub fn naming(self, joints: Vec<String>) -> Self {
+        Self { joints, ..self }
     }
 
     /// Adds the clear space of an arm, and its configuration `q`.
@@ -148,7 +155,7 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message();
+        let message = self.core.message(|j| self.joints.get(j).cloned().unwrap_or_default());
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {

@@ -48,6 +48,9 @@ use crate::traversal::traversed;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
+///     recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
+///         configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
+///         a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
 ///
 /// For example:
 ///
@@ -82,8 +85,9 @@ impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None)")]
+                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
+                        recover=true),
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, recover=True)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -102,6 +106,7 @@ impl PyTracker {
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
         target_filter: Option<&Bound<'_, PyAny>>,
         timeout: Option<f64>,
+        recover: bool,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
@@ -114,7 +119,7 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
+        let asked = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
@@ -179,7 +184,10 @@ impl PyTracker {
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q) = (session.space().cloned(), session.q().to_vec());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
+        let names = || session.robot().joints().iter().map(|joint| joint.name.clone()).collect();
+        let joints = if core.away.is_some() { names() } else { vec![] };
+        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
+        Ok(step.among(space, q).of_tips(tips).naming(joints))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

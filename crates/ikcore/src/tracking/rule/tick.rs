@@ -32,6 +32,17 @@ impl Tick<'_> {
         &self.context.tick_box.bounds
     }
 
+    /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.
+    pub(super) fn fraction_within(&self, from: &[f64], to: &[f64]) -> f64 {
+        let [lower, upper] = self.context.ends();
+        let fraction = |j: usize| {
+            let way = to[j] - from[j];
+            let room = if way > 0.0 { upper[j] } else { lower[j] } - from[j];
+            if way == 0.0 { 1.0 } else { room / way }
+        };
+        (0..from.len()).map(fraction).fold(1.0, f64::min)
+    }
+
     /// Motion of the first target during the tick.
     pub(super) fn motion(&self) -> TargetSegment {
         self.targets.motion(*self.target, self.context.dt)
