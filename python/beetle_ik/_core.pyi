@@ -2326,6 +2326,7 @@ def track(
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
+    recover: bool = True,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -2576,6 +2577,7 @@ class Tracker:
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
         timeout: float | None = None,
+        recover: bool = True,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot

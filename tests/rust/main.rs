@@ -108,6 +108,7 @@ mod tracking {
     mod streams;
     mod tips;
     mod track;
+    mod way_back;
     mod work;
 }
 mod trajectory {

@@ -7,6 +7,7 @@ from . import (
     calls,
     clearance,
     command_line,
+    dead_ends,
     kinematics,
     motion,
     readers,
@@ -20,8 +21,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, streams, dead_ends, motion, clearance, readers),
+    *(xacro_files, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -34,23 +34,29 @@ impl Away {
             let text = "on the way to a configuration on the target, by a motion of the joints, ";
             return format!("{text}{error} away{limits}").into();
         }
-        let holds = format!("{} {error} away{limits}; ", self.holder(joint));
+        let holder = self.holder(joint);
+        let holds = format!("{holder} {error} away{limits}; ");
         match self.way {
             Way::Unknown => {
                 let advice = "widen the limits or the tolerance, or move the target into reach";
-                format!("{holds}no configuration on the target is known: {advice}").into()
+                format!(
+                    "no nearer than in the tick before, {error} away{limits}: {holder}, and no configuration on the target is \
+                     known: {advice}"
+                )
+                .into()
             }
-            Way::Declined => {
-                message![holds, "a configuration on the target is known: ", Setting::Recover, " lets the arm go there"]
-            }
-            Way::Blocked | Way::Taken => {
-                message![holds, Self::NO_WAY, ": plan a motion there"]
-            }
+            Way::Declined => message![
+                holds,
+                "the target is in reach: ",
+                Setting::Recover,
+                " lets the arm go to a configuration on it"
+            ],
+            Way::Blocked | Way::Taken => format!("{holds}{}: plan a motion", Self::NO_WAY).into(),
         }
     }
 
-    /// Note on an arm that a known configuration does not help.
-    pub(super) const NO_WAY: &str = "a configuration on the target is known, but no clear way straight to it";
+    /// What is said where no line of the joints is clear.
+    pub(super) const NO_WAY: &str = "the target is in reach, but no straight way of the joints to it is clear";
 
     /// What holds the arm, as the beginning of a sentence.
     fn holder(&self, joint: impl Fn(usize) -> String) -> String {

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
+use super::away::Way;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::safety_filter::{FilterOutcome, FilterWork, SafetyFilter};
-use super::away::Way;
 use super::step::Step;
 use super::step_context::StepContext;
 use super::target_stream::Arrival;
@@ -203,7 +203,11 @@ impl Session {
             self.look_for_way_back(&mut found, monitor);
         }
         let away = self.way_back.as_ref().and_then(|way_back| way_back.away());
-        let status = if status == Status::Improved && away.is_some_and(|away| away.way != Way::Taken) { Status::Capped } else { status };
+        let status = if status == Status::Improved && away.is_some_and(|away| away.way != Way::Taken) {
+            Status::Capped
+        } else {
+            status
+        };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, interrupted })

@@ -31,8 +31,13 @@ pub struct Step {
 }
 
 impl Step {
-    /// Returns a sentence on the outcome, with advice; `joint` names a joint.
-    pub fn message(&self, joint: impl Fn(usize) -> String) -> Message {
+    /// Returns a sentence on the outcome, with advice. It numbers joints, the first being 1.
+    pub fn message(&self) -> Message {
+        self.message_naming(|j| (j + 1).to_string())
+    }
+
+    /// Returns [`message`](Self::message), in which `joint` names each joint by its index.
+    pub fn message_naming(&self, joint: impl Fn(usize) -> String) -> Message {
         let error = &self.error;
         let outside = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         if let (Status::Improved | Status::Capped, Some(away)) = (self.status, self.away) {

@@ -131,7 +131,17 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), joints: vec![], among: None, around: OnceLock::new() }
+        Self {
+            core,
+            q,
+            qd,
+            limits,
+            elapsed,
+            tips: TipErrors::unnamed(),
+            joints: vec![],
+            among: None,
+            around: OnceLock::new(),
+        }
     }
 
     /// Adds the errors by tip.
@@ -155,7 +165,7 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message(|j| self.joints.get(j).cloned().unwrap_or_default());
+        let message = self.core.message_naming(|j| self.joints.get(j).cloned().unwrap_or_default());
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {

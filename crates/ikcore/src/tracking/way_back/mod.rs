@@ -14,12 +14,15 @@
 //! |---|---|
 //! | `rest_watch` | detects that the error has ceased to fall |
 //! | `search` | looks for configurations on the target |
+//! | `tried` | remembers what a search has ended with |
 
 mod rest_watch;
 mod search;
+mod tried;
 
 use rest_watch::RestWatch;
 use search::{DESCENT, Means, Search, descended, movable};
+use tried::{Tried, is_still};
 
 use super::away::{Away, Way};
 use super::progress::patience_factor;
@@ -30,7 +33,6 @@ use crate::math::vector::{largest_difference, write_between};
 use crate::objective::{Bounds, Linearization, Point, Score};
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
-use crate::task::TargetRow;
 
 /// Distance of a joint from its limit (rad, m) at which it is at the limit.
 const AT_LIMIT: f64 = 1e-3;
@@ -38,11 +40,14 @@ const AT_LIMIT: f64 = 1e-3;
 /// Fraction of the velocity limit, and of 1 rad/s (m/s), below which a joint rests.
 const RESTING: f64 = 0.02;
 
-/// Relative change of the error by which a target counts as new.
-const NEW: f64 = 0.1;
+/// Least decrease of the error (m/rad) that a joint at its limit prevents.
+const SLOPE: f64 = 0.01;
 
 /// Fraction of the error of the resting arm that the goal may have.
-const BETTER: f64 = 0.5;
+const BETTER: f64 = 0.8;
+
+/// Distance of a joint (rad, m) up to which the rule gets to the target by itself, as it averages noise.
+const WITHIN_NOISE: f64 = 0.05;
 
 /// Distance of all joints from the goal (rad, m) at which the arm has arrived.
 const ARRIVED: f64 = 0.02;
@@ -107,8 +112,7 @@ pub(super) struct WayBack {
     away: Option<Away>,
     /// Error at which the arm was last found at rest.
     error_at_rest: f64,
-    /// Targets for which a search has ended, and whether the arm failed to get to what it found.
-    tried: Option<(TargetRow, bool)>,
+    tried: Option<Tried>,
     /// Smallest distance from the goal, and the time since then (s).
     nearest: (f64, f64),
     patience: f64,
@@ -161,7 +165,7 @@ impl WayBack {
 
     /// Records that obstacles were replaced: lines that were not clear may be now.
     pub fn note_replaced(&mut self) {
-        self.tried = self.tried.take().filter(|(_, failed)| *failed);
+        self.tried.iter_mut().for_each(Tried::note_replaced);
     }
 
     /// Ends a tick. `safety` certifies lines of the joints.
@@ -170,7 +174,7 @@ impl WayBack {
         self.evaluations = 0;
         let error = if end.score.solved { 0.0 } else { end.score.value.sqrt() };
         if self.state == State::Following {
-            if self.away.is_some() && !self.is_still(error) {
+            if self.away.is_some() && !is_still(error, self.error_at_rest) {
                 self.away = None;
             }
             if !self.watch.has_ceased(error, end.context.dt) {
@@ -187,7 +191,7 @@ impl WayBack {
                 self.begin_to_look(error, &mut end);
                 Next::Continue
             }
-            State::Looking if !self.is_still(error) => {
+            State::Looking | State::Choosing { .. } if !is_still(error, self.error_at_rest) => {
                 self.follow();
                 Next::Continue
             }
@@ -205,11 +209,6 @@ impl WayBack {
         }
     }
 
-    /// Whether the error is as at rest.
-    fn is_still(&self, error: f64) -> bool {
-        (error - self.error_at_rest).abs() <= NEW * self.error_at_rest
-    }
-
     /// Follows the target again.
     fn follow(&mut self) {
         (self.state, self.away) = (State::Following, None);
@@ -220,24 +219,27 @@ impl WayBack {
     fn stay(&mut self, way: Way, end: &EndOfTick<'_>, failed: bool) {
         self.state = State::Following;
         self.away = self.away.map(|away| Away { way, ..away });
-        self.tried = Some((TargetRow::from_slice(end.context.aims.targets), failed));
+        self.tried = Some(Tried::new(end.context.aims.targets, self.error_at_rest, self.away, failed));
     }
 
     /// Begins to look for configurations on the target, if the arm rests or a descent does not lead there, and if this has not
     /// been tried.
     fn begin_to_look(&mut self, error: f64, end: &mut EndOfTick<'_>) {
         let context = end.context;
-        let is_tried = self.tried.as_ref().is_some_and(|(targets, failed)| {
-            targets[..] == *context.aims.targets || *failed && self.is_still(error)
-        });
-        if context.aims.is_empty() || is_tried {
+        if context.aims.is_empty() {
+            return;
+        }
+        if let Some(tried) = &mut self.tried
+            && tried.holds(context.aims.targets, error)
+        {
+            (self.away, self.error_at_rest) = (tried.away, error);
             return;
         }
         let bounds = movable(&context);
         let mut means = Means { rng: end.rng, monitor: end.monitor };
         let (near, solved, evaluations) = descended(context.q, DESCENT, &context, &bounds, &mut means);
         self.evaluations = evaluations;
-        if solved && !is_resting(end) {
+        if solved && (!is_resting(end) || largest_difference(&near, context.q) < WITHIN_NOISE) {
             self.away = None;
             return;
         }
@@ -253,12 +255,13 @@ impl WayBack {
     /// Joints at their lower and upper limits that would have to go beyond to lower the error.
     fn held(&mut self, context: &StepContext<'_>, bounds: &Bounds) -> [u64; 2] {
         let mut slope = Point::from_elem(0.0, context.q.len());
-        context.aims.linearize(context.robot, context.q, &mut self.linearization, |_| ());
+        let score = context.aims.linearize(context.robot, context.q, &mut self.linearization, |_| ()).score;
         self.linearization.gradient(&mut slope);
+        let least = SLOPE * score.value.sqrt();
         let mut held = [0; 2];
         for (j, q) in context.q.iter().enumerate() {
             let at = [q - bounds.lower()[j], bounds.upper()[j] - q].map(|room| room <= AT_LIMIT);
-            let outward = [slope[j] > 0.0, slope[j] < 0.0];
+            let outward = [slope[j] > least, slope[j] < -least];
             (0..2).filter(|side| at[*side] && outward[*side]).for_each(|side| held[side] |= 1 << j);
         }
         held
@@ -276,11 +279,11 @@ impl WayBack {
             self.stay(if candidate == 0 { Way::Unknown } else { Way::Blocked }, end, false);
             return Next::Continue;
         };
-        if self.goes && context.aims.has_pairs() {
+        if context.aims.has_pairs() {
             self.stay(Way::Blocked, end, false);
             return Next::Continue;
         }
-        if let Some(safety) = safety.filter(|_| self.goes) {
+        if let Some(safety) = safety {
             let until = (section + SECTIONS_IN_A_TICK).min(SECTIONS);
             let is_clear = (section..until).all(|section| section_is_clear(safety, &context, &to.q, section));
             if !is_clear || until < SECTIONS {

@@ -11,7 +11,7 @@ const PATIENCE: f64 = 0.3;
 const PROGRESS: f64 = 0.1;
 
 /// Smallest error, in changes of a tick, that noise does not explain.
-const ABOVE_NOISE: f64 = 4.0;
+const ABOVE_NOISE: f64 = 1.5;
 
 /// Watches an error, tick by tick.
 #[derive(Debug, Clone, Copy)]

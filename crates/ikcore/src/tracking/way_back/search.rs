@@ -24,8 +24,8 @@ pub(super) const DESCENT: usize = 60;
 const VALUES: usize = 24;
 const VALUES_IN_A_TICK: usize = 2;
 
-/// Drawn starts, and solutions of theirs that suffice.
-const DRAWN: usize = 48;
+/// Drawn starts, of which the first half is at increasing distances, and solutions of theirs that suffice.
+const DRAWN: usize = 96;
 const ENOUGH: usize = 4;
 
 /// Configurations kept, and their least distance from each other (rad, m).
@@ -149,12 +149,10 @@ impl Search {
     /// Descends from the next drawn start. Returns whether it was the last.
     fn descend_from_drawn(&mut self, context: &StepContext<'_>, bounds: &Bounds, means: &mut Means<'_>) -> bool {
         self.tried += 1;
-        let share = self.tried as f64 / DRAWN as f64;
+        let share = (2.0 * self.tried as f64 / DRAWN as f64).min(1.0);
         let ranges = finite(context, bounds);
         let ends = ranges.lower().iter().zip(ranges.upper());
-        let draw = |(q, (lower, upper)): (&f64, (&f64, &f64))| {
-            between(*q, means.rng.uniform_in(*lower, *upper), share)
-        };
+        let draw = |(q, (lower, upper)): (&f64, (&f64, &f64))| between(*q, means.rng.uniform_in(*lower, *upper), share);
         let start: Point = context.q.iter().zip(ends).map(draw).collect();
         self.take_descent(&start, DESCENT, context, bounds, means);
         self.tried >= DRAWN || self.solutions >= ENOUGH
@@ -258,7 +256,8 @@ fn travel_time(context: &StepContext<'_>, q: &[f64]) -> f64 {
 
 /// Factor on the travel time to `q` for want of room between joints and limits.
 fn cramped(bounds: &Bounds, q: &[f64]) -> f64 {
-    let room = |(q, (lower, upper)): (&f64, (&f64, &f64))| if lower < upper { (q - lower).min(upper - q) } else { ROOM };
+    let room =
+        |(q, (lower, upper)): (&f64, (&f64, &f64))| if lower < upper { (q - lower).min(upper - q) } else { ROOM };
     let least = q.iter().zip(bounds.lower().iter().zip(bounds.upper())).map(room).fold(ROOM, f64::min);
     1.0 + (CRAMPED - 1.0) * (1.0 - least / ROOM)
 }
